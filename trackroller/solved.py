@@ -15,7 +15,7 @@ from trackroller.analysis.pareto import default_objectives, pareto
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.stored_study import read_results
-from trackroller.analysis.table import StudyResults
+from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.errors import InputError
 from trackroller.numerics.threads import limited_to
 from trackroller.report.build import report_text
@@ -26,6 +26,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar
 from trackroller.study.run import run_study, solve_study
+from trackroller.study.store.seal import read_result
 
 
 class Solved(StudyResults):
@@ -55,6 +56,11 @@ class Solved(StudyResults):
     @cached_property
     def _analysis(self) -> xr.Dataset:
         return analyse(self)
+
+    @cached_property
+    def analysed_view(self) -> StudyView:
+        """Return the study as a table with its analysis, which figures and report take."""
+        return self.view.analysed(self._analysis)
 
     def indices(self) -> xr.Dataset:
         """Return the sensitivity indices of every output, see `trackroller.analysis.sensitivity.analyse`.
@@ -193,7 +199,7 @@ def run(
         return Solved(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
 
 
-def open_study(source: xr.Dataset | Path | str) -> Solved:
+def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = None) -> Solved:
     """Open a solved study.
 
     Parameters
@@ -201,6 +207,8 @@ def open_study(source: xr.Dataset | Path | str) -> Solved:
     source : xarray.Dataset, pathlib.Path or str
         Folder of a study, its file `study.nc`, the data set in such a file, or the result of `trackroller.solve` for
         the design of a study.
+    indices : pathlib.Path or str, optional
+        File `sensitivity.nc` with the indices of the study. By default they are computed when they are needed.
 
     Returns
     -------
@@ -221,5 +229,8 @@ def open_study(source: xr.Dataset | Path | str) -> Solved:
     >>> tr.open_study(ds).data.sizes["roller_profile_radius"]
     2
     """
-    found = read_results(source)
-    return Solved(found.study, found.design, found.data)
+    results = read_results(source)
+    solved = Solved(results.study, results.design, results.data)
+    if indices is not None:
+        vars(solved)["_analysis"] = read_result(indices)
+    return solved

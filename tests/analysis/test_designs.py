@@ -179,7 +179,7 @@ def test_a_sample_in_which_no_design_repeats_names_the_design_of_experiments_tha
     assert "give roller profile radius and contact angle as lists" in said[0].text
     assert "friction coefficient and axial force as distributions with `design: inner_outer`" in said[0].text
     page = contents(view_of(ds))
-    assert "best_designs" not in {t.name for t in page["decide"]}
+    assert "best_designs" not in {t.name for t in page["tables"]["decide"]}
     ds, _ = solved(design="lhs", samples=40, factors={"roller_profile_radius": {"uniform": [-8, -6.5]}})
     said = best_design(view_of(ds))[0]  # no condition varies: each row is a design under the one condition
     assert said.kind == "best" and "worst condition" not in said.text

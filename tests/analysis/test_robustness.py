@@ -119,14 +119,3 @@ def test_robustness_refuses_another_design():
     ds = solved(lognormal, data=data)
     with pytest.raises(InputError, match="inner_outer"):
         robustness(results_of(ds), {})
-
-
-def test_figure_of_design_points_is_drawn():
-    """Spread, B10 and shares of regimes in one figure."""
-    from trackroller.report.figures import style
-    from trackroller.report.figures.pareto import robust_points
-
-    ds = solved(lognormal)
-    with style.look():
-        figure, info = robust_points(robustness(results_of(ds), {}), "roller_life_hours")
-    assert len(figure.axes) == 2 and "B10" in info.caption

@@ -22,8 +22,9 @@ factors:
 contact_model: sliding
 outputs: [forces, contact]
 """
-ANALYSE = "import trackroller.cli.workflow, sys; from trackroller.report.build import analyse_study; "
-ANALYSE += "analyse_study('results/bits/study.nc', sys.argv[1])"
+ANALYSE = "import trackroller.cli.workflow, sys, pathlib; from trackroller.solved import open_study; "
+ANALYSE += "from trackroller.report.build import write_analysis; "
+ANALYSE += "write_analysis(open_study('results/bits/study.nc'), pathlib.Path(sys.argv[1]))"
 
 
 @pytest.mark.long

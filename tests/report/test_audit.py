@@ -285,14 +285,14 @@ class Audit:
             if found:
                 assert met[found[1]] == (value(found[2]), value(found[3]))
                 assert met[found[1]][0] == max(k for k, _ in met.values())
-        for table in self.page["decide"]:
+        for table in self.page["tables"]["decide"]:
             if table.name == "targets" and self.told.get("design") != "inner_outer":
                 told = value(table.rows[0][-1].removesuffix(" %"))
                 assert told == pytest.approx(100 * hit.mean(), abs=0.51), (table.rows[0], hit.mean())
 
     def check_tables(self):
         """Counts of regimes and flags, and the numbers of the table of the best designs."""
-        frame, tables = self.frame, {t.name: t for t in self.page["decide"] + self.page["ends"]}
+        frame, tables = self.frame, {t.name: t for t in self.page["tables"]["decide"] + self.page["tables"]["ends"]}
         for name, count, *_ in tables["regimes"].rows:
             code = ("rolling", "full slip", "lift-off", "failed").index(name)
             assert count == (frame["regime"] == code).sum()
@@ -308,7 +308,7 @@ class Audit:
 
     def check_rows_of_indices(self):
         """Each row is left out for one reason, and an index that uses every row says so alone."""
-        frame, tables = self.frame, {t.name: t for t in self.page["why"]}
+        frame, tables = self.frame, {t.name: t for t in self.page["tables"]["why"]}
         missed = int((frame["rolls"] & ~(frame["pressure"] < self.limit)).sum())
         for table in (t for t in tables.values() if t.heads[-1] == "Computed from"):
             counted = re.search(rf"{NUMBER} further rows miss a constraint", table.note)

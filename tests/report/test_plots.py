@@ -17,10 +17,11 @@ from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view
 import trackroller as tr
 from trackroller.analysis.columns import at_surface
 from trackroller.analysis.effects import paired_effect
+from trackroller.analysis.groups import spaced_by_ratio
 from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.report.figures import style
+from trackroller.report.figures import designs, style
 from trackroller.report.figures.contact import plot_case
 from trackroller.report.figures.contact_patch import case_name
 from trackroller.report.figures.contact_sections import sections, surface_stress
@@ -224,14 +225,41 @@ def test_numbers_read_as_an_engineer_writes_them(value, text):
     assert number(value) == text
 
 
-def test_subtitles_are_wrapped_within_the_figure():
-    """No wrapped line is wider than asked for, long words apart."""
-    from matplotlib.font_manager import FontProperties
-    from matplotlib.textpath import TextToPath
+def test_a_long_title_is_wrapped_within_the_figure():
+    with style.look():
+        figure = style.new_figure(40, 80)
+        figure.subplots()
+        style.head(figure, "Held: " + "roller profile radius −7 mm; " * 8)
+        figure.draw_without_rendering()
+        box = figure._suptitle.get_window_extent()
+    assert box.x1 <= figure.bbox.x1 and box.height > 2 * figure._suptitle.get_fontsize()
 
-    lines = style.wrapped("Held: " + "roller profile radius −7 mm; " * 8, 80, 7.0)
-    widths = [TextToPath().get_text_width_height_descent(t, FontProperties(size=7.0), False)[0] for t in lines]
-    assert len(lines) > 2 and max(widths) <= 80 / 25.4 * 72
+
+def test_a_material_has_the_same_colour_in_every_list():
+    steel, polyamide = "1.7225-normalised", "PA6"
+    alone = dict(zip((steel, polyamide), style.colours([steel, polyamide], True), strict=True))
+    pairs = style.colours([f"{polyamide} on {steel}", f"{steel} on itself", "my own on itself"], True)
+    assert pairs[:2] == [alone[polyamide], alone[steel]] and pairs[2] not in alone.values()
+    guides = style.colours([f"{steel} on {polyamide}", f"{steel} on itself"], True)
+    assert guides == [alone[polyamide], alone[steel]]
+
+
+@pytest.mark.parametrize("longest", [5, 500])
+def test_long_names_of_designs_are_numbered_with_a_key(monkeypatch, longest):
+    monkeypatch.setattr(designs, "LONGEST", longest)
+    with style.look():
+        figure, info = designs.lives_by_design(view_of(grid_study(SMALL)))
+    labels = [text.get_text() for text in figure.axes[0].get_yticklabels()]
+    assert (labels[:2] == ["1", "2"]) == (longest == 5)
+    assert (f"1: {info.sentence.partition(' lasts longest')[0]}" in info.caption) == (longest == 5)
+
+
+@pytest.mark.parametrize(
+    ("values", "logarithmic"),
+    [(np.linspace(0.02, 0.4, 20), False), (np.geomspace(0.02, 0.4, 20), True), (np.array([0.0, 1.0, 100.0]), False)],
+)
+def test_only_levels_that_are_spaced_by_ratio_get_a_logarithmic_axis(values, logarithmic):
+    assert spaced_by_ratio(values, 4.0) == logarithmic
 
 
 OUTPUTS = ("forces", "contact", "peak_stress", "tractions", "subsurface")

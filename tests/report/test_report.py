@@ -125,7 +125,7 @@ def test_validity_bits_are_counted_by_mask():
 
 def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_life():
     ds = grid_study(FACTORS)
-    best = {row[0]: row[1:] for row in contents(view_of(ds))["decide"][0].rows}
+    best = {row[0]: row[1:] for row in contents(view_of(ds))["tables"]["decide"][0].rows}
     valid = (ds["regime"] == 0) & ((ds["validity"] & 15) == 0)
     frame = ds["roller_life_hours"].where(valid).to_dataframe(name="life").reset_index()
     groups = frame.groupby(["roller_profile_radius", "material_pair"]).life

@@ -92,7 +92,7 @@ def page(name):
     before, after = _of_analysis(view.analysis) if view.analysis is not None else ([], [])
     infos = [drawn[1] for draw in (*before, *_jobs(view), *after) if (drawn := draw()) is not None]
     prose += [(info.name, text) for info in infos for text in (info.sentence, info.caption)]
-    for table in (t for part in ("decide", "why", "ends", "models") for t in found[part]):
+    for table in (t for part in ("decide", "why", "ends", "models") for t in found["tables"][part]):
         prose.append((table.name, table.note))
         if table.name not in ("indices", "validity"):  # their last column explains each row
             prose += [(table.name, v) for row in table.rows for v in row if isinstance(v, str) and len(v) > 60]
@@ -145,7 +145,7 @@ def test_lives_of_tables_and_sentences_are_marked(name):
     """Hours in a table are lives that know whether they lie beyond the S-N data; none is called unlimited."""
     _, found, prose = page(name)
     hours = 0
-    for table in found["decide"]:
+    for table in found["tables"]["decide"]:
         for row in table.rows:
             for head, cell in zip(table.heads[1:], row[1:], strict=True):
                 what = f"{table.title} {head}" if "interval" not in head else ""
@@ -164,7 +164,7 @@ def test_a_sample_without_designs_says_so_and_nothing_contradicts_it(name):
     assert "cannot say which design is best" in best["unanswered"] and "`design: inner_outer`" in best["unanswered"]
     assert not {"best", "next", "ties", "target_of_designs"} & set(best)
     assert not re.search(r"\bBuild |Best [1-9]|designs tie|best design", " ".join(text for _, text in prose))
-    names = {t.name: t for t in found["decide"]}
+    names = {t.name: t for t in found["tables"]["decide"]}
     assert "best_designs" not in names
     if "pareto" in names:
         assert names["pareto"].title == "Pareto-optimal cases"

@@ -143,7 +143,7 @@ def test_a_known_model_error_above_5_percent_is_told_with_its_size(middle, told)
     assert (friction_error(view_of(ds)) is not None) == told
     found = contents(view_of(ds))
     sure = " ".join(s.text for s in dict(found["summary"]).get("How sure", []))
-    table = next(t for t in found["decide"] if t.name == "pareto")
+    table = next(t for t in found["tables"]["decide"] if t.name == "pareto")
     for text in (sure, table.note):
         assert ("127 % in the median" in text) == told
 
@@ -198,7 +198,7 @@ def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_
     import zipfile
     from xml.etree import ElementTree as ET
 
-    tables = [t for t in contents(view_of(grid_study()))["decide"] if t]
+    tables = [t for t in contents(view_of(grid_study()))["tables"]["decide"] if t]
     paths = export(tables, tmp_path)
     assert paths[-1].name == "tables.xlsx" and len(paths) == len(tables) + 1
     with paths[0].open(encoding="utf-8") as file:
@@ -232,6 +232,6 @@ def test_pairs_agree_with_a_closed_form():
     view = view_of(ds)
     said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
     assert said.text == (
-        "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold (median of 6 pairs of valid "
-        "cases that differ in nothing else; same direction in all pairs)."
+        "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold, the median of 6 pairs of valid "
+        "cases that differ in nothing else; the life of the roller falls in all pairs."
     )

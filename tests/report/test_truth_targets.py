@@ -127,5 +127,5 @@ def test_targets_stand_in_the_head_and_in_decide_of_the_report():
     found = contents(view_of(ds, analyse(results_of(ds))))
     head = dict(found["summary"])["Best"]
     assert head[-1].kind == "target" and "Best design point" not in dict(found["summary"])
-    table = next(t for t in found["decide"] if t.name == "targets")
+    table = next(t for t in found["tables"]["decide"] if t.name == "targets")
     assert head[-1].text in table.note and len(table.heads) == 1 + len(hits(ds, data))

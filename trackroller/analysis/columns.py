@@ -11,10 +11,10 @@ import xarray as xr
 
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.dataset import shown
+from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import flat
 
-CATEGORIES = ("material_pair", "roller_material", "guide_material")
 CONTACT_RESULTS, WHOLE_RESULTS = shown("contact"), shown()
 BODY_RESULTS = ("peak_stress", "peak_z", "life_cycles", "error_estimate", "fatigue_stress")
 PLAIN_RESULTS = (
@@ -36,15 +36,15 @@ SURFACE_SHARE = 0.01  # of the smaller semi-axis: a peak above this depth counts
 def _columns(ds: xr.Dataset, dims: Sequence[str], names: Iterable[str]) -> dict[str, np.ndarray]:
     """Flatten those quantities that have one value a case, numbers as floats."""
     varying = [n for n in dict.fromkeys(names) if n in ds.variables and ds[n].ndim]
-    found = {n: flat(ds, n, tuple(dims)) for n in varying if set(ds[n].dims) <= set(dims)}
-    return {n: v.astype(str if v.dtype.kind in "OSU" else float) for n, v in found.items()}
+    flattened = {n: flat(ds, n, tuple(dims)) for n in varying if set(ds[n].dims) <= set(dims)}
+    return {n: v.astype(str if v.dtype.kind in "OSU" else float) for n, v in flattened.items()}
 
 
 def input_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     """Flatten factors and other inputs that vary over `dims` in one common order."""
     own = [n for n, v in ds.variables.items() if v.dims == ("case",) and n not in ("case", "reason", *ds.data_vars)]
     words = [f"{n}_value" for n in PARAMETERS]  # numbers that belong to a friction coefficient given as a word
-    return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *CATEGORIES])
+    return _columns(ds, dims, [*(d for d in dims if d != "case"), *map(str, own), *PARAMETERS, *words, *OF_MATERIALS])
 
 
 def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
@@ -60,8 +60,8 @@ def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
     if {"peak_stress", "peak_z"} <= set(ds):
         ds = ds.assign(at_surface=at_surface(ds))
     needed = {n: {"contact", "body"} for n in (*BODY_RESULTS, "at_surface")} | {"validity_body": {"body"}}
-    found = {n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)}
-    for name, table in _of_bodies(found).items():
+    of_bodies = {n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)}
+    for name, table in _of_bodies(of_bodies).items():
         columns |= {f"{name}_{body}": values for body, values in zip(ds["body"].values, table.T, strict=True)}
     return columns
 
@@ -69,7 +69,7 @@ def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
 def at_surface(ds: xr.Dataset) -> xr.DataArray:
     """Say of each contact and body whether the peak stress lies at the surface (1) or below it (0), NaN if unknown.
 
-    A peak counts as one at the surface down to 1 % of the smaller semi-axis, or to 1 µm if the semi-axes are unknown.
+    A peak lies at the surface down to a depth of 1 % of the smaller semi-axis, or of 1 µm if the semi-axes are unknown.
     """
     limit: Any = 1e-3
     if {"semi_axis_lateral", "semi_axis_rolling"} <= set(ds):
@@ -78,24 +78,24 @@ def at_surface(ds: xr.Dataset) -> xr.DataArray:
     return at_surface.transpose(*ds["peak_z"].dims)
 
 
-def _of_bodies(found: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
+def _of_bodies(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     """Return flags, peak stress of the worse contact, its error and place, and the shorter life, (n, bodies) each.
 
     Parameters
     ----------
-    found : results by name, shape (n, contacts, bodies) or (n, bodies)
+    results : results by name, shape (n, contacts, bodies) or (n, bodies)
     """
-    told = {"validity": found["validity_body"]} if "validity_body" in found else {}
-    if "peak_stress" in found:
-        peak = found["peak_stress"]
+    worse_of = {"validity": results["validity_body"]} if "validity_body" in results else {}
+    if "peak_stress" in results:
+        peak = results["peak_stress"]
         worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=1)[:, None]
-        for name in (n for n in ("peak_stress", "error_estimate", "at_surface") if n in found):
-            told[name] = np.take_along_axis(found[name], worse, axis=1)[:, 0]
-    if "fatigue_stress" in found:
-        told["fatigue_stress"] = np.fmax.reduce(found["fatigue_stress"], axis=1)
-    if "life_cycles" in found:
-        told["life_cycles"] = np.fmin.reduce(found["life_cycles"], axis=1)
-    return told
+        for name in (n for n in ("peak_stress", "error_estimate", "at_surface") if n in results):
+            worse_of[name] = np.take_along_axis(results[name], worse, axis=1)[:, 0]
+    if "fatigue_stress" in results:
+        worse_of["fatigue_stress"] = np.fmax.reduce(results["fatigue_stress"], axis=1)
+    if "life_cycles" in results:
+        worse_of["life_cycles"] = np.fmin.reduce(results["life_cycles"], axis=1)
+    return worse_of
 
 
 def factor_names(ds: xr.Dataset, dims: Sequence[str], design: SampledDesign, table: pd.DataFrame) -> list[str]:
@@ -109,7 +109,7 @@ def factor_names(ds: xr.Dataset, dims: Sequence[str], design: SampledDesign, tab
 def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of the parameters that are the same in all cases."""
     values = {name: parameter.default for name, parameter in PARAMETERS.items()} | dict(base)
-    for name in (*PARAMETERS, *CATEGORIES):
+    for name in (*PARAMETERS, *OF_MATERIALS):
         if name in ds.variables and ds[name].ndim == 0:
             values[name] = ds[name].item()
     return values

@@ -1,8 +1,7 @@
-"""Designs that were solved with several contact models, and how far the cheaper models are off."""
+"""Designs that were solved with several contact models, and the errors of the cheaper models."""
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
@@ -40,8 +39,7 @@ def pairs(view: StudyView) -> xr.Dataset | None:
     for the model are one design. The data set holds the designs that the reference and at least one other model
     solved. Variables: the results that are compared, NaN (regime -1) where a design lacks a model. Coordinates: all
     inputs, `spin`, and `lean`, which is mu tan(alpha). Attributes: `reference`, `left` (number of cases without a
-    partner), `life` (words), and as JSON `factors` (the other factors), `grid` (whether every combination exists) and
-    `base`.
+    partner), `life` (words), `factors` (the other factors), `grid` (whether every combination exists) and `base`.
     """
     ds = view.data
     if MODEL not in ds.variables or "regime" not in ds:
@@ -61,19 +59,15 @@ def pairs(view: StudyView) -> xr.Dataset | None:
     out = xr.Dataset(
         data, coords={MODEL: models, **coords, **{n: ds[n].values for n in ("contact", "body") if n in ds}}
     )
-    told = {"factors": [f for f in view.factors if f != MODEL], "grid": view.grid, "base": dict(view.base)}
     out.attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum()), "life": ""}
-    out.attrs |= {key: json.dumps(value, default=str) for key, value in told.items()}
+    out.attrs |= {"factors": tuple(f for f in view.factors if f != MODEL), "grid": view.grid, "base": dict(view.base)}
     return _with_life(out)
 
 
 def designs(paired: xr.Dataset) -> StudyView:
-    """Return the designs of a comparison as a table with their inputs, `spin` and `lean`, without the contact model."""
+    """Return the designs of a comparison as a table with their inputs, without the contact model."""
     table = pd.DataFrame({str(n): v.values for n, v in paired.coords.items() if v.dims == ("design",)})
-    for name in ("spin", "lean"):
-        table[name] = [float(f"{value:.3g}") for value in table[name]]
-    told = {key: json.loads(paired.attrs[key]) for key in ("factors", "base", "grid")}
-    return StudyView(table, tuple(told["factors"]), told["base"], told["grid"], paired.attrs)
+    return StudyView(table, *(paired.attrs[key] for key in ("factors", "base", "grid")), paired.attrs)
 
 
 def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
@@ -83,9 +77,8 @@ def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
     """
     varied = [n for n in table if n != MODEL and table[n].nunique(dropna=False) > 1]
     design = table.groupby(varied, dropna=False, sort=False).ngroup() if varied else pd.Series(0, table.index)
-    first = (
-        pd.Series(np.arange(len(table)), table.index).groupby([table[MODEL], design]).first()
-    )  # equal cases count once
+    numbers = pd.Series(np.arange(len(table)), table.index)
+    first = numbers.groupby([table[MODEL], design]).first()  # equal cases count once
     rows = first.unstack(fill_value=-1).reindex(models).to_numpy()
     rows = rows[:, (rows[-1] >= 0) & (rows[:-1] >= 0).any(axis=0)]
     return rows[:, np.argsort(rows[-1], kind="stable")]
@@ -93,15 +86,15 @@ def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
 
 def _inputs(table: pd.DataFrame, view: StudyView) -> dict[str, np.ndarray]:
     """Return every input of the designs, those that are the same in all cases included, with spin and lean."""
-    found = {str(n): table[n].to_numpy() for n in table if n != MODEL}
+    inputs = {str(n): table[n].to_numpy() for n in table if n != MODEL}
     for name in PARAMETERS:
         value = view.base.get(name)
-        if name not in found:
-            found[name] = np.full(len(table), value if isinstance(value, (int, float)) else np.nan, dtype=float)
-    given = found.get("friction_coefficient_value", found["friction_coefficient"])
+        if name not in inputs:
+            inputs[name] = np.full(len(table), value if isinstance(value, (int, float)) else np.nan, dtype=float)
+    given = inputs.get("friction_coefficient_value", inputs["friction_coefficient"])
     friction = pd.to_numeric(given, errors="coerce")  # friction given as a word has its numbers beside it
-    lean = friction * np.tan(np.deg2rad(found["contact_angle"]))
-    return found | {"friction_coefficient": friction, "spin": spin(found), "lean": lean}
+    lean = friction * np.tan(np.deg2rad(inputs["contact_angle"]))
+    return inputs | {"friction_coefficient": friction, "spin": spin(inputs), "lean": lean}
 
 
 def _with_life(ds: xr.Dataset) -> xr.Dataset:
@@ -135,9 +128,9 @@ def spin(inputs: Mapping[str, np.ndarray]) -> np.ndarray:
     It does not depend on load and stiffness.
     """
     with np.errstate(divide="ignore", invalid="ignore"):
-        found = contact_geometry(inputs)
-        curvature = found.curvature_lateral + found.curvature_rolling
-        return np.asarray(np.sin(found.contact_angle) / found.rolling_radius * 4.0 / curvature)
+        geometry = contact_geometry(inputs)
+        curvature = geometry.curvature_lateral + geometry.curvature_rolling
+        return np.asarray(np.sin(geometry.contact_angle) / geometry.rolling_radius * 4.0 / curvature)
 
 
 @dataclass(frozen=True)
@@ -220,8 +213,8 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
         one = paired.sel(contact_model=model)
         rolls = (one["regime"] == 0) & (ref["regime"] == 0)
         with np.errstate(divide="ignore", invalid="ignore"):
-            found = {q.name: q.error(one, ref).where(rolls) for q in QUANTITIES if all(n in paired for n in q.needs)}
-        parts.append(xr.Dataset(found).drop_vars("contact_model", errors="ignore").assign_coords(contact_model=model))
+            by_name = {q.name: q.error(one, ref).where(rolls) for q in QUANTITIES if all(n in paired for n in q.needs)}
+        parts.append(xr.Dataset(by_name).drop_vars("contact_model", errors="ignore").assign_coords(contact_model=model))
     out = xr.concat(parts, "contact_model", coords="minimal", compat="override").transpose("contact_model", "design")
     for q in QUANTITIES:
         if q.name in out:
@@ -230,6 +223,6 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
     return out
 
 
-def measured(found: xr.Dataset) -> list[Quantity]:
-    """Return the quantities for which the errors `found` hold a number."""
-    return [q for q in QUANTITIES if q.name in found and bool(found[q.name].notnull().any())]
+def measured(compared: xr.Dataset) -> list[Quantity]:
+    """Return the quantities for which the errors `compared` hold a number."""
+    return [q for q in QUANTITIES if q.name in compared and bool(compared[q.name].notnull().any())]

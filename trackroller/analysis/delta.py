@@ -4,15 +4,15 @@ delta = E[ integral |f(y) - f(y | x)| dy ] / 2 lies between 0 (no influence) and
 between the pair (x, y) and a pair without a link, so monotonic transformations of x or y do not change it. This
 module therefore works with ranks, or with the values of a list.
 
-The total variation distance also tells how well the best rule separates linked from unlinked pairs: the error of the
+The total variation distance also says how well the best rule separates linked from unlinked pairs: the error of the
 best rule is (1 - delta) / 2 [3]_. The rule used here is the sign of a smoothed difference of densities. Its error is
 estimated from held-out rows (too large on average) and from its own rows (too small), weighted as in the .632+
 estimator [4]_: the weight depends on how far the rule overfits.
 
 SALib's estimator (class-conditional densities [2]_) was measured beside this one by
-``validation/benchmarks/index_estimators.py`` and is worse. At 400 rows its delta of an inert factor is 0.06 too large
-and of a strong factor up to 0.17 too small. Its intervals do not cover these errors. Its delta of an exponential of y
-exceeds 1. With only 10 resamples it takes as long as this estimator at 400 rows and four times longer at 2000 rows.
+``validation/benchmarks/index_estimators.py``. At 400 rows its bias is 0.08 for an inert factor and 0.14 for a strong
+one (ours: at most 0.02), its 95 % intervals cover the truth in 0 to 73 % of samples (ours: 93 to 100 %), and it takes 6
+to 30 times longer. Its delta of an exponential of y exceeds 1.
 
 References
 ----------
@@ -110,7 +110,7 @@ def _kernels(x: _Cells, y: _Cells) -> list[tuple[np.ndarray, np.ndarray]]:
 
 
 def _separation(x: _Cells, y: _Cells, kernels: list[tuple[np.ndarray, np.ndarray]], seed: int) -> tuple[float, float]:
-    """Return how well the best rule tells rows of the sample from independent pairs of x and y.
+    """Return how well the best rule distinguishes rows of the sample from independent pairs of x and y.
 
     The first number is the score on held-out rows, the second that on the rule's own rows.
     """

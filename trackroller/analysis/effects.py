@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from scipy.stats import binom
@@ -11,15 +11,12 @@ from scipy.stats import binom
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.parameters import PARAMETERS
 
-if TYPE_CHECKING:
-    pass
-
 FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
 COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
-UNCHANGED = 0.02  # a ratio of medians within 2 % of 1 counts as no change
-MOST = 0.9  # share of pairs that must agree in the direction of an effect
+UNCHANGED = 0.02  # a ratio of medians between 0.98 and 1.02 counts as no change
+MOST = 0.9  # share of the pairs that must change in the same direction
 
 
 @dataclass(frozen=True)
@@ -126,18 +123,18 @@ def paired_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) -
     matrix, levels = pair_matrix(view, column, factor, rows)
     if 2 * len(matrix) < FEWEST_PAIRS or len(matrix) < 0.2 * rows.sum() / max(len(levels), 1):
         return None
-    found = []
+    compared = []
     for j in range(len(levels)):
         for i in range(j):
             steps = _steps(matrix, i, j)
             if steps.size >= FEWEST_PAIRS and np.isfinite(np.median(steps)):
-                found.append((abs(float(np.median(steps))), i, j, steps))
-    if not found:
+                compared.append((abs(float(np.median(steps))), i, j, steps))
+    if not compared:
         return None
     if view.ordered(factor):
-        _, i, j, steps = max(found, key=lambda item: (item[2] - item[1], item[3].size))
+        _, i, j, steps = max(compared, key=lambda item: (item[2] - item[1], item[3].size))
     else:
-        _, i, j, steps = max(found, key=lambda item: item[0])
+        _, i, j, steps = max(compared, key=lambda item: item[0])
         if np.median(steps) < 0:
             i, j, steps = j, i, -steps
     return _of_steps(factor, levels[i], levels[j], steps)
@@ -204,7 +201,7 @@ def strata(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> li
 
     Levels with too few rows are left out.
     """
-    found = []
+    effects = []
     for category in view.categories:
         if category == effect.factor:
             continue
@@ -213,8 +210,8 @@ def strata(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> li
             inside = rows & (own == level)
             part = _repeated(view, column, effect, inside)
             if part is not None:
-                found.append((category, level, part))
-    return found
+                effects.append((category, level, part))
+    return effects
 
 
 def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:

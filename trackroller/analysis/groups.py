@@ -37,6 +37,19 @@ class Groups:
         return len(self.low)
 
 
+def spaced_by_ratio(values: np.ndarray, least: float) -> bool:
+    """Return whether positive numbers spread by a factor above `least`, closer to evenly by ratio than by difference.
+
+    The median of such numbers lies nearer to the geometric than to the arithmetic mean of their ends, as on a
+    logarithmic axis. Uniform numbers belong on a linear axis.
+    """
+    finite = values[np.isfinite(values)]
+    if not finite.size or finite.min() <= 0 or finite.max() <= least * finite.min():
+        return False
+    low, middle, high = (float(v) for v in np.quantile(finite, (0.0, 0.5, 1.0)))
+    return bool(middle < 0.5 * ((low * high) ** 0.5 + 0.5 * (low + high)))
+
+
 def classes(view: StudyView, name: str, rows: np.ndarray, most: int | None) -> tuple[np.ndarray, list[Any]]:
     """Sort rows into the factor's own levels, or into `most` classes of equally many rows where it has many levels.
 

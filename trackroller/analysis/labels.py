@@ -67,7 +67,8 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
         text += "; rows left out: " + ", ".join(f"{n} {why}" for why, n in column.excluded.items())
         further = total - used - sum(column.excluded.values())
         if unit == "cells" and further > 0:
-            text += f"; {further} further cells of their levels, as indices of a grid need every combination of levels"
+            text += f"; {further} further cells at the same levels are left out, because indices of a grid need every "
+            text += "combination of levels"
     if used < RELIABLE * total:
         text += "; the indices describe the cases used, not the whole range of the factors"
     return text
@@ -142,8 +143,8 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
     text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
     left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
     if left:
-        text += f"; {' and '.join(left)} rows are left out of the indices and never filled in; "
-        text += "their occurrence is an output of its own, whose indices use all rows"
+        text += f"; the indices leave out the rows with {' and '.join(left)}; "
+        text += "how often these occur is a separate output, whose indices use all rows"
     else:
         text += "; no row left out for its regime"
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
@@ -237,7 +238,7 @@ def stacked(results: list[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
         axes = ("output", "sample_size", "factor") if "_course" in name else dims[: values.ndim]
         attrs = {"units": "1", "long_name": _WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
         if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
-            attrs |= {"units": "", "comment": "in units of the output on its scale (log10: decades)"}
+            attrs |= {"units": "", "comment": "in the unit of the output; on the scale log10 in powers of ten"}
         out[name] = (axes, values, attrs)
     return out
 

@@ -51,12 +51,12 @@ def column(
         known = PARAMETERS.get(name)
         return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
     try:
-        found = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]
+        output = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]
     except InputError as error:
         close = nearest(name, REGIMES)
         remedy = f"Did you mean '{close}'?" if close else error.remedy
         raise InputError("pareto or constraints", name, error.allowed, remedy) from None
-    return found.values, found.units, found.long_name
+    return output.values, output.units, output.long_name
 
 
 def _constant(base: Mapping[str, Any], name: str, rows: int) -> np.ndarray:

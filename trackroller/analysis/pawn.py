@@ -1,8 +1,7 @@
 """PAWN from given data: how far knowing a factor moves the distribution function of an output.
 
 SALib's PAWN was measured beside this one by ``validation/benchmarks/index_estimators.py``. Both agree for continuous
-factors. SALib's has no interval and no noise, drops the row with the largest value, and is wrong for lists (0.50 for
-three categories whose index is 0.36).
+factors. For three categories and 1000 rows SALib's bias is 0.17, ours 0.005. SALib's has no interval and no noise.
 
 References
 ----------
@@ -12,7 +11,6 @@ Pianosi & Wagener (2018), Environ. Model. Softw. 108, 197-207
 from __future__ import annotations
 
 from functools import lru_cache
-from typing import Literal
 
 import numpy as np
 
@@ -59,7 +57,7 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
     value below which an inert factor stays in 95 % of cases (60 permutations).
     """
     order = np.argsort(y, kind="stable")
-    value = float(_distances(y[order], group[order][None], np.ones((1, len(y))))[0])
+    value = _distance(y[order], group[order])
     if not noise:
         return value, np.nan
     if len(group) <= NOISE_ROWS:
@@ -72,8 +70,7 @@ def pawn(y: np.ndarray, group: np.ndarray, seed: int = 0, noise: bool = True) ->
 def _noise(ranked: np.ndarray, group: np.ndarray, seed: int) -> float:
     """Return the value of PAWN that 95 % of 60 permutations of the groups stay below; `ranked`: sorted outputs."""
     rng = np.random.default_rng(seed)
-    drawn = np.stack([rng.permutation(group) for _ in range(60)])
-    return float(np.percentile(_distances(ranked, drawn, np.ones((1, len(group)))), 95))
+    return float(np.percentile([_distance(ranked, rng.permutation(group)) for _ in range(60)], 95))
 
 
 @lru_cache(maxsize=64)
@@ -99,43 +96,25 @@ def pawn_interval(
     """
     some = thinned(len(y), PAWN_ROWS)
     some = some[np.argsort(y[some], kind="stable")]
-    picks = np.random.default_rng(seed).integers(0, len(some), (resamples, len(some)))
-    weight = np.stack([np.bincount(pick, minlength=len(some)) for pick in picks])
-    half = Z * float(np.std(_distances(y[some], group[some][None], weight), ddof=1)) * (len(some) / len(y)) ** 0.5
+    picks = np.sort(np.random.default_rng(seed).integers(0, len(some), (resamples, len(some))), axis=1)
+    drawn = [_distance(y[rows], group[rows]) for rows in some[picks]]
+    half = Z * float(np.std(drawn, ddof=1)) * (len(some) / len(y)) ** 0.5
     return max(0.0, value - half), min(1.0, value + half)
 
 
-def _distances(y: np.ndarray, group: np.ndarray, weight: np.ndarray) -> np.ndarray:
-    """Return the median Kolmogorov-Smirnov distance of the groups from all rows, for each set of groups and weights.
+def _distance(y: np.ndarray, group: np.ndarray) -> float:
+    """Return the median over the groups of their Kolmogorov-Smirnov distance from all rows; `y` is sorted.
 
-    `y`, the sorted outputs, has the shape (n,). `group`, always the same groups in another order, and `weight` have
-    the shape (sets, n) or (1, n), and the result has the shape (sets,).
-
-    A group's distribution jumps only at its own rows. Its largest distance from that of all rows therefore lies
-    directly before or after the jump at one of its rows, equal outputs taken together.
+    Distribution functions jump at the rows, so that their largest distance stands behind one of the jumps. Of equal
+    outputs the last one counts.
     """
-    small = np.uint16 if group.max() < 2**16 else int  # sorted in linear time
-    by_group = np.argsort(group.astype(small), axis=1, kind="stable")
-    value, kind = y[by_group], np.sort(group[0])
-    other = np.append(True, np.diff(kind) != 0)
-    new = np.concatenate([np.full((len(value), 1), True), other[1:] | (np.diff(value, axis=1) != 0)], axis=1)
-    last = np.append(new[:, 1:], np.full((len(value), 1), True), axis=1)
-    first = np.flatnonzero(other)
-    of = np.cumsum(other) - 1
-    zero = np.zeros((len(weight), 1))
-    every = np.concatenate([zero, np.cumsum(weight, axis=1)], axis=1) / len(y)
-    own = np.cumsum(np.take_along_axis(weight, by_group, axis=1), axis=1)
-    own = np.concatenate([np.zeros((len(own), 1)), own], axis=1)
-    size = np.diff(own[:, np.append(first, len(y))], axis=1)
-
-    def apart(shift: int, side: Literal["left", "right"], where: np.ndarray) -> np.ndarray:
-        share = (own[:, shift : len(y) + shift] - own[:, first[of]]) / np.maximum(size, 1)[:, of]
-        whole = np.take_along_axis(every, np.searchsorted(y, y, side)[by_group], axis=1)
-        return np.where(where, np.abs(share - whole), 0.0)
-
-    jumps = np.maximum(apart(0, "left", new), apart(1, "right", last))
-    largest = np.maximum.reduceat(jumps, first, axis=1)
-    return np.asarray(np.nanmedian(np.where(size > 0, largest, np.nan), axis=1))
+    rows = len(y)
+    jump = np.append(y[1:] != y[:-1], True)
+    whole = np.arange(1, rows + 1) / rows
+    size = np.bincount(group)
+    member = group == np.flatnonzero(size)[:, None]
+    share = np.cumsum(member, axis=1) / size[size > 0][:, None]
+    return float(np.median(np.abs(share - whole)[:, jump].max(axis=1)))
 
 
 def thinned(rows: int, most: int) -> np.ndarray:

@@ -7,14 +7,8 @@ from scipy import stats
 
 from trackroller.analysis.pairs import held_out, orthonormal
 
-DEGREES = (
-    12,
-    8,
-    5,
-    3,
-    2,
-    1,
-)  # of the polynomials of each factor; the degree with the smallest held-out residuals counts
+# degrees of the polynomials of each factor; the one with the smallest residuals at held-out rows counts
+DEGREES = (12, 8, 5, 3, 2, 1)
 
 
 def probabilities(

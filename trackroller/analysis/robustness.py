@@ -21,7 +21,7 @@ from trackroller.analysis.labels import output_labels
 from trackroller.analysis.probability import probabilities
 from trackroller.analysis.table import StudyResults
 from trackroller.analysis.targets import body_of, inner_sample
-from trackroller.damage.sn_curve import DECADES, SNCurve
+from trackroller.damage.sn_curve import DEVIATES_10_TO_90, SNCurve
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import readable
@@ -130,7 +130,9 @@ def material_deviations(results: StudyResults) -> dict[str, np.ndarray]:
     out = {}
     for field, body in zip(MATERIAL_FIELDS, ("roller", "guide"), strict=True):
         if wanted is not True:
-            out[body] = np.full(int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DECADES)
+            out[body] = np.full(
+                int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DEVIATES_10_TO_90
+            )
         elif field in ds.variables:
             names = flat(ds, field, dims)
             of = {str(n): deviation(known.get(str(n), {})) for n in np.unique(names.astype(str))}

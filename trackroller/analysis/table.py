@@ -14,7 +14,7 @@ import xarray as xr
 
 from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import allowed_cases
-from trackroller.parameters import EXACTNESS, FIRST_TO_FAIL, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import EXACTNESS, FIRST_TO_FAIL, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
@@ -30,7 +30,7 @@ LIVES = (
 )
 BODIES = ("roller", "guide")
 DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
-MOST_LEVELS = 12  # a factor with more levels is looked at in classes
+MOST_LEVELS = 12  # a factor with more levels is divided into classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
 
 
@@ -128,8 +128,8 @@ class StudyView:
             if p in ds.variables and p in table and p not in names and table[p].nunique() > 1
         }
         flags = tuple(str(ds["validity"].attrs.get("flag_meanings", "")).split()) if "validity" in ds else ()
-        found = dict(ds.attrs), flags, derived, results.study.as_dict(), results.allowed, results
-        return cls(table, tuple(names), base, grid, *found).analysed(analysis)
+        described = dict(ds.attrs), flags, derived, results.study.as_dict(), results.allowed, results
+        return cls(table, tuple(names), base, grid, *described).analysed(analysis)
 
     def analysed(self, analysis: xr.Dataset | None) -> StudyView:
         """Return the table with its analysis."""
@@ -235,6 +235,14 @@ class StudyView:
             return np.full(len(self.table), missing)
         return self.table[name].to_numpy(dtype=float)
 
+    def material(self, body: str) -> np.ndarray:
+        """Return the name of the material of a body in every case, shape (n,)."""
+        if "material_pair" in self.table:
+            return self.table["material_pair"].str.split(" / ").str[BODIES.index(body)].to_numpy(dtype=str)
+        name = f"{body}_material"
+        given = self.table.get(name, pd.Series(str(self.base.get(name, "")), self.table.index))
+        return given.to_numpy(dtype=str)
+
     def flagged(self, flag: str, body: str = "") -> np.ndarray:
         """Mark the cases that carry a validity flag, shape (n,).
 
@@ -283,16 +291,11 @@ class StudyView:
         if not any(body in column for body in BODIES):
             guide = self.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
             return np.where(guide, *(self.beyond_data(f"{body}_life_hours") for body in ("guide", "roller")))
-        i = 1 if "guide" in column else 0
-        if "material_pair" in self.table:
-            names = self.table["material_pair"].astype(str).str.split(" / ").str[i]
-        else:
-            field = MATERIAL_FIELDS[i]
-            names = self.table.get(field, pd.Series(str(self.base.get(field, "")), index=self.table.index)).astype(str)
+        body = "guide" if "guide" in column else "roller"
+        names = pd.Series(self.material(body))
         stored = json.loads(str(self.attrs.get("materials", "{}")))
         knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
         limit = np.minimum(names.map(knees).to_numpy(dtype=float), DATA_END)
-        body = BODIES[i]
         beyond: np.ndarray = (self.column(f"life_cycles_{body}") > limit) | np.isposinf(
             self.column(f"{body}_life_hours")
         )

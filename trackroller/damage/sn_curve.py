@@ -25,7 +25,7 @@ CONVENTIONS = {
     "unlimited": "Miner original: unlimited life below the fatigue limit",
 }
 PROBABILITIES = (0.1, 0.5, 0.9)
-DECADES = 2.5631031310892007  # standard normal deviates between 10 % and 90 %
+DEVIATES_10_TO_90 = 2.5631031310892007  # standard deviations of a normal distribution from 10 % to 90 %
 
 
 @dataclass(frozen=True)
@@ -138,7 +138,7 @@ class SNCurve:
     @property
     def log_life_deviation(self) -> np.ndarray:
         """Return the standard deviation of log10 life, lg(T_N) / 2.563 [1]; 0 without scatter."""
-        return np.asarray(np.log10(self.scatter_ranges[0]) / DECADES)
+        return np.asarray(np.log10(self.scatter_ranges[0]) / DEVIATES_10_TO_90)
 
     @property
     def knee(self) -> tuple[np.ndarray, np.ndarray]:
@@ -153,7 +153,7 @@ class SNCurve:
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee
         t_n, t_s = self.scatter_ranges
-        deviate = ndtri(np.asarray(self.failure_probability, dtype=float)) / DECADES
+        deviate = ndtri(np.asarray(self.failure_probability, dtype=float)) / DEVIATES_10_TO_90
         fall = t_s**deviate
         # The curve moves along with the strength. If T_N is larger than this move gives, it also moves in cycles.
         beyond = t_n**deviate * fall**-self.exponent

@@ -1,4 +1,4 @@
-"""Make analysis, figures and report of a gathered study: one function for command line and workflow."""
+"""Make analysis, figures and report of a gathered study, for the command line and the workflow."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from trackroller.files import interrupts_wait_for_files, whole_folder, write_who
 from trackroller.report.pages.study import contents, page_text, write_report
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, locked
-from trackroller.study.store.seal import check_sealed, read_result, sealing
+from trackroller.study.store.seal import read_result, sealing
 
 log = logging.getLogger("trackroller")
 UNFINISHED = "unfinished"  # folder in the folder of a study
@@ -56,11 +56,11 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         results = read_results(folder.root)
         place = place_of_pages(results, folder)
         tell("analyse the results")
-        view = results.view.analysed(_analysed(results, place / "sensitivity.nc"))
+        view = results.view.analysed(write_analysis(results, place / "sensitivity.nc"))
         tell("draw the figures")
-        _draw(view, place / "figures")
+        draw_figures(view, place / "figures")
         tell("write the report")
-        report = _report(view, place / "figures", place / "report.html")
+        report = write_pages(view, place / "figures", place / "report.html")
         if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
             write_crate(folder.root)
             shutil.rmtree(folder.root / UNFINISHED, ignore_errors=True)
@@ -80,7 +80,7 @@ def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path,
         results = read_results(folder.root)
         out, stored = out_dir or place_of_pages(results, folder) / "figures", folder.root / "sensitivity.nc"
         analysis = read_result(stored) if stored.is_file() and not results.unfinished else None
-        return out, _draw(results.view.analysed(analysis), out)
+        return out, draw_figures(results.view.analysed(analysis), out)
 
 
 def report_text(results: StudyResults) -> str:
@@ -102,26 +102,12 @@ def _analysis(results: StudyResults) -> xr.Dataset:
         return xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
 
 
-def _analysed(results: StudyResults, out: Path) -> xr.Dataset:
+def write_analysis(results: StudyResults, out: Path) -> xr.Dataset:
+    """Write the sensitivity analysis of a study, or a file that says why there is none, and return it."""
     analysis = _analysis(results)
     with _sealed(out):
         write_whole(out, lambda beside: analysis.to_netcdf(beside))
     return analysis
-
-
-def analyse_study(study_nc: str, out: str) -> None:
-    """Write the sensitivity analysis of a study, or a file that says why there is none."""
-    _analysed(read_results(study_nc), Path(out))
-
-
-def _read(study_nc: str | Path, sensitivity_nc: str | Path) -> StudyView:
-    analysis = read_result(sensitivity_nc) if Path(sensitivity_nc).is_file() else None
-    return read_results(study_nc).view.analysed(analysis)
-
-
-def draw_study(study_nc: str, sensitivity_nc: str, out_dir: str) -> list[Any]:
-    """Draw all figures of gathered results and return them; the folder appears whole or not at all."""
-    return _draw(_read(study_nc, sensitivity_nc), Path(out_dir))
 
 
 def _sealed(out: Path) -> contextlib.AbstractContextManager[None]:
@@ -129,25 +115,22 @@ def _sealed(out: Path) -> contextlib.AbstractContextManager[None]:
     return sealing(out) if (out.parent / "plan").is_dir() else contextlib.nullcontext()
 
 
-@contextlib.contextmanager
-def _alone(folder: StudyFolder, tell: Callable[[str], None] | None = None) -> Iterator[None]:
-    """Keep other reports from being made, and the plan from being changed."""
-    with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
-        yield
-
-
-def _draw(view: StudyView, out: Path) -> list[Any]:
+def draw_figures(view: StudyView, out: Path) -> list[Any]:
+    """Draw all figures of a study and return them; the folder appears whole or not at all."""
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
     with _sealed(out), whole_folder(out) as beside:
         return draw_all(view, beside)
 
 
-def report_study(study_nc: str, figures: str, sensitivity_nc: str, out: str) -> None:
-    """Write the report, with the sensitivity analysis where there is one."""
-    _report(_read(study_nc, sensitivity_nc), check_sealed(Path(figures)), Path(out))
-
-
-def _report(view: StudyView, figures: Path, out: Path) -> Path:
+def write_pages(view: StudyView, figures: Path, out: Path) -> Path:
+    """Write the report and its tables, with the figures in a folder, and return the report's path."""
     with _sealed(out), _sealed(out.with_name("tables")):
         return write_report(view, figures, out)
+
+
+@contextlib.contextmanager
+def _alone(folder: StudyFolder, tell: Callable[[str], None] | None = None) -> Iterator[None]:
+    """Keep other reports from being made, and the plan from being changed."""
+    with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
+        yield

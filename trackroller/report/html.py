@@ -58,11 +58,11 @@ def inline(text: str) -> str:
 
 def symbols(text: str) -> Markup:
     """Return a text with Greek letters and subscripts where it holds symbols such as F_N, r_C,G or sigma_D."""
-    told = str(escape(text))
+    escaped = str(escape(text))
     for name, letter in _GREEK.items():
-        told = re.sub(rf"\b{name}(?=\b|_)", letter, told)
-    told = told.replace("_Delta", "_Δ")
-    return Markup(re.sub(r"\b(\w)_([A-Za-zΔ0-9]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", told))
+        escaped = re.sub(rf"\b{name}(?=\b|_)", letter, escaped)
+    escaped = escaped.replace("_Delta", "_Δ")
+    return Markup(re.sub(r"\b(\w)_([A-Za-zΔ0-9]+(?:,[A-Z]+)?)", r"<i>\1</i><sub>\2</sub>", escaped))
 
 
 def data_uri(path: Path) -> str:

@@ -282,6 +282,11 @@ def short_levels(names: Sequence[str]) -> list[str]:
     return list(names)
 
 
+def material_of_level(text: str) -> str:
+    """Return the material that a level names, of a pair that of the roller."""
+    return _parts(text)[0]
+
+
 def _parts(name: str) -> list[str]:
     if name.endswith(" on itself"):
         return [name.removesuffix(" on itself")] * 2

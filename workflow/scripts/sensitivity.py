@@ -1,7 +1,10 @@
 """Analyse what decides the results."""
 
+from pathlib import Path
+
 from trackroller.cli.workflow import log_to
-from trackroller.report.build import analyse_study
+from trackroller.report.build import write_analysis
+from trackroller.solved import open_study
 
 log_to(snakemake.log[0], "analyse the results")
-analyse_study(snakemake.input.study, snakemake.output[0])
+write_analysis(open_study(snakemake.input.study), Path(snakemake.output[0]))

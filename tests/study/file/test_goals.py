@@ -174,7 +174,7 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
     kept = ds.isel(case=front["row"].values)
     assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
     assert set(kept["roller_material"].values) == {"PA6"}
-    told = next(t for t in contents(view_of(ds))["decide"] if t.name == "pareto")
+    told = next(t for t in contents(view_of(ds))["tables"]["decide"] if t.name == "pareto")
     assert told.heads[1] == "Life of the roller [h] ↑" and told.rows
     lives = [float(ds["roller_life_hours"][row[0]]) for row in told.rows]
     assert lives == sorted(lives, reverse=True)
@@ -190,7 +190,7 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
     sens = analyse(results_of(tmp_path / "study.nc"))
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
     assert "delta" in sens and "pawn" not in sens and "first" in sens
-    told = contents(view_of(ds, sens))["why"][1]
+    told = contents(view_of(ds, sens))["tables"]["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
     column = told.heads.index("Delta")
@@ -384,7 +384,7 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
         ds.to_netcdf(tmp_path / "study.nc")
         sens = analyse(results_of(tmp_path / "study.nc"))
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
-        told = [t for t in contents(view_of(ds, sens))["decide"] if t.name.startswith(("b10", "percentiles"))]
+        told = [t for t in contents(view_of(ds, sens))["tables"]["decide"] if t.name.startswith(("b10", "percentiles"))]
         assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
         assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # the table of percentiles stands apart
     spread = np.hypot(0.1, np.log10(9) / 2.5631)

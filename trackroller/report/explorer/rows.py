@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -10,8 +10,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.analysis.groups import spaced_by_ratio
 from trackroller.analysis.table import BODIES, StudyView
-from trackroller.errors import InputError
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
@@ -23,7 +23,7 @@ from trackroller.study.outputs import Output, default_names, flat, outputs
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
-DETAILS = (*CONTACT_RESULTS, *BODY_RESULTS, *WHOLE_RESULTS)
+DETAILS = (*CONTACT_RESULTS, *(n for n in BODY_RESULTS if n != "error_estimate"), *WHOLE_RESULTS)
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ def _setting(view: StudyView, name: str, role: str) -> Column:
     label = capital(long_name(name))
     few = not view.numeric(name) or view.grid or len(view.levels(name)) <= 12
     if not few or (role == "input" and view.numeric(name)):
-        return Column(name, label, unit, role, values.astype(float), log=_spread(values))
+        return Column(name, label, unit, role, values.astype(float), log=spaced_by_ratio(values.astype(float), 100.0))
     return coded(name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in view.levels(name)], unit)
 
 
@@ -96,36 +96,25 @@ def coded(
     """
     array = np.asarray(values)
     number = array.dtype.kind in "fiu"
-    found, first, codes = np.unique(array, return_index=True, return_inverse=True)
+    different, first, codes = np.unique(array, return_index=True, return_inverse=True)
     if number:
-        keep = ~np.isnan(found.astype(float))
+        keep = ~np.isnan(different.astype(float))
         codes = np.where(keep[codes], codes, -1)
-        levels = found[keep].astype(float).tolist()
+        levels = different[keep].astype(float).tolist()
     else:
         order = np.argsort(first)
         codes = np.argsort(order)[codes]
-        levels = found[order].astype(str).tolist()
+        levels = different[order].astype(str).tolist()
     return Column(name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels)))
-
-
-def _spread(values: np.ndarray) -> bool:
-    """Say whether all numbers are positive and spread over decades, as a uniform draw never does.
-
-    One in twenty of the numbers lies more than a factor of 100 below the largest one.
-    """
-    good = values[np.isfinite(values)]
-    return bool(good.size and good.min() > 0 and good.max() > 100 * np.quantile(good, 0.05))
 
 
 def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
     """Return the usual outputs and those that the study file names as goals."""
-    names = default_names(ds, dims, dims)
-    asked = [
-        *(view.study.get("pareto") or {}),
-        *(n for text in view.study.get("constraints") or () for n in goals.names_in(text)),
-    ]
-    names += [n for n in dict.fromkeys(asked) if n not in names and n not in view.table and n not in PARAMETERS]
-    return [_output(found, "output", view) for found in _found(ds, dims, names)]
+    named = [n for text in view.study.get("constraints") or () for n in goals.names_in(text) if n != "regime"]
+    named += [n for n in view.study.get("pareto") or {} if not goals.statistic(n)[0]]
+    inputs = {*view.table, *PARAMETERS, *MATERIAL_FIELDS}
+    names = dict.fromkeys([*default_names(ds, dims, dims), *(n for n in named if n not in inputs)])
+    return [_output(one, "output", view) for one in _outputs(ds, dims, list(names))]
 
 
 def _beyond(view: StudyView, columns: Sequence[Column]) -> list[Column]:
@@ -133,33 +122,26 @@ def _beyond(view: StudyView, columns: Sequence[Column]) -> list[Column]:
 
     A column that marks no life is left out.
     """
-    found = []
+    remarks = []
     for column in (c for c in columns if c.role == "output" and "life" in c.name):
         marks = view.beyond_data(column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
-            found.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
-    return found
+            remarks.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
+    return remarks
 
 
-def _found(ds: xr.Dataset, dims: tuple[str, ...], names: Iterable[str]) -> list[Output]:
-    """Return the outputs of these names that the study has."""
-    found = []
-    for name in names:
-        try:
-            found += outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)
-        except InputError:
-            continue  # the study has no such result
-    return found
+def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Output]:
+    return outputs(ds, dims, names, REGIMES[:3], scale="natural", unlimited=True)
 
 
-def _output(found: Output, role: str, view: StudyView) -> Column:
-    if "life" in found.name:  # a roller that skids, and a body above its tensile strength, have no fatigue life
-        body = next((b for b in BODIES if b in found.name and view.by_body), "")
+def _output(one: Output, role: str, view: StudyView) -> Column:
+    if "life" in one.name:  # a roller that skids, and a body above its tensile strength, have no fatigue life
+        body = next((b for b in BODIES if b in one.name and view.by_body), "")
         overloaded = view.flagged("static", body) if "static" in view.flags else np.zeros(len(view.table), dtype=bool)
-        found = replace(found, values=np.where(view.rolling & ~overloaded, found.values, np.nan))
-    values = found.values.astype(np.float32) if role == "detail" else found.values
-    return Column(found.name, capital(found.long_name), unit_text(found.units), role, values, log="life" in found.name)
+        one = replace(one, values=np.where(view.rolling & ~overloaded, one.values, np.nan))
+    values = one.values.astype(np.float32) if role == "detail" else one.values
+    return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log="life" in one.name)
 
 
 def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], view: StudyView) -> list[Column]:
@@ -172,7 +154,7 @@ def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], view: Study
             name = f"{variable}[{','.join(keys)}]" if keys else variable
             if name not in known and f"{variable}_{keys[0] if keys else ''}" not in known:
                 names.append(name)
-    return [_output(found, "detail", view) for found in _found(ds, dims, names)]
+    return [_output(one, "detail", view) for one in _outputs(ds, dims, names)]
 
 
 def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
@@ -180,25 +162,27 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Colu
     regime = np.clip(np.nan_to_num(view.regime, nan=3), 0, 3).astype(int)
     rolls = np.where(view.inside, 6, np.where(view.rolling, 1, 5))
     state = np.where(view.valid, 0, np.where(regime > 0, regime + 1, rolls))
-    found = [
+    columns = [
         Column("regime", "Regime", "", "state", regime, REGIMES, REGIME_LABELS),
         Column("state", "State", "", "state", state, STATES, STATES),
     ]
     for name in ("validity", *(f"validity_{body}" for body in BODIES)):
         if name in view.table and view.flags:
             masks = np.nan_to_num(view.column(name, 0.0)).astype(int)
-            said = [flag_text(int(mask), view.flags) for mask in np.unique(masks)]
+            texts_of_masks = [flag_text(int(mask), view.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
-            found.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, said))
+            columns.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, texts_of_masks))
     if view.met is not None:
         met = ("met", "not met")
-        found.append(Column("constraints", "Constraints of the study", "", "state", 1 - view.met.astype(int), met, met))
+        columns.append(
+            Column("constraints", "Constraints of the study", "", "state", 1 - view.met.astype(int), met, met)
+        )
     if "reason" in ds:
         reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims) if "regime" in ds else ds["reason"]
         texts = reason.values.astype(str).ravel()
         if (texts != "").any():
-            found.append(coded("reason", "Reason", "state", texts))
-    return found
+            columns.append(coded("reason", "Reason", "state", texts))
+    return columns
 
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:

@@ -15,25 +15,25 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int, seed: int = 1) -
     Parameters
     ----------
     state : stratum of each case, such as its regime and validity, shape (n,) int
-    keep : cases to keep in any way, shape (n,) bool
+    keep : cases that are always shown, shape (n,) bool
     most : number of cases to choose
     seed : seed of the random choice
 
     Returns
     -------
-    Rising row numbers: all rows if there are not more than `most`. Otherwise the rows to keep, all cases of rare
-    states, and as many of each other state as its share of the study.
+    Rising row numbers: all rows if there are at most `most`. Otherwise the cases of `keep`, all cases of rare states,
+    and a random part of each other state in proportion to its number of cases.
     """
     if len(state) <= most:
         return np.arange(len(state))
     rng = np.random.default_rng(seed)
     chosen = keep.copy()
-    found, counts = np.unique(state[~keep], return_counts=True)
-    rare = found[counts <= RARE]
+    strata, counts = np.unique(state[~keep], return_counts=True)
+    rare = strata[counts <= RARE]
     chosen |= np.isin(state, rare)
     left = max(0, most - int(chosen.sum()))
     rest = int(counts[counts > RARE].sum())
-    for stratum, cases in zip(found, counts, strict=True):
+    for stratum, cases in zip(strata, counts, strict=True):
         if cases > RARE:
             rows = np.flatnonzero((state == stratum) & ~keep)
             share = min(cases, max(RARE, left * cases // rest))

@@ -9,17 +9,16 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
+from trackroller.analysis.contact_models import GOOD, errors, measured, pairs
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
-from trackroller.report.figures.comparison_panels import LETTERS, Frame, frame, label_axis, line, panels, rolling
+from trackroller.report.figures.comparison_panels import Frame, frame, line, panels, rolling
 from trackroller.report.figures.panels import capped, legend, mark_unlimited
 from trackroller.report.numbers import capital, percent, with_unit
-from trackroller.report.words.comparison import gap, short, telling_factors
+from trackroller.report.words.comparison import gap, short
 
-Values = Callable[["xr.Dataset"], "xr.DataArray"]
+Values = Callable[[xr.Dataset], xr.DataArray]
 LEAST = 6e-4  # error at the lower end of the axes [1]
-COLUMNS = 3  # at most this many factors get a panel
 
 
 def drawers(view: StudyView) -> list[partial[style.Drawn]]:
@@ -32,16 +31,16 @@ def drawers(view: StudyView) -> list[partial[style.Drawn]]:
     view : the study as a table
     """
     paired = pairs(view)
-    if paired is None or not paired.sizes["design"] or not measured(found := errors(paired)):
+    if paired is None or not paired.sizes["design"] or not measured(deviations := errors(paired)):
         return []
-    draws = (error, error_by_factor, energy, peak_and_life)
-    return [partial(draw, paired, found) for draw in draws]
+    draws = (error, energy, peak_and_life)
+    return [partial(draw, paired, deviations) for draw in draws]
 
 
 def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
-    """Draw one line a model in every column of a row of panels.
+    """Draw one line for each model in every column of a row of panels.
 
-    Of many cases the line is the median, with the band of the reference.
+    The lines of several cases are their medians; the reference has a band.
     """
     handles, rolls = {}, rolling(shown.ds)
     for model in map(str, shown.ds["contact_model"].values):
@@ -53,78 +52,47 @@ def _lines(shown: Frame, axes: Any, values: Values) -> dict[str, Any]:
     return handles
 
 
-def _told(shown: Frame, words: str) -> str:
-    many = f" Medians of the cases; band: 5 to 95 % with {shown.ds.attrs['reference']}." if shown.many else ""
-    return f"{words}{many} {shown.held}".strip()
-
-
-def _close(figure: Any, handles: dict[str, Any], title: str, words: str) -> None:
+def _close(figure: Any, handles: dict[str, Any], title: str) -> None:
     legend(figure, handles)
-    style.head(figure, title, words)
+    style.head(figure, title)
 
 
-def error(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
+def _lines_words(shown: Frame) -> str:
+    """Say for a caption what the lines are, and which factors are held."""
+    many = f" Lines: medians of the cases; band: 5 to 95 % with {shown.ds.attrs['reference']}." if shown.many else ""
+    return f"{many} {shown.held}".rstrip()
+
+
+def error(paired: xr.Dataset, deviations: xr.Dataset) -> style.Drawn:
     """Draw the error of the cheaper models against the reference over friction and drive."""
     shown = frame(paired)
-    wanted = [q for q in measured(found) if q.name not in ("friction_energy_balance", "stick")]
+    wanted = [q for q in measured(deviations) if q.name not in ("friction_energy_balance", "stick")]
     if shown is None or not wanted:
         return None
     figure, axes = panels(shown, [f"{q.label}\nerror [%]" for q in wanted], 27.0)
     handles: dict[str, Any] = {}
     for row, q in zip(axes, wanted, strict=True):
-        handles |= _error_row(shown, row, found, q.name)
-    dotted = f"Dotted: {percent(GOOD)}; at the foot: {percent(LEAST)} or less."
+        top = 1.0
+        for model in map(str, deviations["contact_model"].values):
+            e = np.clip(deviations[q.name].sel(contact_model=model).values, LEAST, 1e3)
+            for column, panel in enumerate(row):
+                band = 100 * shown.bands(e, column)
+                handles[f"{model} against {paired.attrs['reference']}"] = line(panel, shown.x, band, model, shown.many)
+                top = float(np.nanmax([top, np.nanmax(band, initial=0.0)]))
+        for panel in row:
+            panel.axhline(100 * GOOD, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
+            panel.set_yscale("log")
+            panel.set_ylim(0.05, max(100.0, 1.5 * top))
+    _close(figure, handles, "Errors of the cheaper contact models")
     many = " Lines: medians of the cases; bands: 5 to 95 %." if shown.many else ""
-    words = f"{dotted} The worse contact; rolling only.{many}"
-    _close(figure, handles, "What the cheaper contact models miss", words)
-    caption = f"Error of the cheaper contact models against {paired.attrs['reference']}."
+    caption = (
+        f"Error of the cheaper contact models against {paired.attrs['reference']}, at the worse contact of the cases "
+        f"that roll. Dotted: {percent(GOOD)}. Marks at the lower end: {percent(LEAST)} or less.{many}"
+    )
     return figure, style.FigureInfo("models-error", caption, short(paired)[0])
 
 
-def _error_row(shown: Frame, row: Any, found: xr.Dataset, name: str) -> dict[str, Any]:
-    """Draw the errors of all cheaper models in a row of panels."""
-    handles, top = {}, 1.0
-    for model in map(str, found["contact_model"].values):
-        e = np.clip(found[name].sel(contact_model=model).values, LEAST, 1e3)
-        for column, panel in enumerate(row):
-            band = 100 * shown.bands(e, column)
-            handles[f"{model} against {found.attrs['reference']}"] = line(panel, shown.x, band, model, shown.many)
-            top = float(np.nanmax([top, np.nanmax(band, initial=0.0)]))
-    for panel in row:
-        panel.axhline(100 * GOOD, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
-        panel.set_yscale("log")
-        panel.set_ylim(0.05, max(100.0, 1.5 * top))
-    return handles
-
-
-def error_by_factor(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
-    """Draw the error of normal force, friction and peak stress over the factors that matter most."""
-    spin = designs(paired).column("spin")
-    names = ["spin"] if np.isfinite(spin).all() and spin.max() > 1.1 * spin.min() else []
-    cheapest = found.isel(contact_model=0)
-    names = [*names, *telling_factors(cheapest)][:COLUMNS]
-    wanted = [q for q in measured(found) if q.name in ("normal_force", "friction_force", "peak_stress")]
-    if not names or not wanted:
-        return None
-    frames = [shown for name in names if (shown := frame(paired, name, split=False)) is not None]
-    figure = style.new_figure(30.0 + 30.0 * len(wanted))
-    axes = figure.subplots(len(wanted), len(names), sharex="col", sharey="row", squeeze=False)
-    handles: dict[str, Any] = {}
-    for column, shown in enumerate(frames):
-        for row, q in enumerate(wanted):
-            axes[row, 0].set_ylabel(f"{q.label}\nerror [%]")
-            handles |= _error_row(shown, axes[row, column : column + 1], found, q.name)
-        label_axis(axes[-1, column], shown.x, LETTERS // len(frames))
-    words = f"Lines: medians of all cases that roll; bands: 5 to 95 %; dotted: {percent(GOOD)}."
-    _close(figure, handles, "Where the cheaper contact models miss most", words)
-    caption = (
-        "Error of the cheaper contact models over spin (spin creepage by radius of curvature) and over the "
-        "factors that matter most, all else as it varies."
-    )
-    return figure, style.FigureInfo("models-error-factors", caption, "")
-
-
-def energy(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
+def energy(paired: xr.Dataset, deviations: xr.Dataset) -> style.Drawn:
     """Draw the friction energy of both contacts per distance.
 
     It is the sum over the patches, and for comparison the work of the resultants.
@@ -143,22 +111,19 @@ def energy(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
         for column, panel in enumerate(axes[0]):
             drawn = line(panel, shown.x, shown.bands(own, column), "sliding", False, **look)
             handles["sliding, from the resultants"] = drawn
-    lines = [np.asarray(drawn.get_ydata(), float) for panel in axes[0] for drawn in panel.lines]
-    values = np.concatenate(lines) if lines else np.empty(0)
-    if (values > 0).any():
-        axes[0, 0].set_yscale("log")
-        top = float(np.nanmax(values))
-        style.log_ticks(axes[0, 0].yaxis, max(float(values[values > 0].min()), top / 39), top)
-    _close(figure, handles, "Friction energy by contact model", _told(shown, "Rolling only."))
+    axes[0, 0].set_yscale("log")
+    style.log_ticks(axes[0, 0].yaxis, *axes[0, 0].get_ylim())
+    _close(figure, handles, "Friction energy by contact model")
     caption = (
-        "Friction energy of both contacts per distance. The local product is the published one; from the "
-        "resultants is the work that drive and tilting forces put in."
+        "Friction energy of both contacts per distance, where the roller rolls. The paper computes the local product "
+        "of traction and slip; the energy from the resultants is the work that drive and tilting forces put in."
+        f"{_lines_words(shown)}"
     )
-    return figure, style.FigureInfo("models-energy", caption, gap(found, "friction_energy"))
+    return figure, style.FigureInfo("models-energy", caption, gap(deviations, "friction_energy"))
 
 
-def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
-    """Draw peak von Mises stress of the roller (else of the body that was asked for) and life."""
+def peak_and_life(paired: xr.Dataset, deviations: xr.Dataset) -> style.Drawn:
+    """Draw the peak von Mises stress of the roller, or of the only body with stresses, and the life."""
     rows: list[tuple[str, Values]] = []
     shown = frame(paired, hold=True)
     if shown is None:
@@ -185,8 +150,6 @@ def peak_and_life(paired: xr.Dataset, found: xr.Dataset) -> style.Drawn:
             panel.set_yscale("log")
             mark_unlimited(panel, height)
         style.log_ticks(axes[-1, 0].yaxis, float(lived.min()), float(lived.max()))
-    words = _told(shown, "The more loaded of the two contacts.")
-    _close(figure, handles, "Peak stress and life by contact model", words)
-    return figure, style.FigureInfo(
-        "models-peak-life", "Peak von Mises stress and life by contact model.", gap(found, "peak_stress")
-    )
+    _close(figure, handles, "Peak stress and life by contact model")
+    caption = f"Peak von Mises stress and life by contact model, at the worse of the two contacts.{_lines_words(shown)}"
+    return figure, style.FigureInfo("models-peak-life", caption, gap(deviations, "peak_stress"))

@@ -1,4 +1,4 @@
-"""Panels of the comparison of contact models: a column a drive, friction (or what varies instead) along the axis."""
+"""Panels of the comparison of contact models: a column for each drive, friction or another factor along the axis."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from trackroller.analysis.contact_models import designs
-from trackroller.analysis.groups import DRIVE, Groups, drives, groups
+from trackroller.analysis.groups import DRIVE, Groups, drives, groups, spaced_by_ratio
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, quantiles, set_axis
@@ -19,20 +19,19 @@ from trackroller.report.numbers import capital, factor_label
 from trackroller.report.words.comparison import FRICTION
 from trackroller.report.words.levels import group_texts, held_words
 
-# told apart by dash and mark as much as by colour
+# distinguished by dash and mark as well as by colour
 LOOKS: dict[str, dict[str, Any]] = {
     "sliding": {"color": "#000000", "linestyle": "-", "marker": "o"},
     "fastsim": {"color": "#d55e00", "linestyle": ":", "marker": "s"},
     "kalker": {"color": "#0072b2", "linestyle": "--", "marker": "^"},
     "kalker_table": {"color": "#56b4e9", "linestyle": "-.", "marker": "v"},
 }
-LABELS = {"spin": r"Spin $\varphi\,\rho$ [–]", "lean": r"$\mu\,\tan\alpha$ [–]"}  # computed from factors
 LETTERS = 100  # letters of 7 pt across a figure
 
 
 @dataclass(frozen=True)
 class Frame:
-    """Designs of a figure, groups along its axis, drives of its columns, and words on the factors held constant."""
+    """Designs of a figure, groups along its axis, drives of its columns, and text on the factors held constant."""
 
     ds: xr.Dataset
     x: Groups
@@ -59,27 +58,27 @@ class Frame:
 
 
 def axis_name(view: StudyView) -> str | None:
-    """Choose the factor along the axis: friction, or else the first factor with an order, or else the first factor."""
+    """Choose the factor along the axis: friction, the first factor with an order, or the first factor."""
     if FRICTION in view.factors:
         return FRICTION
     return next((n for n in view.factors if view.ordered(n)), next(iter(view.factors), None))
 
 
-def frame(ds: xr.Dataset, name: str | None = None, hold: bool = False, split: bool = True) -> Frame | None:
-    """Return the frame of a figure over `name`; None if no factor varies.
+def frame(ds: xr.Dataset, hold: bool = False) -> Frame | None:
+    """Return the frame of a figure over friction or another factor, a column for each drive; None without a factor.
 
-    With `hold`, the frame of a grid has only the cases whose other factors are at the level of the base, or else at
-    their middle level; if no such case rolls, it has all cases. With `split` it has a column for each drive.
+    With `hold`, the frame of a grid has only the cases whose other factors are at the level of the base case, or
+    at their middle level; if no such case rolls, it has all cases.
     """
     view = designs(ds)
-    x = name or axis_name(view)
+    x = axis_name(view)
     if x is None or not len(view.table):
         return None
-    rows, held = view.hold((x, DRIVE) if split else (x,)) if hold else (view.table, {})
+    rows, held = view.hold((x, DRIVE)) if hold else (view.table, {})
     if not rolling(ds)[rows.index].any():
         rows, held = view.table, {}
     view, part = replace(view, table=rows), ds.isel(design=rows.index)
-    columns = drives(view) if split and x != DRIVE and DRIVE in view.factors else None
+    columns = drives(view) if x != DRIVE and DRIVE in view.factors else None
     return Frame(part, groups(view, x), columns, held_words(held))
 
 
@@ -102,8 +101,8 @@ def panels(shown: Frame, labels: list[str], row_mm: float) -> tuple[Figure, Any]
 
 def label_axis(axes: Axes, x: Groups, letters: int) -> None:
     """Set scale, ticks and label of the axis of groups."""
-    axes.set_xlabel(LABELS.get(x.name) or factor_label(x.name))
-    if x.ordered and x.at.min() > 0 and x.at.max() > 4 * x.at.min():
+    axes.set_xlabel(factor_label(x.name))
+    if x.ordered and spaced_by_ratio(x.at, 4.0):
         axes.set_xscale("log")
         style.log_ticks(axes.xaxis, float(x.at.min()), float(x.at.max()))
     else:

@@ -9,7 +9,7 @@ from matplotlib.path import Path
 
 from trackroller.parameters import CONTACT_MODELS
 
-SLIGHT = 1e-3  # of the largest pressure: less is left over from the solution, not a load
+SLIGHT = 1e-3  # share of the largest pressure; smaller values are residuals of the solution, not loads
 
 
 class Patch:
@@ -115,7 +115,7 @@ def _strips(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
 def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     """Return the strips [mm] along 'x' or 'y' in which the contact `part` carries pressure.
 
-    The list is empty if that is not known.
+    The list is empty if the strips are not known.
     """
     semi = {"x": "semi_axis_lateral", "y": "semi_axis_rolling"}[axis]
     if part.attrs.get("normal") == "halfspace" and "pressure" in part:

@@ -16,11 +16,11 @@ from matplotlib.ticker import MaxNLocator
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, framed, patches_of
-from trackroller.report.numbers import level_text, listing, long_name, number, rounded, setting
+from trackroller.report.numbers import capital, level_text, listing, long_name, number, rounded, setting
 from trackroller.roller.record import CASE, inputs_of, is_default
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
-SLENDER = 4.0  # a longer ellipse than this is not drawn to scale
+SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
 PANEL_MM = 70.0  # width of a map
 
 
@@ -36,21 +36,18 @@ def case_name(ds: xr.Dataset) -> str:
     return listing(said) if said else "default case"
 
 
-def case_text(ds: xr.Dataset) -> str:
-    """Return regime and normal forces of the case as a sentence, as far as the data set holds them."""
+def case_text(ds: xr.Dataset, to_scale: bool) -> str:
+    """Return case, regime and normal forces for a caption, as far as the data set holds them."""
     regime = int(ds["regime"]) if "regime" in ds else 0
     forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
-    text = f"Regime: {REGIME_LABELS[regime]}"
-    said = [f"{rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
-    return f"{text}; normal force {' and '.join(said)}." if said else f"{text}."
+    text = f"{capital(case_name(ds))}. Regime: {REGIME_LABELS[regime]}"
+    loads = [f"{rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
+    text += f"; normal force {' and '.join(loads)}." if loads else "."
+    return text if to_scale else f"{text} Axes not to one scale."
 
 
 def _shapes(patches: list[Patch]) -> str:
     return "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
-
-
-def _scale_note(to_scale: bool) -> str:
-    return "" if to_scale else " Axes not to one scale."
 
 
 def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
@@ -79,7 +76,7 @@ def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[A
 
 
 def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
-    """Draw filled contours cut along the edge of the patch; return this edge."""
+    """Draw filled contours clipped to the edge of the patch, and return them."""
     levels = np.linspace(0, top, 17)
     x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
@@ -91,7 +88,7 @@ def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -
 
 
 def _light(name: str = "YlGnBu", end: float = 0.62) -> Any:
-    """Return the lighter part of a colour map, on which black arrows are seen."""
+    """Return the lighter part of a colour map, on which black arrows are visible."""
     return ListedColormap(matplotlib.colormaps[name](np.linspace(0, end, 64)))
 
 
@@ -114,13 +111,12 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
         _pole(axes, patch)
     _bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
     pole = any(p.spin_pole is not None for p in patches)
-    dot = " Black dot: spin pole." if pole else ""
-    style.head(figure, f"Shear traction on the roller: {case_name(ds)}", f"{case_text(ds)}{dot}{_scale_note(to_scale)}")
+    style.head(figure, "Shear traction on the roller")
     best = int(np.argmax([s.max() for s in sizes]))
     caption = (
         f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
         + ("The black dot is the spin pole, about which the surfaces turn on each other. " if pole else "")
-        + case_text(ds)
+        + case_text(ds, to_scale)
     )
     largest = number(float(sizes[best].max()))
     sentence = f"The largest shear traction is {largest} MPa, in contact {patches[best].contact}."
@@ -184,10 +180,10 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     across.set_ylabel("Sum along $y_\\mathrm{C}$\n[J/(m mm)]")
     across.set_title("Across the running track", loc="left", fontsize=7.5, pad=3)
     figure.legend(loc="outside lower left", ncols=2)
-    style.head(figure, f"Friction energy of both contacts: {case_name(ds)}", case_text(ds) + _scale_note(to_scale))
+    style.head(figure, "Friction energy of both contacts")
     caption = (
         f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
-        f"direction: what each strip of the running track takes. {case_text(ds)}"
+        f"direction over each strip of the running track. {case_text(ds, to_scale)}"
     )
     totals = [float(q.summed(p, 0)) for p, q in zip(profiles, patches, strict=True)]
     words = " and ".join(f"{number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))

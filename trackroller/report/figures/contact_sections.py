@@ -18,14 +18,14 @@ from trackroller.analysis.columns import at_surface
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, widths
-from trackroller.report.figures.contact_patch import case_name, case_text
-from trackroller.report.numbers import capital, near, rounded
+from trackroller.report.figures.contact_patch import case_text
+from trackroller.report.numbers import near, rounded
 from trackroller.roller.record import MATERIALS, materials_of
 
 PLANES = (("von_mises_xz", "xz_x", "xz_z", "x", "lateral"), ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"))
 TRACTIONS = ("pressure", "shear_lateral", "shear_rolling")
-AROUND = 0.25  # of the grid of the tractions: so far the surface is shown beyond each end of it
-SLENDER = 2.5  # patches longer than this are not drawn to one scale
+AROUND = 0.25  # share of the traction grid by which the surface is shown beyond each of its ends
+SLENDER = 2.5  # ratio of the sections above which they are not drawn to one scale
 ROW_MM, SHARE_MM = 36.0, 125.0  # height of a row; width that the panels of a row share
 
 
@@ -40,7 +40,7 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
     bodies = [str(b) for b in part["body"].values if np.isfinite(part["von_mises_xz"].sel(body=b)).any()]
     if not bodies:
         return None
-    surfaces = {body: found for body in bodies if (found := surface_stress(ds, contact, body)) is not None}
+    surfaces = {body: stress for body in bodies if (stress := surface_stress(ds, contact, body)) is not None}
     shown = [*(part[plane[0]] for plane in PLANES), *([part["peak_stress"]] if "peak_stress" in part else [])]
     top = float(np.nanmax([*(v.max() for v in shown), *(s[2].max() for s in surfaces.values())]))
     first = part.sel(body=bodies[0])
@@ -60,13 +60,11 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
             _surface(row[2], Patch(ds, contact), part.sel(body=body), surfaces[body], (top, to_scale))
     bar = figure.colorbar(image, ax=list(grid.ravel()), location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6))
     bar.set_label("Von Mises stress [MPa]")
-    scale = "" if to_scale else " Axes not to one scale."
-    head = f"Von Mises stress under contact {contact}: {case_name(ds)}"
-    style.head(figure, head, f"{case_text(ds)} Cross: peak; ring: peak below the surface.{scale}")
+    style.head(figure, f"Von Mises stress under contact {contact}")
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section plane through the peak "
         f"of each body{' and on its surface' if surfaces else ''}; z counts into the body. A cross marks the peak; on "
-        f"the surface a ring marks a peak below it. {capital(case_name(ds))}. {case_text(ds)}"
+        f"the surface a ring marks a peak below it. {case_text(ds, to_scale)}"
     )
     return figure, style.FigureInfo(f"contact_{contact}_stress", caption, _sentence(part, bodies))
 
@@ -136,9 +134,9 @@ def _labels(axes: Axes, across: str) -> None:
     axes.grid(False)
 
 
-def _surface(axes: Axes, patch: Patch, part: xr.Dataset, found: tuple, drawn: tuple[float, bool]) -> None:
+def _surface(axes: Axes, patch: Patch, part: xr.Dataset, field: tuple, drawn: tuple[float, bool]) -> None:
     """Draw the stress on the surface of one body, as far as the sections reach, with the edge of the patch."""
-    x, y, stress = found
+    x, y, stress = field
     _fill(axes, x, y, stress, drawn[0])
     axes.add_patch(PathPatch(patch.outline, facecolor="none", edgecolor="black", linewidth=0.9))
     for limit, own, places in ((axes.set_xlim, "xz_x", x), (axes.set_ylim, "yz_y", y)):

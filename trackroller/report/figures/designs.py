@@ -14,12 +14,14 @@ from trackroller.report.numbers import capital, count, listing, long_name
 from trackroller.report.words.designs import alone, design_words
 
 MOST = 20  # designs shown
+LONGEST = 48  # letters of a name beside the axis; longer names are numbered
 
 
 def lives_by_design(view: StudyView) -> style.Drawn:
     """Draw the worst life of roller and guide of each design, and the median and best life of the pair.
 
-    It answers: which design keeps its life at its worst condition, and which of its two bodies ends it?
+    It answers: which design keeps its life at its worst condition, and which of its two bodies ends it? For random
+    conditions the life that nine of ten reach stands beside the worst one.
     """
     designs = Designs.of(view)
     if designs is None or not (designs.comparable and designs.rising and designs.conditions) or len(designs.size) < 2:
@@ -28,11 +30,13 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     table = table[np.isfinite(table["worst"])].head(MOST)
     if len(table) < 2:
         return None
+    names = [capital(design_words(designs, row)) for _, row in table.iterrows()]
+    numbered = max(map(len, names)) > LONGEST
     figure = style.new_figure(30 + 5.0 * len(table))
     axes = figure.subplots()
     place = np.arange(len(table))[::-1]
     _draw(axes, designs, table, place)
-    axes.set_yticks(place, [capital(design_words(designs, row)) for _, row in table.iterrows()])
+    axes.set_yticks(place, list(map(str, range(1, len(names) + 1))) if numbered else names)
     axes.set_xlabel(f"life [{designs.goal[2]}]")
     axes.set_xscale("log")
     style.log_ticks(axes.xaxis, *axes.get_xlim())
@@ -45,10 +49,10 @@ def lives_by_design(view: StudyView) -> style.Drawn:
         f"{len(table)} of {count(len(designs.size))} designs. Lives of the valid conditions. Hollow marks lie beyond "
         "the S-N data."
     )
+    caption += f" {'; '.join(f'{i}: {name}' for i, name in enumerate(names, 1))}." if numbered else ""
     what = "its worst condition, among designs that are valid in as many"
     what = "nine of ten sampled conditions" if designs.drawn else what
-    said = f"{capital(design_words(designs, table.iloc[0]))} lasts longest in {what}."
-    return figure, style.FigureInfo("designs", caption, said)
+    return figure, style.FigureInfo("designs", caption, f"{names[0]} lasts longest in {what}.")
 
 
 def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -> None:
@@ -57,10 +61,13 @@ def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -
     best = table["best"].replace(np.inf, np.nan).fillna(table["worst"])
     axes.hlines(place, table["worst"], best, color="0.75", linewidth=3, zorder=1, label="worst to best condition")
     axes.plot(table["median"], place, color="0.1", marker="|", markersize=7, linestyle="none", label="median")
+    if designs.drawn:
+        look: dict[str, Any] = {"color": "0.1", "marker": "D", "markersize": 3.5, "linestyle": "none"}
+        axes.plot(table["b10"].where(table["b10"] > 0), place, label="nine of ten reach", **look)
     for body, marker, colour in (("roller", "o", colours[0]), ("guide", "s", colours[3])):
         if alone(designs) and body == "guide":
             continue
         lives, beyond = table[f"worst_{body}"].to_numpy(), table[f"worst_{body}_beyond"].to_numpy(dtype=bool)
-        faces = [(1.0, 1.0, 1.0) if hollow else colour for hollow in beyond]
+        faces = np.where(beyond, "white", colour).tolist()
         look = {"marker": marker, "s": 26, "edgecolors": colour, "linewidths": 1.1, "zorder": 3}
         axes.scatter(lives, place, c=faces, label=f"worst of the {body}", **look)

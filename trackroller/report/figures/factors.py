@@ -1,4 +1,4 @@
-"""Life (else peak stress) against every factor, coloured by the factor that decides."""
+"""Life, or peak stress where a study has no life, against every factor; coloured by the deciding factor."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from trackroller.report.figures.panels import band, capped, legend, mark_unlimit
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured
+from trackroller.study.design.levels import OF_MATERIALS
 
 MAX_PANELS = 9
 BINS = 6
@@ -45,12 +46,13 @@ def by_factor(view: StudyView) -> style.Drawn:
         return None
     columns = min(3, len(names))
     figure = style.new_figure(26 + 50 * -(-len(names) // columns))
-    first, colours = None, coloured(view, lead, rows)
-    series = {name: _series(view, name, rows, colours, lead) for name in names}
+    first, levels = None, coloured(view, lead, rows)
+    colours = style.colours([text for text, _ in levels], lead in OF_MATERIALS)
+    series = {name: _series(view, name, rows, levels, lead) for name in names}
     for i, name in enumerate(names):
         axes = figure.add_subplot(-(-len(names) // columns), columns, i + 1, sharey=first)
         first = first or axes
-        _panel(axes, groups(view, name, rows, BINS), values, series[name])
+        _panel(axes, groups(view, name, rows, BINS), values, series[name], colours)
         axes.tick_params(labelleft=i % columns == 0)
         mark_unlimited(axes, top)
     if first is not None and "life" in words:
@@ -59,17 +61,19 @@ def by_factor(view: StudyView) -> style.Drawn:
     figure.supylabel(with_unit(capital(words), unit), fontsize=7.5)
     apart = any(len(drawn) > 1 for drawn in series.values())
     if apart:
-        looks = [{"color": c, "marker": m} for c, m in zip(style.palette(len(colours)), style.MARKERS, strict=False)]
-        legend(figure, [(text, look) for (text, _), look in zip(colours, looks, strict=True)])
+        looks = [{"color": c, "marker": m} for c, m in zip(colours, style.MARKERS, strict=False)]
+        legend(figure, [(text, look) for (text, _), look in zip(levels, looks, strict=True)])
     each = f" for each level of {long_name(lead)}" if apart else ""
-    told = f"Lines: medians{each}; bands: the middle half of the valid cases."
-    style.head(figure, f"{capital(words)} against each factor", told)
-    caption = f"{capital(words)} of the {rows.sum():,} valid cases along each factor, all others as they vary. {told}"
+    style.head(figure, f"{capital(words)} against each factor")
+    caption = (
+        f"{capital(words)} of the {rows.sum():,} valid cases along each factor, all other factors as they vary. "
+        f"Lines: medians{each}; bands: the middle half of the valid cases."
+    )
     return figure, style.FigureInfo(f"bands-{column}", caption, _sentence(view, column, words, rows))
 
 
 def shown_output(view: StudyView) -> tuple[str, str, str] | None:
-    """Return column, words and unit of the life of a study, else of its peak stress, or None."""
+    """Return column, words and unit of the life of a study, or of its peak stress where it has no life."""
     if view.life:
         return view.life
     stresses = [(f"peak_stress_{b}", f"peak stress of the {b}", "MPa") for b in ("roller", "guide")]
@@ -77,19 +81,19 @@ def shown_output(view: StudyView) -> tuple[str, str, str] | None:
 
 
 def _lead(view: StudyView, column: str) -> str:
-    """Return the factor to colour by: the deciding factor, or a category that matters, which must not be pooled."""
+    """Return the factor to colour by: the deciding factor, or a category whose levels must not be pooled."""
     size = ranked_factors(view.analysis, column, view.factors)
     lead = next(iter(size))
     category = next((name for name in size if name in view.categories), lead)
     return category if view.ordered(lead) and size[category] >= MATTERS * size[lead] else lead
 
 
-def _series(view: StudyView, name: str, rows: np.ndarray, colours: Series, lead: str) -> Series:
+def _series(view: StudyView, name: str, rows: np.ndarray, levels: Series, lead: str) -> Series:
     """Return the groups that get a line each; a deciding number and a factor with too few rows have one line."""
     whole = [("", np.ones(rows.sum(), bool))]
     if name == lead:
-        return whole if view.ordered(name) or len(colours) < len(view.levels(name)) else colours
-    return colours if any(_drawable(view, name, rows, chosen) for _, chosen in colours) else whole
+        return whole if view.ordered(name) or len(levels) < len(view.levels(name)) else levels
+    return levels if any(_drawable(view, name, rows, chosen) for _, chosen in levels) else whole
 
 
 def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) -> bool:
@@ -98,11 +102,10 @@ def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) 
     return bool((counts >= FEWEST).sum() > 1)
 
 
-def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series) -> None:
-    """Draw one factor: a line a group where the factor has an order, else marks with bars."""
-    colours = style.palette(len(series)) if len(series) > 1 else ["0.2"]
+def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series, colours: list[str]) -> None:
+    """Draw one factor: one line for each group where the factor has an order, otherwise marks with bars."""
     apart = len(series) > 1 and all(np.ptp(along.index[chosen]) == 0 for _, chosen in series)  # colours name the levels
-    for g, ((_, chosen), colour) in enumerate(zip(series, colours, strict=True)):
+    for g, ((_, chosen), colour) in enumerate(zip(series, colours if len(series) > 1 else ["0.2"], strict=True)):
         shift = 0.0 if along.ordered or apart else 0.12 * (g - (len(series) - 1) / 2)
         drawn = quantiles(values[chosen], along.index[chosen], len(along), (25, 50, 75), FEWEST)
         band(axes, along.at + shift, drawn, {"color": colour, "marker": style.MARKERS[g % 10]}, along.ordered)
@@ -112,7 +115,7 @@ def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series) -> Non
 
 def _sentence(view: StudyView, column: str, words: str, rows: np.ndarray) -> str:
     """State the two largest effects that have one direction."""
-    found = [s for f in view.factors if (s := effect_of(view, column, words, f, rows)) is not None]
-    clear = [s for s in found if s.kind in ("pairs", "classes")] or found
+    effects = [s for f in view.factors if (s := effect_of(view, column, words, f, rows)) is not None]
+    clear = [s for s in effects if s.kind in ("pairs", "classes")] or effects
     clear.sort(key=lambda s: -abs(np.log(s.values["ratio"])))
     return " ".join(s.text for s in clear[:2])

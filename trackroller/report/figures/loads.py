@@ -16,8 +16,10 @@ from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured, held_words
 from trackroller.report.words.regimes import lift_off
 from trackroller.report.words.stresses import surface
+from trackroller.study.design.levels import OF_MATERIALS
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
+Groups = list[tuple[list[str], pd.DataFrame]]  # names of the levels that share a line, and their rows
 MEDIANS = "Lines: medians of the cases; bands: 5 to 95 %."
 FORCES = (
     ("normal_force", "Normal force", r"$F_\mathrm{N}$"),
@@ -27,10 +29,11 @@ FORCES = (
 
 
 def stress_against_fit(view: StudyView) -> style.Drawn:
-    """Draw peak stress over the fit, coloured by what decides it beside the fit; of a sample the medians with bands.
+    """Draw peak stress over the fit, coloured by what decides it beside the fit.
 
-    It answers: how much stress does a closer groove save, and does it move the peak from below to the surface? In a
-    grid marks are filled where the peak lies at the surface.
+    It answers: how much stress does a closer groove save, and does it move the peak from below to the surface? Where
+    the cases of a line all have different fits, marks are filled if the peak lies at the surface; otherwise the
+    lines are medians with bands.
     """
     fits = next((f for f in map(view.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
     bodies = [b for b in BODIES if view.has(f"peak_stress_{b}")]
@@ -38,41 +41,40 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
         return None
     hue = _hue(view, f"peak_stress_{bodies[0]}", fits)
     rows, held = view.hold((*fits, hue) if hue else fits)
-    said = held_words(held)
-    rows = rows[view.rolling[rows.index]]
-    if not len(rows):
+    rows, label = add_fit(view, rows[view.rolling[rows.index]])
+    if rows["_fit"].nunique() < 2:
         return None
     columns = [f"peak_stress_{body}" for body in bodies]
     inside = np.isin(np.arange(len(view.table)), rows.index)
-    chosen = coloured(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
-    rows, label = add_fit(view, rows)
-    groups = [([text], rows.index.to_numpy()[mask]) for text, mask in chosen]
-    groups = _merged(groups, rows, columns) if view.grid else groups
+    levels = coloured(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
+    groups = [([text], rows[mask]) for text, mask in levels]
+    single = view.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
+    groups = _merged(groups, columns) if single else groups
     figure = style.new_figure(64 + 3.6 * (len(groups) + 2))
     panels = figure.subplots(1, len(bodies), sharex=True, sharey=True, squeeze=False)[0]
     entries: Entries = []
-    names, colours = [text for text, _ in chosen], style.palette(len(chosen))
-    for texts, members in groups:
-        i = names.index(texts[0])  # a level has the colour of the other figures
+    names = [text for text, _ in levels]
+    colours = style.colours(names, hue in OF_MATERIALS)
+    for texts, part in groups:
+        i = names.index(texts[0])
         look = {"color": colours[i], "marker": style.MARKERS[i], "linestyle": style.LINES[i % 6]}
         entries += [(listing(texts), look)] if hue else []
         for axes, body in zip(panels, bodies, strict=True):
-            _stress_series(axes, rows[rows.index.isin(members)], body, look, view.grid)
+            _stress_series(axes, part, body, look, single)
     for axes, body in zip(panels, bodies, strict=True):
         axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
         axes.set_ylim(bottom=0)
         axes.set_xlabel(label)
     panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
-    if view.grid:
+    if single:
         dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
         entries += [("filled: at the surface", dot), ("hollow: below it", {**dot, "markerfacecolor": "white"})]
-        said = f"Filled marks: the peak lies at the surface; hollow marks: below it. {said}"
     legend(figure, entries, 2)
-    told = said if view.grid else MEDIANS
-    style.head(figure, "Peak stress against fit", told)
+    style.head(figure, "Peak stress against fit")
+    marks = "Filled marks: the peak lies at the surface; hollow marks: below it." if single else MEDIANS
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
-        f"guide; rolling cases. {told}"
+        f"guide; rolling cases. {marks} {held_words(held)}"
     )
     return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(view, bodies[0], fits))
 
@@ -89,7 +91,7 @@ def _stress_sentence(view: StudyView, body: str, fits: tuple[str, ...]) -> str:
 def _hue(view: StudyView, column: str, fits: tuple[str, ...]) -> str:
     """Return the factor besides the fit that decides the peak stress, '' if there is none.
 
-    In a sample a factor that the fit follows is the fit as well.
+    In a sample a factor that decides the fit does not count beside it.
     """
     fit = add_fit(view, view.table)[0]["_fit"]
     same = [f for f in view.factors if view.numeric(f) and abs(fit.corr(view.table[f], method="spearman")) > SAME]
@@ -100,7 +102,7 @@ def _hue(view: StudyView, column: str, fits: tuple[str, ...]) -> str:
 def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     """Return rows with a column `_fit`, and its axis label.
 
-    Fit is groove over guide radius; where a roller is straight or convex the ratio is turned over, so that it passes
+    Fit is groove over guide radius; where a roller is straight or convex the ratio is inverted, so that it passes
     through 0 instead of infinity.
     """
     rows = rows.copy()
@@ -115,19 +117,19 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     return rows, f"Fit: guide over groove radius $-${r_g}/{r_t} [–]"
 
 
-def _merged(groups: list, rows: pd.DataFrame, columns: list[str]) -> list[tuple[list[str], np.ndarray]]:
+def _merged(groups: Groups, columns: list[str]) -> Groups:
     """Join groups with the same stresses: materials that differ in strength alone."""
-    found: dict[tuple[str, ...], tuple[list[str], np.ndarray]] = {}
-    for texts, members in groups:
-        own = rows[rows.index.isin(members)].sort_values("_fit")[["_fit", *columns]]
-        key = tuple(f"{value:.4g}" for value in own.to_numpy(dtype=float).ravel())
-        found.setdefault(key, ([], members))[0].extend(texts)
-    return list(found.values())
+    alike: dict[tuple[str, ...], tuple[list[str], pd.DataFrame]] = {}
+    for texts, part in groups:
+        values = part.sort_values("_fit")[["_fit", *columns]].to_numpy(dtype=float)
+        key = tuple(f"{value:.4g}" for value in values.ravel())
+        alike.setdefault(key, ([], part))[0].extend(texts)
+    return list(alike.values())
 
 
-def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], grid: bool) -> None:
+def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any], single: bool) -> None:
     part, y = part.sort_values("_fit"), f"peak_stress_{body}"
-    if not grid:
+    if not single:
         return running(axes, part["_fit"].to_numpy(), part[y].to_numpy(), look)
     axes.plot(part["_fit"], part[y], color=look["color"], linestyle=look["linestyle"], zorder=2)
     flag = part.get(f"at_surface_{body}", pd.Series(1.0, part.index))
@@ -139,7 +141,7 @@ def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any
 def forces_against_axial(view: StudyView) -> style.Drawn:
     """Draw normal, lateral and driving force of both contacts over the axial force, by drive.
 
-    It answers: how do the contacts share the load, and at which axial force does one lift off?
+    It answers: how do the contacts share the load, and from which axial force on does one lift off?
     """
     x = "axial_force"
     if not view.behind(x) or not view.numeric(x):
@@ -148,13 +150,14 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     if not kinds:
         return None
     levels = view.levels("motor_force") if "motor_force" in view.factors else []
-    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # else one line for all
+    drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # otherwise one line for all drives
     shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
     rows, held = view.hold(shown)
-    told = held_words(held) if view.grid else MEDIANS
     figure = style.new_figure(74)
     panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
-    looks = [{"color": colour, "marker": mark} for colour, mark in zip(style.palette(2), "os", strict=True)]
+    looks: list[dict[str, Any]] = [
+        {"color": colour, "marker": mark} for colour, mark in zip(style.palette(2), "os", strict=True)
+    ]
     looks = [look | {"markersize": size} for look, size in zip(looks, (3, 4.5), strict=True)] if view.grid else looks
     looks[1] |= {"markerfacecolor": "white"} if view.grid else {}
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
@@ -173,14 +176,15 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
         _shade_lift_off(panels, rows, x)
     entries: Entries = [(f"contact {c + 1}", looks[c] | {"linestyle": "none"}) for c in (0, 1)]
     dashes = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
-    told_drives = [
-        (level_text("motor_force", d), look) for d, look in zip(drives, dashes, strict=True) if d is not None
-    ]
-    legend(figure, entries + told_drives, 5)
-    style.head(figure, "Forces of both contacts against axial force", told)
+    entries += [(level_text("motor_force", d), look) for d, look in zip(drives, dashes, strict=True) if d is not None]
+    legend(figure, entries, 5)
+    style.head(figure, "Forces of both contacts against axial force")
     each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
-    caption = f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}."
-    return figure, style.FigureInfo("forces_against_axial_force", f"{caption} {told}".strip(), _force_sentence(view))
+    caption = (
+        f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}. "
+        f"{held_words(held) if view.grid else MEDIANS}"
+    )
+    return figure, style.FigureInfo("forces_against_axial_force", caption.strip(), _force_sentence(view))
 
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
@@ -201,7 +205,7 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
 
 
 def _force_sentence(view: StudyView) -> str:
-    """State from which axial force cases lift off, or else the normal forces at the largest axial force."""
+    """State from which axial force on cases lift off, otherwise the normal forces at the largest axial force."""
     lifted = lift_off(view)
     if lifted is not None:
         return lifted.text

@@ -1,4 +1,4 @@
-"""Maps over two factors: life with the regimes hatched and labelled, and the regimes themselves."""
+"""Maps over two factors: life, and the regimes."""
 
 from __future__ import annotations
 
@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.collections import LineCollection
+from matplotlib.axis import Axis, XAxis
 from matplotlib.colors import LogNorm
 from matplotlib.patches import Patch, Rectangle
 
@@ -26,15 +25,16 @@ from trackroller.report.words.regimes import occurrence
 
 FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 MAX_TICKS = 9
+MOST_LETTERS = 80  # below an axis; more letters stand slanted
 MOST_WRITTEN = 72  # cells of a map with its values written in
 Pair = tuple[str, str]
 
 
 def life_map(view: StudyView) -> style.Drawn:
-    """Draw life over the two numeric factors with most effect; in a grid parts that do not roll are marked.
+    """Draw life over the two numeric factors with most effect.
 
-    It answers: how long does the roller live, and where on the map is it no longer rolling? A small map has its lives
-    written in.
+    It answers: how long does the roller live, and where on the map has it no life? A small map has its lives written
+    in. The map of regimes says why a cell has no life.
     """
     if view.life is None or not view.has(view.life[0]):
         return None
@@ -43,7 +43,7 @@ def life_map(view: StudyView) -> style.Drawn:
         return None
     column, words, unit = view.life
     rows, held = view.hold(pair)
-    if not np.isfinite(rows[column]).any():
+    if not np.isfinite(rows[column][view.rolling[rows.index]]).any():
         return None
     figure = style.new_figure(84)
     axes = figure.subplots()
@@ -57,18 +57,21 @@ def life_map(view: StudyView) -> style.Drawn:
     axes.set_ylabel(factor_label(pair[1]))
     axes.grid(False)
     over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
-    style.head(figure, capital(over), held_words(held))
-    how = "Outlined parts do not roll" if view.grid else "Each cell is the median of its cases"
+    style.head(figure, capital(over))
+    how = "Grey cells have no life" if view.grid else "Each cell is the median of its cases; grey cells have no life"
     inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
     said = extremes(view, column, words, unit, pair, inside)
     return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held_words(held)}".strip(), said.text)
 
 
 def _life_pair(view: StudyView) -> Pair | None:
-    """Return the pair of numeric factors with several levels and the largest effect on life."""
+    """Return the pair of numeric factors with several levels and the largest effect on life.
+
+    None for a sample in which other factors have more effect than the pair: its map would show their scatter.
+    """
     names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
     column = view.life[0] if view.life else ""
-    size = ranked_factors(view.analysis, column, names)
+    size = ranked_factors(view.analysis, column, view.factors)
 
     def worth(pair: Pair) -> tuple[float, ...]:
         rows, _ = view.hold(pair)
@@ -79,6 +82,8 @@ def _life_pair(view: StudyView) -> Pair | None:
     if not pairs:
         return None
     x, y = max(pairs, key=worth)
+    if not view.grid and size[x] + size[y] < 0.5 * sum(size.values()):
+        return None
     return (x, y) if len(view.levels(x)) >= len(view.levels(y)) else (y, x)
 
 
@@ -103,20 +108,16 @@ def _norm(life: np.ndarray) -> LogNorm:
 
 def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
     inside = np.isin(np.arange(len(view.table)), rows.index)
-    found = [classes(view, name, inside, None if view.grid else BINS) for name in pair]
-    keys, shape = [index for index, _ in found], (len(found[1][1]), len(found[0][1]))
-    life = _table(rows[column], keys, shape)
+    sides = [classes(view, name, inside, None if view.grid else BINS) for name in pair]
+    keys, shape = [index for index, _ in sides], (len(sides[1][1]), len(sides[0][1]))
+    life = _table(rows[column].where(view.rolling[rows.index]), keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
     cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
     image = axes.pcolormesh(cells, cmap="cividis", norm=_norm(life), edgecolor="face", linewidth=0.1)
-    for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, found, strict=True):
+    for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.tick_params(length=2)
     _written(axes, life, image)
-    if "regime" in rows and view.grid:
-        regime = _table(rows["regime"], keys, shape)
-        for code in (1, 2, 3):
-            _hatched(axes, regime == code, code)
     return image
 
 
@@ -134,6 +135,8 @@ def set_ticks(axis: Axis, texts: list[str]) -> None:
     """Write texts at the middle of the cells, thinned when there are many."""
     shown = range(0, len(texts), -(-len(texts) // MAX_TICKS))
     axis.set_ticks([i + 0.5 for i in shown], [texts[i] for i in shown])
+    if isinstance(axis, XAxis) and sum(map(len, texts)) > MOST_LETTERS:
+        axis.set_tick_params(rotation=35)
 
 
 def tick_text(name: str, value: Any) -> str:
@@ -141,26 +144,6 @@ def tick_text(name: str, value: Any) -> str:
     if isinstance(value, str):
         return textwrap.fill(level_text(name, value).replace(" on ", " on\u00a0"), 24).replace("\u00a0", " ")
     return "∞" if np.isposinf(value) else rounded(value)
-
-
-def _hatched(axes: Axes, cells: np.ndarray, code: int) -> None:
-    """Hatch the cells of a regime, outline the region and write its name in its middle."""
-    if not cells.any():
-        return
-    look: dict[str, Any] = {"facecolor": (1, 1, 1, 0.35), "edgecolor": (0.25, 0.25, 0.25), "linewidth": 0}
-    for j, i in np.argwhere(cells):
-        axes.add_patch(Rectangle((i, j), 1, 1, hatch=style.REGIME_HATCHES[code] or "....", **look))
-    padded = np.pad(cells, 1)
-    edges = [[(i - 1, j), (i, j)] for j, i in np.argwhere(padded[1:, :] != padded[:-1, :])]
-    edges += [[(i, j - 1), (i, j)] for j, i in np.argwhere(padded[:, 1:] != padded[:, :-1])]
-    axes.add_collection(LineCollection(edges, colors="black", linewidths=1.0, zorder=4))
-    spots = np.argwhere(cells) + 0.5
-    middle = spots[np.argmin(((spots - spots.mean(axis=0)) ** 2).sum(axis=1))]
-    box = {"facecolor": "white", "edgecolor": "0.3", "linewidth": 0.5, "boxstyle": "round,pad=0.2"}
-    thin = np.ptp(spots[:, 1]) + 1 < 0.12 * cells.shape[1]
-    label: dict[str, Any] = {"ha": "center", "va": "center", "fontsize": 7, "zorder": 5, "bbox": box}
-    text = axes.text(middle[1], middle[0], REGIME_LABELS[code], rotation=90 if thin else 0, **label)
-    text.set_in_layout(False)
 
 
 def regime_map(view: StudyView) -> style.Drawn:
@@ -184,7 +167,7 @@ def regime_map(view: StudyView) -> style.Drawn:
     axes.set_xlabel(factor_label(pair[0]))
     axes.set_ylabel(factor_label(pair[1]))
     axes.grid(False)
-    style.head(figure, "Regimes: rolling, full slip, lift-off", note)
+    style.head(figure, "Regimes: rolling, full slip, lift-off")
     said = [occurrence(view, view.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
     caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
     return figure, style.FigureInfo("regime_map", caption.strip(), " ".join(s.text for s in said if s))
@@ -221,8 +204,6 @@ def _regime_shares(axes: Axes, view: StudyView, pair: Pair) -> str:
     for axis, labels in ((axes.xaxis, texts[0]), (axes.yaxis, texts[1])):
         set_ticks(axis, labels)
     axes.tick_params(length=0)
-    if sum(map(len, texts[0])) > 100:
-        axes.tick_params(axis="x", rotation=35)
     handles = [Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (view.regime == c).any()]
     axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
     others = len(view.factors) > 2

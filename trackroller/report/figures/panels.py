@@ -24,7 +24,7 @@ Entries = list[tuple[str, dict[str, Any]]]
 def capped(life: np.ndarray) -> tuple[np.ndarray, float | None]:
     """Place lives on a logarithmic axis.
 
-    Unlimited lives lie one decade above the longest finite life.
+    Unlimited lives lie at ten times the next power of ten above the longest finite life.
 
     Parameters
     ----------
@@ -60,18 +60,18 @@ def quantiles(
     values: np.ndarray, index: np.ndarray, count: int, shares: tuple[int, int, int] = (5, 50, 95), fewest: int = 1
 ) -> np.ndarray:
     """Return three percentiles of the values (n,) of each group, shape (3, count); NaN for a group of few values."""
-    found = np.full((3, count), np.nan)
+    percentiles = np.full((3, count), np.nan)
     for k in range(count):
         own = values[(index == k) & ~np.isnan(values)]
         if own.size >= fewest:
-            found[:, k] = np.percentile(own, shares, method="nearest")
-    return found
+            percentiles[:, k] = np.percentile(own, shares, method="nearest")
+    return percentiles
 
 
 def band(
     axes: Axes, at: np.ndarray, values: np.ndarray, look: dict[str, Any], ordered: bool, shade: bool = True
 ) -> Any:
-    """Draw the middle of three percentiles, shape (3, groups), and a band, or bars where the groups have no order."""
+    """Draw the middle of three percentiles, shape (3, groups), with a band, or with bars for unordered groups."""
     low, middle, high = values
     if shade and ordered:
         axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
@@ -85,7 +85,7 @@ def running(axes: Axes, x: np.ndarray, y: np.ndarray, look: dict[str, Any]) -> N
 
     Parameters
     ----------
-    x, y : values of the rows, shape (n,); rows without either are left out
+    x, y : values of the rows, shape (n,); a row without one of them is left out
     look : `color`, `marker` and more of the line
     """
     good = np.isfinite(x) & np.isfinite(y)

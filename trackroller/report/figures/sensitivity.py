@@ -33,18 +33,18 @@ def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
 
 
 def title(sens: xr.Dataset, output: str) -> str:
-    """Name an output with a large first letter."""
+    """Name an output with a capital first letter."""
     return capital(indices.of_output(sens, output))
 
 
 def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
-    """Draw bars of the headline index with 95 % intervals, the largest on top; of Sobol indices both.
+    """Draw bars of the headline index with 95 % intervals, the largest on top; first-order beside total Sobol indices.
 
     It answers: which factor decides, and how sure is that?
     """
     index = headline(sens)
     ranks, said = order(sens, output)[:MAX_BARS], indices.tornado(sens, output)
-    if said.kind != "index":  # left out without a finding
+    if said.kind != "index":  # a figure without a finding is left out
         return None
     figure = style.new_figure(22 + 6.0 * len(ranks))
     axes = figure.add_subplot()
@@ -183,8 +183,9 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     figure.legend(loc="outside right upper")
     style.head(figure, f"{title(sens, output)}: elementary effects")
     caption = (
-        "Elementary effects over each factor's whole range: to the right a factor matters; above the lines "
-        "its effect depends on where one is. Whiskers: 95 % intervals."
+        "Elementary effects over each factor's whole range. A factor further to the right matters more. Above the "
+        "lines its effect differs from place to place: it is curved or depends on other factors. Whiskers: 95 % "
+        "intervals."
     )
     return figure, style.FigureInfo(f"morris-{output}", caption, indices.morris(sens, output).text)
 
@@ -192,7 +193,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
 def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw a heat map of two-factor interactions, main effects on the diagonal.
 
-    It answers: which two factors have to be chosen together? None where no interaction is worth that.
+    It answers: which two factors have to be chosen together? None if no interaction reaches 5 % of the variance.
     """
     part = sens.sel(output=output)
     name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
@@ -200,7 +201,9 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
         return None
     said = indices.interactions(sens, output)
     shares = name != "interaction"
-    if said.kind != "interaction" or (shares and said.values["value"] < WORTH):  # left out without a finding
+    if said.kind != "interaction" or (
+        shares and said.values["value"] < WORTH
+    ):  # a figure without a finding is left out
         return None
     table = np.array(part[name].values, dtype=float)
     table = np.where(np.isfinite(table), table, table.T)
@@ -213,6 +216,6 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     names = [capital(str(n)) for n in part["factor_name"].values]
     label = f"size [{indices.effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
     figure = _heat(table, names, names, label, f"{title(sens, output)}: interactions")
-    caption = "Off the diagonal: what two factors do together beyond the sum of both; on it: each factor alone."
+    caption = "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
     return figure, style.FigureInfo(f"interactions-{output}", caption, said.text)

@@ -29,7 +29,7 @@ def sn_diagram(view: StudyView) -> style.Drawn:
     """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
 
     It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
-    A body of which no life lies on the axis gets no panel: marks piled up at the edge would not be readable.
+    A body without a life on the axis gets no panel, because marks piled up at the edge would not be readable.
     """
     known, rule = _known(view), str(view.study.get("life_rule", "elementary"))
     bodies = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]
@@ -37,9 +37,10 @@ def sn_diagram(view: StudyView) -> style.Drawn:
         return None
     ends = _ends([points[n] for _, points in bodies for n in points], [known[n] for _, p in bodies for n in p])
     shown = [(b, points) for b, points in bodies if any((life <= ends[1]).any() for _, life in points.values())]
-    shown = shown or bodies[:1]
+    if not shown:
+        return None
     names = list(dict.fromkeys(name for _, points in shown for name in points))[:MAX_MATERIALS]
-    colours = dict(zip(names, style.palette(len(names)), strict=True))
+    colours = dict(zip(names, style.colours(names, True), strict=True))
     figure = style.new_figure(68 + 2.4 * (len(names) + 3))
     panels = figure.subplots(1, len(shown), sharey=True, squeeze=False)[0]
     for axes, (body, points) in zip(panels, shown, strict=True):
@@ -56,24 +57,13 @@ def sn_diagram(view: StudyView) -> style.Drawn:
         axes.set_xlabel(with_unit("Overrollings to failure $N$", "1"))
     panels[0].set_ylabel(with_unit(capital(_WORDS[_amplitude(view)]), "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
-    style.head(figure, "S-N diagram with the cases of the study", "Stress and life of the worse contact.")
+    style.head(figure, "S-N diagram with the cases of the study")
     return figure, _info(view, shown, known, rule, ends[1])
 
 
 def _known(view: StudyView) -> dict[str, Material]:
     stored = stored_materials(view.attrs)
     return {n: as_material({"name": n} | values) for n, values in stored.items() if set(REQUIRED) <= set(values)}
-
-
-def material_of(view: StudyView, body: str) -> np.ndarray:
-    """Return the name of the material of a body in every case, shape (n,)."""
-    name = f"{body}_material"
-    if name in view.table:
-        return view.table[name].to_numpy().astype(str)
-    if "material_pair" in view.table:
-        pairs = [str(p).split(" / ") for p in view.table["material_pair"]]
-        return np.array([p[0] if body == "roller" else p[-1] for p in pairs], dtype=str)
-    return np.full(len(view.table), str(view.base.get(name, "")))
 
 
 def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str) -> Points:
@@ -83,7 +73,7 @@ def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str
     """
     life = view.column(f"life_cycles_{body}")
     rows = (life > 0) & view.rolling if ((life > 0) & view.rolling).any() else life > 0
-    given, found = material_of(view, body), {}
+    given, points = view.material(body), {}
     for material in dict.fromkeys(given):
         mine = (given == material) & rows
         if material not in known or not mine.any():
@@ -92,8 +82,8 @@ def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str
         if np.isnan(stress).all():  # a study of lives alone
             with np.errstate(invalid="ignore"):
                 stress = SNCurve.of(known[material], rule).allowable_stress(life[mine])
-        found[material] = stress, life[mine]
-    return found
+        points[material] = stress, life[mine]
+    return points
 
 
 def _amplitude(view: StudyView) -> str:
@@ -124,7 +114,7 @@ def _lines(axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[f
 
 
 def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float) -> None:
-    """Draw where the cases of a material lie on its curve: a thick line for 90 % of them, a large mark for the median.
+    """Draw where the cases of a material lie on its curve: a thick line spans 90 % of them, a large mark is the median.
 
     Cases beyond the end of the axis are left out.
     """
@@ -155,7 +145,8 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
 def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str, top: float) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
-        f"with the {_WORDS[_amplitude(view)]} (MPa) and the life in overrollings of the rolling cases. "
+        f"with the {_WORDS[_amplitude(view)]} (MPa) and the life in overrollings of the rolling cases at the worse "
+        "contact. "
         f"{CONVENTIONS[rule]}."
     )
     left = int((~view.rolling).sum())
@@ -164,7 +155,7 @@ def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str
     caption += f" {count(beyond)} lives lie beyond the axis." if beyond else ""
     said = []
     for body, _ in shown:
-        names = material_of(view, body)
+        names = view.material(body)
         ends = ("tensile_strength", "fatigue_limit")
         most, limit = (np.array([getattr(known[n], end) if n in known else np.nan for n in names]) for end in ends)
         said.append(strength(body, view.column(f"{_amplitude(view)}_{body}"), limit, most, view.rolling))

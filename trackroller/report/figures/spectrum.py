@@ -39,7 +39,7 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
     figure = style.new_figure(24 + 6.0 * len(words))
     panels = figure.subplots(1, len(shares), sharey=True, squeeze=False)[0]
-    told = []
+    worst_blocks = []
     for axes, colour, (body, part) in zip(panels, style.palette(2), shares.items(), strict=False):
         values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
@@ -49,10 +49,10 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
         axes.set_xlabel(f"damage of the {body} [%]")
         axes.grid(axis="y", visible=False)
         most = int(np.argmax(part))
-        told.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
+        worst_blocks.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
     panels[0].invert_yaxis()
     style.head(figure, f"Damage by block: {ds.attrs['title']}")
     caption = "Share of each block in the damage of a shift, in the track of each body that fails first."
     if unknown.any():
         caption += f" Blocks without known damage are not counted: {listing(ds['block'].values[unknown].tolist())}."
-    return figure, style.FigureInfo("damage_by_block", caption, f"{listing(told)}.")
+    return figure, style.FigureInfo("damage_by_block", caption, f"{listing(worst_blocks)}.")

@@ -10,7 +10,7 @@ from pathlib import Path
 import xarray as xr
 
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.ranking import main_lives, robust_design
+from trackroller.analysis.ranking import robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
@@ -18,7 +18,7 @@ from trackroller.report.figures.designs import lives_by_design
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
-from trackroller.report.figures.pareto import pareto_front, robust_points
+from trackroller.report.figures.pareto import pareto_front
 from trackroller.report.figures.sensitivity import (
     convergence,
     interactions,
@@ -62,8 +62,8 @@ def draw_all(view: StudyView, out_dir: Path) -> list[style.FigureInfo]:
 
 
 def _is_about_friction(info: style.FigureInfo) -> bool:
-    told = f"{info.name} {info.caption} {info.sentence}"
-    return any(name in told for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
+    text = f"{info.name} {info.caption} {info.sentence}"
+    return any(name in text for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
 
 
 def _jobs(view: StudyView) -> Iterator[Draw]:
@@ -77,7 +77,7 @@ def _jobs(view: StudyView) -> Iterator[Draw]:
 def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
     """Return the drawings of the analysis: those before and those after the figures of the cases."""
     if robust_design(sens):
-        return [partial(robust_points, sens, name) for name in main_lives(sens)], []
+        return [], []
     parts: list[list[Draw]] = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
     first, *others = parts
     return first, [partial(overview, sens), *(draw for part in others for draw in part)]

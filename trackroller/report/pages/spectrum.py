@@ -8,26 +8,18 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from trackroller.analysis.table import BODIES
-from trackroller.report import html
-from trackroller.report.numbers import capital
-from trackroller.report.pages.sheet import _pictures
-from trackroller.report.pages.sheet_facts import body_materials, versions_text
-from trackroller.report.tables.inputs import input_row, is_told
-from trackroller.report.words.spectrum import sentences
-
-if TYPE_CHECKING:
-    import xarray as xr
-from typing import TYPE_CHECKING
-
 import numpy as np
 
+from trackroller.analysis.table import BODIES
 from trackroller.parameters import PARAMETERS, REGIME_LABELS
-from trackroller.report.numbers import chance, listing, long_name, unit_text, with_unit
-from trackroller.report.tables.inputs import Row
+from trackroller.report import html
+from trackroller.report.numbers import capital, chance, listing, long_name, unit_text, with_unit
+from trackroller.report.pages.sheet import _pictures
+from trackroller.report.pages.sheet_facts import body_materials, versions_text
+from trackroller.report.tables.inputs import Row, input_row, is_told
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.flags import flags_of
-from trackroller.report.words.spectrum import UNITS, _life, known_damage
+from trackroller.report.words.spectrum import UNITS, _life, known_damage, sentences
 from trackroller.study.spectrum.file import LOAD_FIELDS
 
 if TYPE_CHECKING:
@@ -42,8 +34,8 @@ def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
         per_shift = [1.0, float(ds["distance"].sum()) / 1e3, float(ds["duration"].sum())]
         for p in ds["probability"].values if not bool(lives.isnull().all()) else ():
             shifts = float(lives.sel(probability=p).min(skipna=False))
-            told = [f"{_life(shifts * scale)} {unit}" for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
-            rows.append(Row(f"until {100 * float(p):g} % have failed", ", ".join(told)))
+            lives_at = [f"{_life(shifts * scale)} {unit}" for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
+            rows.append(Row(f"until {100 * float(p):g} % have failed", ", ".join(lives_at)))
     return rows
 
 
@@ -67,21 +59,21 @@ def block_table(ds: xr.Dataset) -> Table:
         sums += ["", f"{'≥ ' * bool(np.isnan(damage).any())}{cell(float(np.nansum(damage)))}", ""]
     rows.append(sums)
     same = [n for n in LOAD_FIELDS if n not in loads and np.isfinite(ds[n].values).all()]
-    told = [f"{PARAMETERS[n].long_name} {cell(float(ds[n][0]))} {unit_text(PARAMETERS[n].unit)}" for n in same]
+    same_loads = [f"{PARAMETERS[n].long_name} {cell(float(ds[n][0]))} {unit_text(PARAMETERS[n].unit)}" for n in same]
     note = "Stress and damage are those of the track that fails first"
     if any(np.isnan(damage).any() for _, damage in shown.values()):
         note += " by the blocks with known damage; sums and shares hold these blocks alone"
-    note += f". Same in all blocks: {'; '.join(told)}."
+    note += f". Same in all blocks: {'; '.join(same_loads)}."
     return Table("spectrum", "Blocks of a shift", heads, rows, note.replace(" –;", ";").replace(" –.", "."))
 
 
 def warnings(ds: xr.Dataset) -> list[str]:
     """Return each validity flag in words, with its remedy and the blocks that carry it."""
-    found: dict[str, list[str]] = {}
+    blocks_of_flag: dict[str, list[str]] = {}
     for i, name in enumerate(ds["block"].values if "validity" in ds else ()):
         for flag in flags_of(ds.isel(block=i)):
-            found.setdefault(f"{flag.sentence} {flag.remedy}", []).append(f"'{name}'")
-    return [f"{text} Blocks: {listing(blocks)}." for text, blocks in found.items()]
+            blocks_of_flag.setdefault(f"{flag.sentence} {flag.remedy}", []).append(f"'{name}'")
+    return [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
 
 
 def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:

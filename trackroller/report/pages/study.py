@@ -51,7 +51,7 @@ MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
 PLACES = ("decide", "why", "ends", "models")  # sections with tables and figures
 SECTIONS = {  # where a figure stands, by the beginning of its name
-    "decide": ("designs", "pareto-front", "robustness-"),
+    "decide": ("designs", "pareto-front"),
     "ends": ("regime_map", "forces_against"),
     "models": ("models-",),
 }
@@ -80,13 +80,16 @@ def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
     """
     content = contents(view)
     write_text(Path(out_html), page_text(view, content, figures_dir))
-    export([t for key in PLACES for t in content[key]], Path(out_html).parent / "tables")
+    export([t for key in PLACES for t in content["tables"][key]], Path(out_html).parent / "tables")
     return Path(out_html)
 
 
 def page_text(view: StudyView, content: dict[str, Any], figures_dir: Path) -> str:
     """Return the report as HTML from its `contents`, its figures and its explorer."""
-    shown = content | {"figures": figures(Path(figures_dir)), "explorer": explorer(view)}
+    drawn = figures(Path(figures_dir))
+    beside_figures = " ".join(item["sentence"] for items in drawn.values() for item in items)
+    said = {key: [s for s in texts if s not in beside_figures] for key, texts in content["said"].items()}
+    shown = content | {"figures": drawn, "said": said, "explorer": explorer(view)}
     return secured(render("report.html.j2", shown, cell=cell))
 
 
@@ -103,7 +106,6 @@ def contents(view: StudyView) -> dict[str, Any]:
         "facts": _facts(view, merged),
         "summary": in_short(view, models.get("short", [])),
         **sections(view, models),
-        "models_said": models.get("said", []),
         "factors": factor_table(view),
         "base": base_rows(view),
         "doubts": _doubts(view),
@@ -125,16 +127,16 @@ def _doubts(view: StudyView) -> list[str]:
 
 
 def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables of the sections "decide", "why", "where the study ends" and "contact models"."""
+    """Return the tables and the sentences of each section; a sentence that a figure has is not repeated."""
     sens, error = view.analysis, friction_error(view)
     decide: list[Table | None] = [best_table(view)]
     front = study_pareto(view)
-    said = []
+    said: list[str] = []
     if front is not None:
         said.append(pareto_sentence(front, view).text)
         decide.append(pareto_table(front, view, error))
     decide += target_tables(sens, view) if sens is not None else []
-    why: list[Table] = []
+    why: list[Table | None] = []
     if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
         said += [best_point(sens, name).text for name in main_lives(sens)]
@@ -143,12 +145,11 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
         index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
         known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
         why += [measure_table(sens, name, error) for name in known[:1]]  # a life, if the study has one, stands first
+    ends = [regime_table(view), validity_table(view), reason_table(view.data)]
+    tables = {"decide": decide, "why": why, "ends": ends, "models": models.get("tables", [])}
     return {
-        "decide": [t for t in decide if t],
-        "decide_said": said,
-        "why": why,
-        "ends": [t for t in (regime_table(view), validity_table(view), reason_table(view.data)) if t],
-        "models": models.get("tables", []),
+        "tables": {key: [t for t in listed if t] for key, listed in tables.items()},
+        "said": {"decide": said, "models": models.get("said", [])},
     }
 
 
@@ -192,10 +193,10 @@ def solution_facts(view: StudyView) -> list[Row]:
     if "converged" in view.table:
         done = int((view.table["converged"] == 1).sum())
         rows.append(Row("Converged cases", f"{count(done)} of {count(len(view.table))}"))
-    if (found := _finite(ds, "residual")).size:
-        rows.append(Row("Largest relative residual of the equilibrium", rounded(float(found.max()), 2)))
-    if (found := _finite(ds, "error_estimate")).size:
-        text = f"{percent(float(found.max()))} (median {percent(float(np.median(found)))})"
+    if (known := _finite(ds, "residual")).size:
+        rows.append(Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
+    if (known := _finite(ds, "error_estimate")).size:
+        text = f"{percent(float(known.max()))} (median {percent(float(np.median(known)))})"
         rows.append(Row("Largest estimated relative error of the peak stress", text))
     return rows
 

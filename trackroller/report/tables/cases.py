@@ -7,7 +7,7 @@ import xarray as xr
 
 from trackroller.analysis.table import BODIES, StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.numbers import capital, plain, share
+from trackroller.report.numbers import plain, share
 from trackroller.report.tables.table import Table
 from trackroller.report.words.flags import OF_BODY, words_of
 from trackroller.report.words.regimes import occurrence
@@ -27,14 +27,14 @@ def regime_table(view: StudyView) -> Table | None:
 
 
 def validity_table(view: StudyView) -> Table | None:
-    """Count the rolling cases that carry each validity flag, by body if the data tell it, and name where they occur."""
+    """Count the rolling cases that carry each validity flag, by body where it is known, and say where they occur."""
     rows = []
     for flag in view.flags:
         for body in BODIES if view.by_body and flag in OF_BODY else ("",):
             hit = view.flagged(flag, body) & view.rolling
             if not hit.any():
                 continue
-            said = occurrence(view, hit, capital(f"{plain(flag)}{f' ({body})' if body else ''}"), view.rolling)
+            said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
             cases, rolls = int(hit.sum()), int(view.rolling.sum())
             meaning = VALIDITY_BITS.get(flag, words_of(flag))
             rows.append([plain(flag), body or "either", meaning, cases, share(cases, rolls), said.text if said else ""])

@@ -6,7 +6,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.ranking import estimate, main_lives
-from trackroller.damage.sn_curve import DECADES
+from trackroller.damage.sn_curve import DEVIATES_10_TO_90
+from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.numbers import capital, chance, listing, rounded, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.report.tables.targets import MAX_POINTS
@@ -14,7 +15,7 @@ from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.design_points import life_at, point_words
 from trackroller.report.words.sentence import Sentence
 
-OTHERS = {"full_slip": "full slip", "lift_off": "lift-off", "failed": "failure"}
+OTHERS = dict(zip(REGIMES[1:], REGIME_LABELS[1:], strict=True))  # regimes in which the roller does not roll, in words
 
 
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
@@ -23,8 +24,8 @@ def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table]:
     asked = table.attrs.get("outputs_named")
     lives = main_lives(table)
     others = [n for n in names if "life" not in n] if asked or not lives else []
-    found = [part for n in lives for part in _life_tables(table, n)]
-    return found + [_point_table(table, n, error) for n in others]
+    tables = [part for n in lives for part in _life_tables(table, n)]
+    return tables + [_point_table(table, n, error) for n in others]
 
 
 def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
@@ -47,7 +48,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
         rows.append([capital(point_words(table, p)), lives[0], span, lives[1], *chances])
     unit = unit_text(str(part["output_units"].item()))
     name = capital(str(part["output_name"].item()))
-    own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DECADES * scatter))}."
+    own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DEVIATES_10_TO_90 * scatter))}."
     note = own if scatter > 0 else "B10 holds the scatter of the study's factors alone, not that of the material."
     if never := [r for r in OTHERS if r not in seen]:
         high = 100 * float(table["probability_high"].sel(regime=never).max())

@@ -23,15 +23,15 @@ def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
         mark = " *" if error and output in FRICTION_OUTPUTS else ""
         rows.append([capital(of_output(sens, output)) + mark, "; ".join(ranks) or "–", str(part["note"].item())])
     heads = ["Output", f"Factors that matter most ({INDEX_WORDS[index]})", "Computed from"]
-    told = str(sens.attrs.get("treatment", ""))
-    note = f"{HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(told)}."
+    treatment = str(sens.attrs.get("treatment", ""))
+    note = f"{HALF}. The method needs {sens.attrs.get('needs', 'nothing')}. {capital(treatment)}."
     if any(row[0].endswith("*") for row in rows) and error:
         note += f" * {error.text}"
     return Table("indices", "What decides each output", heads, rows, note)
 
 
 def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Table:
-    """List every index of every factor on one output; those within chance stand in brackets."""
+    """List every index of every factor on one output; an index that chance alone reaches stands in brackets."""
     part = sens.sel(output=output)
     known = [key for key in INDEX_WORDS if key in part and np.isfinite(part[key]).any()]
     rows = []
@@ -43,7 +43,7 @@ def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Tabl
             cells.append(f"({text})" if float(one[key]) <= noise else text)
         rows.append([capital(rank.name), *cells])
     title = f"All measures: {of_output(sens, output)}"
-    note = f"{HALF}; an index in brackets is no larger than chance gives a factor without influence."
+    note = f"{HALF}; an index in brackets is no larger than chance alone gives for a factor without influence."
     note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
     heads = ["Factor", *(capital(INDEX_WORDS[key]) for key in known)]
     return Table(f"measures_{output}", title, heads, rows, note)
@@ -51,7 +51,7 @@ def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Tabl
 
 def part_tables(sens: xr.Dataset) -> list[Table]:
     """List the indices of groups and those within the levels of a category, for every output."""
-    found = []
+    tables = []
     if "group_ST" in sens:
         rows = []
         for output in _with_index(sens, "group_ST"):
@@ -59,14 +59,14 @@ def part_tables(sens: xr.Dataset) -> list[Table]:
             for group in part["group"].values:
                 one = part.sel(group=group)
                 cells = [index_text(one, name) for name in ("group_S1", "group_ST")]
-                told = [capital(str(one["group_name"].item())), str(one["group_members"].item())]
-                rows.append([capital(of_output(sens, output)), *told, *cells])
+                names = [capital(str(one["group_name"].item())), str(one["group_members"].item())]
+                rows.append([capital(of_output(sens, output)), *names, *cells])
         heads = ["Output", "Group", "Factors", "First-order index", "Total index"]
         note = f"{HALF}. The first-order index of a group holds the interactions inside the group."
-        found.append(Table("groups", "What groups of factors decide", heads, rows, note))
+        tables.append(Table("groups", "What groups of factors decide", heads, rows, note))
     if "conditional_S1" in sens:
-        found.append(_level_table(sens))
-    return found
+        tables.append(_level_table(sens))
+    return tables
 
 
 def _level_table(sens: xr.Dataset) -> Table:
@@ -78,10 +78,11 @@ def _level_table(sens: xr.Dataset) -> Table:
             part = sens.sel(output=output, level=level)
             value = part[name].values
             order = [i for i in np.argsort(-np.nan_to_num(value, nan=-1.0), kind="stable") if np.isfinite(value[i])]
-            told = [f"{part['factor_name'].values[i]} {index_text(part.isel(factor=int(i)), name)}" for i in order[:4]]
+            names = part["factor_name"].values
+            leading = [f"{names[i]} {index_text(part.isel(factor=int(i)), name)}" for i in order[:4]]
             size = count(int(part["conditional_rows"]))
             words = level_text(str(sens["level"].attrs["factor"]), level)
-            rows.append([capital(of_output(sens, output)), words, "; ".join(told) or "–", size])
+            rows.append([capital(of_output(sens, output)), words, "; ".join(leading) or "–", size])
     index = INDEX_WORDS["ST" if name.endswith("ST") else "S1"]
     unit = {"saltelli": "Blocks", "grid": "Cells"}.get(str(sens.attrs.get("method")), "Rows")
     heads = ["Output", capital(category(sens)), f"Factors that matter most ({index})", unit]

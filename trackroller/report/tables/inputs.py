@@ -14,6 +14,7 @@ from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, P
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.roller.record import friction_records, is_default
+from trackroller.study.design.levels import NAMED
 
 MATERIAL_ROWS = (  # attribute, words, unit
     ("youngs_modulus", "Young's modulus E", "MPa"),
@@ -62,11 +63,11 @@ def input_row(name: str, value: Any) -> Row:
 
 def material_rows(material: Material) -> list[Row]:
     """Return the values of a material."""
-    told = [
+    rows = [
         Row(words, "not given") if (value := getattr(material, name)) is None else Row(words, number(value), unit)
         for name, words, unit in MATERIAL_ROWS
     ]
-    return [Row("name", material.name), *told, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
+    return [Row("name", material.name), *rows, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
 
 
 def factor_table(view: StudyView) -> Table | None:
@@ -77,8 +78,7 @@ def factor_table(view: StudyView) -> Table | None:
     rows = []
     for name in (*view.factors, *follows):
         levels, parameter = view.levels(name), PARAMETERS.get(name)
-        words = name in ("motor_force", "guide_curve_radius")
-        values = ", ".join(level_text(name, v, unit=words) for v in levels)
+        values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
         if view.numeric(name) and (name in follows or not view.grid) and len(levels) > 12:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
         symbol, unit = (parameter.symbol, unit_text(parameter.unit)) if parameter else ("", "")

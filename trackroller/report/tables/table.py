@@ -10,13 +10,12 @@ import numpy as np
 
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import Life, capital, count, lasting, level_text, long_name, rounded, unit_text
-
-_SPOKEN = ("motor_force", "guide_curve_radius")
+from trackroller.study.design.levels import NAMED
 
 
 @dataclass(frozen=True)
 class Table:
-    """A table: `name` of its files, title, heads with units, rows of numbers and texts, and what a reader must know.
+    """A table: `name` of its files, title, heads with units, rows of numbers and texts, and a note.
 
     `marks` are the cells (row, column) that stand out; the first column holds the heads of the rows.
     """
@@ -43,13 +42,13 @@ def cell(value: Any) -> str:
 def heading(name: str) -> str:
     """Write the head of a factor's column or row, with its unit."""
     parameter = PARAMETERS.get(name)
-    if name in _SPOKEN or parameter is None or parameter.unit == "-":
+    if name in NAMED or parameter is None or parameter.unit == "-":
         return capital(long_name(name))
     return f"{capital(long_name(name))} [{unit_text(parameter.unit)}]"
 
 
 def factor_cell(name: str, value: Any) -> Any:
     """Return a level for a table: a number if the head of the column holds the unit, otherwise words."""
-    if isinstance(value, str) or name in _SPOKEN or not np.isfinite(value):
+    if isinstance(value, str) or name in NAMED or not np.isfinite(value):
         return level_text(name, value)
     return float(value)

@@ -11,7 +11,7 @@ from trackroller.report.words.sentence import Sentence
 from trackroller.roller.record import friction_records
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
-KNOWN_ERROR = 0.05  # a median model error above this is told beside every use of the quantity
+KNOWN_ERROR = 0.05  # a larger median error of the model is stated beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_distance", "friction_energy_balance")
 
 

@@ -16,23 +16,9 @@ from trackroller.report.tables.table import Table
 from trackroller.report.words.levels import group_texts, span
 
 FRICTION = "friction_coefficient"
-DERIVED = {"spin": "spin φρ", "lean": "μ tan α"}  # quantities that `pairs` computes from the inputs
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "kalker_table": "The table of the exact theory"}
 MOST = 0.9  # a level is good enough if this share of its cases is
-FLAT = 0.1  # a factor whose levels differ less in the share of good cases is not worth a sentence
 FEWEST = 3  # smallest number of cases, rolling in both models, for a sentence
-
-
-def sentences(paired: xr.Dataset) -> list[str]:
-    """Return all sentences on the comparison of the contact models.
-
-    Parameters
-    ----------
-    paired : dataset of `trackroller.analysis.contact_models`
-    """
-    if not paired.sizes["design"]:
-        return [overview(paired)]
-    return [overview(paired), *short(paired), *details(paired)]
 
 
 def overview(paired: xr.Dataset) -> str:
@@ -46,11 +32,11 @@ def overview(paired: xr.Dataset) -> str:
         )
     rolls = paired["regime"] == 0
     both = [(str(m), int((rolls.sel(contact_model=m) & rolls[-1]).sum())) for m in paired["contact_model"].values[:-1]]
-    told = listing([f"{count} with {model}" for model, count in both])
+    rolling = listing([f"{count} with {model}" for model, count in both])
     return (
         f"Each cheaper model is compared with {_exact(reference)} in {_cases(number)} that differ in nothing but the "
-        f"model. Errors count where both models roll: {told}. A model is good enough at a level of a factor if 9 of 10 "
-        f"cases there err by {percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
+        f"model. Errors count where both models roll: {rolling}. A model is good enough at a level of a factor if 9 of "
+        f"10 cases there err by {percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
     )
 
 
@@ -58,24 +44,24 @@ def short(paired: xr.Dataset) -> list[str]:
     """Say in one sentence a model which share of the cases is within 5 %."""
     if not paired.sizes["design"]:
         return [overview(paired)]
-    found, said = errors(paired), []
+    deviations, said = errors(paired), []
     exact = paired["regime"].sel(contact_model=paired.attrs["reference"]).values
-    for model in map(str, found["contact_model"].values):
-        one = found.sel(contact_model=model)
+    for model in map(str, deviations["contact_model"].values):
+        one = deviations.sel(contact_model=model)
         if _compared(one) < FEWEST:
             rolls = f"{_compared(one) or 'no'} case{'s' * (_compared(one) != 1)} of {paired.sizes['design']}"
-            said.append(f"{NAMES[model]}: too little to compare, because both models roll in {rolls}.")
+            said.append(f"{NAMES[model]}: cannot be compared with the reference, because both models roll in {rolls}.")
             continue
         parts = [
             f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values))}"
             for q in measured(one)
             if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
         ]
-        told = f"{', '.join(parts)} of {_cases(_compared(one))}"
+        shares = f"{', '.join(parts)} of {_cases(_compared(one))}"
         own = paired["regime"].sel(contact_model=model).values
         unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
         more = f" In {_cases(unlike)} the two are not in the same regime." if unlike else ""
-        said.append(f"{NAMES[model]} is within {percent(GOOD)} of {found.attrs['reference']}: {told}.{more}")
+        said.append(f"{NAMES[model]} is within {percent(GOOD)} of {deviations.attrs['reference']}: {shares}.{more}")
     return said
 
 
@@ -84,10 +70,10 @@ def details(paired: xr.Dataset) -> list[str]:
     view = designs(paired)
     if not paired.sizes["design"] or FRICTION not in view.factors:
         return []
-    found, drive, along = errors(paired), drives(view), groups(view, FRICTION)
+    deviations, drive, along = errors(paired), drives(view), groups(view, FRICTION)
     said = []
-    for model in map(str, found["contact_model"].values):
-        one = found.sel(contact_model=model)
+    for model in map(str, deviations["contact_model"].values):
+        one = deviations.sel(contact_model=model)
         for k, text in enumerate(group_texts(drive) if _compared(one) >= FEWEST else ()):
             head = f"{NAMES[model]}{f', {text}' if DRIVE in view.factors else ''}"
             said.append(_sentence(one.where(xr.DataArray(drive.index == k, dims="design")), along, head))
@@ -104,9 +90,9 @@ def report_section(view: StudyView) -> dict[str, Any]:
         return {}
     rows = []
     if paired.sizes["design"]:
-        found = errors(paired)
-        for model, q in product(map(str, found["contact_model"].values), measured(found)):
-            e = _rolling(found[q.name].sel(contact_model=model))
+        deviations = errors(paired)
+        for model, q in product(map(str, deviations["contact_model"].values), measured(deviations)):
+            e = _rolling(deviations[q.name].sel(contact_model=model))
             if e.size:
                 cells = [percent(v) for v in (float(np.mean(e <= GOOD)), *_spread(e))]
                 rows.append([f"{model}: {q.words}", *cells, str(e.size)])
@@ -141,10 +127,10 @@ def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
     clauses: dict[str, list[str]] = {"good enough for": [], "not good enough for": []}
     for q in measured(one):
         where = levels_kept(along, one[q.name].values)
-        told = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
-        clauses["good enough for" if where else "not good enough for"].append(told)
-    said = "; ".join(f"{head} {', '.join(told)}" for head, told in clauses.items() if told)
-    return f"{who}: {said or 'nothing to compare, because no case rolls'}."
+        clause = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
+        clauses["good enough for" if where else "not good enough for"].append(clause)
+    sentence = "; ".join(f"{head} {', '.join(listed)}" for head, listed in clauses.items() if listed)
+    return f"{who}: {sentence or 'nothing to compare, because no case rolls'}."
 
 
 def _range(e: np.ndarray) -> str:
@@ -159,14 +145,14 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
     Parameters
     ----------
     along : groups of the cases
-    e : error of every case [1], shape (n,), NaN where none is
+    e : error of every case [1], shape (n,), NaN where the case has no error
     """
     shares = _shares_along(e, along)
     at = np.flatnonzero(~np.isnan(shares))
     keeps = shares[at] >= MOST
     if not keeps.any():
         return ""
-    name = DERIVED.get(along.name) or ("friction" if along.name == FRICTION else long_name(along.name))
+    name = "friction" if along.name == FRICTION else long_name(along.name)
     if keeps.all():
         return f"at every {name}"
     if not along.ordered:
@@ -190,21 +176,6 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
     return [(int(a), int(b) - 1) for a, b in edge.reshape(-1, 2)]
 
 
-def telling_factors(one: xr.Dataset) -> list[str]:
-    """Name the factors over whose levels the share of good cases changes, most of all first."""
-    view, found = designs(one), []
-    names = [n for n in view.factors if n not in (FRICTION, DRIVE)]
-    names += ["lean"] if {FRICTION, "contact_angle"} <= set(view.factors) else []
-    for name in names:
-        along = groups(view, name)
-        drawn = [q.name for q in measured(one) if q.name in ("normal_force", "friction_force", "peak_stress")]
-        shares = [_shares_along(one[name].values, along) for name in drawn]
-        changes = [float(np.nanmax(s) - np.nanmin(s)) for s in shares if np.isfinite(s).any()]
-        if changes and max(changes) > FLAT:
-            found.append((max(changes), name))
-    return [name for _, name in sorted(found, key=lambda pair: -pair[0])]
-
-
 def _shares_along(e: np.ndarray, along: Groups) -> np.ndarray:
     """Return the share of good cases in every group, NaN for a group without rolling cases."""
     return np.array([_share(e[along.index == k]) for k in range(len(along))])
@@ -216,13 +187,13 @@ def _share(e: np.ndarray) -> float:
     return float(np.mean(e <= GOOD)) if e.size else np.nan
 
 
-def gap(found: xr.Dataset, name: str) -> str:
-    """Say how far each cheaper model is off in one quantity; '' if that is not known."""
+def gap(deviations: xr.Dataset, name: str) -> str:
+    """Say by how much each cheaper model errs in one quantity; '' if it is not known."""
     said = []
-    for model in map(str, found["contact_model"].values):
-        e = _rolling(found[name].sel(contact_model=model)) if name in found else np.empty(0)
+    for model in map(str, deviations["contact_model"].values):
+        e = _rolling(deviations[name].sel(contact_model=model)) if name in deviations else np.empty(0)
         if e.size:
             middle, _, most = _spread(e)
             said.append(f"{model} is off by {percent(middle)} in the median and {percent(most)} at most")
-    words = next((q.words.split(" (")[0] for q in measured(found) if q.name == name), name)
+    words = next((q.words.split(" (")[0] for q in measured(deviations) if q.name == name), name)
     return f"{capital(words)}: {', '.join(said)}." if said else ""

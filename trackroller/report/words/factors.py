@@ -107,9 +107,9 @@ def _of_pairs(
         values["strata"] = [(c, v, e.ratio) for c, v, e in parts] if by_category else []
         medians = f"; the median is {', '.join(by_category)}" if by_category else ""
         return Sentence("pairs_both", f"{text}{medians}.", values, rows)
-    agree = "in all pairs" if same == effect.size else f"in {count(same)} pairs"
-    text = f"{_span(view, effect)} {_verb(words, up)} the {words} {_fold(effect)}"
-    text += f" (median of {pairs}; same direction {agree})."
+    agree = "all" if same == effect.size else count(same)
+    text = f"{_span(view, effect)} {_verb(words, up)} the {words} {_fold(effect)}, the median of {pairs}; "
+    text += f"the {words} {'rises' if up else 'falls'} in {agree} pairs."
     return Sentence("pairs", text, values, rows)
 
 

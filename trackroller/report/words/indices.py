@@ -55,9 +55,9 @@ def of_output(sens: xr.Dataset, output: str) -> str:
 
 
 def effect_unit(sens: xr.Dataset, output: str) -> str:
-    """Name the unit of an effect: decades on the logarithmic scale."""
+    """Name the unit of an effect; on the logarithmic scale it is a power of ten."""
     part = sens.sel(output=output)
-    return "decades" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
+    return "powers of ten" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
 
 
 def _times(sens: xr.Dataset, output: str) -> float:

@@ -7,16 +7,7 @@ import xarray as xr
 
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
-from trackroller.report.numbers import (
-    GUIDE_UNKNOWN,
-    capital,
-    count,
-    lasting,
-    listing,
-    long_name,
-    quantity,
-    with_unit,
-)
+from trackroller.report.numbers import GUIDE_UNKNOWN, capital, count, lasting, listing, long_name, quantity, with_unit
 from trackroller.report.words.sentence import Sentence
 
 

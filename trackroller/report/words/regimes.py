@@ -54,8 +54,8 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
     if most is None:
         return Sentence("share", f"{head}.", values, among)
     name, high, low = most
-    told = [f"{setting(name, level)} ({count(k)} of {count(n)} cases)" for level, k, n in (high, low)]
-    text = f"{head}, most often at {told[0]} and least at {told[1]}."
+    levels_said = [f"{setting(name, level)} ({count(k)} of {count(n)} cases)" for level, k, n in (high, low)]
+    text = f"{head}, most often at {levels_said[0]} and least at {levels_said[1]}."
     return Sentence("frequent", text, values | {"factor": name, "most": high, "least": low}, among)
 
 
@@ -69,7 +69,7 @@ def meets(view: StudyView, name: str, levels: Any) -> np.ndarray:
 
 def _confined(view: StudyView, hit: np.ndarray, among: np.ndarray) -> list[tuple[str, Any]]:
     """Return at most three factors whose levels confine an event, sorted by the cases that they leave out."""
-    found = []
+    confining = []
     for name in view.factors:
         own = view.table[name].to_numpy()
         if view.ordered(name) and len(view.levels(name)) > MOST_LEVELS:
@@ -80,8 +80,8 @@ def _confined(view: StudyView, hit: np.ndarray, among: np.ndarray) -> list[tuple
             levels = [v for v in view.levels(name) if v in there]
         outside = among & ~meets(view, name, levels)
         if outside.sum() >= 0.1 * among.sum():
-            found.append((int(outside.sum()), name, levels))
-    return [(name, levels) for _, name, levels in sorted(found, key=lambda item: -item[0])[:3]]
+            confining.append((int(outside.sum()), name, levels))
+    return [(name, levels) for _, name, levels in sorted(confining, key=lambda item: -item[0])[:3]]
 
 
 def _outwards(value: float, way: int) -> float:

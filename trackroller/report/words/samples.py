@@ -69,23 +69,23 @@ def _percent(half: float) -> str:
 
 def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
     """Judge B10 of each life at its best design point, and the probability of each target at all design points."""
-    found = []
+    widths = []
     for output in (str(n) for n in sens["output"].values if "life" in str(n)):
         best = best_point(sens, output).values.get("point")
         part = sens.sel(output=output).isel(point=best) if best is not None else sens
         if best is None or not 0 < float(part["b10"]) < np.inf or not np.isfinite(float(part["b10_high"])):
             continue
         half = float(np.ptp(estimate(part, "b10")[1:])) / 2 / float(part["b10"])
-        found.append((half, HALF_B10, f"B10 of the {part['output_name'].item()} at the best design point"))
+        widths.append((half, HALF_B10, f"B10 of the {part['output_name'].item()} at the best design point"))
     for t in range(sens.sizes.get("target", 0)):
         own = sens.isel(target=t)
         half = float(np.ptp(estimate(own, "target_probability")[1:], axis=0).max()) / 2
-        found.append((half, HALF_WIDTH, f"the probability of {target_words(sens, t)}"))
-    if not found:
+        widths.append((half, HALF_WIDTH, f"the probability of {target_words(sens, t)}"))
+    if not widths:
         return None
-    half, wanted, what = max(found, key=lambda item: item[0] / item[1])
+    half, wanted, what = max(widths, key=lambda item: item[0] / item[1])
     values = {"half": half, "wanted": wanted, "asked": asked}
-    lives = any(limit == HALF_B10 for _, limit, _ in found)
+    lives = any(limit == HALF_B10 for _, limit, _ in widths)
     if half <= wanted and (asked >= FEWEST or not lives):
         return Sentence("enough", f"Yes: {what} is known to ± {_percent(half)}, and no other less well.", values)
     times = 2.0 ** max(0, math.ceil(math.log2((half / wanted) ** 2) - 1e-9))

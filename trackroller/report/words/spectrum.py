@@ -43,9 +43,9 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
     part = damage / damage.sum()
     worst = int(np.argmax(part))
     lives = {name: float(ds[f"{body}_life_{name}"]) for name, _ in UNITS}
-    told = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
+    lengths = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
     text = (
-        f"The {body} lasts {_life(lives['shifts'])} shifts ({told}); contact {contact} fails first, and "
+        f"The {body} lasts {_life(lives['shifts'])} shifts ({lengths}); contact {contact} fails first, and "
         f"{chance(float(part[worst]))} of its damage comes from '{ds['block'].values[worst]}'."
     )
     values = {"body": body, "contact": contact, "block": str(ds["block"].values[worst]), "share": float(part[worst])}

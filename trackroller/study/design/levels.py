@@ -14,7 +14,8 @@ from typing import Any
 from trackroller.parameters import MAPPING_FIELDS
 from trackroller.study.design.factors import label
 
-NAMED = ("motor_force", "guide_curve_radius", "material_pair", "roller_material", "guide_material")  # levels have names
+OF_MATERIALS = ("material_pair", "roller_material", "guide_material")
+NAMED = ("motor_force", "guide_curve_radius", *OF_MATERIALS)  # factors whose levels have names
 EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
 
