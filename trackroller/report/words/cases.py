@@ -32,8 +32,7 @@ def valid_cases(view: StudyView) -> Sentence:
         text += f"; {kept} inside the model: elsewhere {_reason_words(reasons)}."
     if inside and view.met is not None:
         told = listing([f"`{limit}`" for limit in view.study["constraints"]])
-        share_met = "All" if valid == inside else f"{count(valid) if valid else 'None'} of the"
-        text += f" {share_met} {count(inside)} meet {told}.{_removed(view)}"
+        text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}.{_removed(view)}"
     if valid and valid < rolls:
         text += f" Statements on life and stress use the {count(valid)} unless they name another set"
         text += "; sensitivity indices also count the cases outside the model." if inside < rolls else "."
