@@ -67,7 +67,8 @@ def pairs(view: StudyView) -> xr.Dataset | None:
 def designs(paired: xr.Dataset) -> StudyView:
     """Return the designs of a comparison as a table with their inputs, without the contact model."""
     table = pd.DataFrame({str(n): v.values for n, v in paired.coords.items() if v.dims == ("design",)})
-    return StudyView(table, *(paired.attrs[key] for key in ("factors", "base", "grid")), paired.attrs)
+    attrs = paired.attrs
+    return StudyView(table, attrs["factors"], attrs["base"], attrs["grid"], attrs)
 
 
 def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
