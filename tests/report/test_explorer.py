@@ -24,6 +24,7 @@ from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, affordable_r
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
 from trackroller.report.explorer.sample import RARE, sample_rows
+from trackroller.report.figures import style
 from trackroller.solved import open_study
 from trackroller.study.file.load import parse_study
 
@@ -163,6 +164,20 @@ def test_only_rows_of_the_most_exact_model_are_compared():
     models.attrs["study"] = ds.attrs["study"].replace("velocity:", "contact_model:")
     told = [json.loads(explorer(view_of(each))["header"])["compared"] for each in (models, ds)]
     assert told == ["kalker", ""]
+
+
+def test_a_material_has_the_colour_of_the_figures_in_every_study():
+    """The same pairs in another order, beside another factor, keep their colours; other levels take the palette."""
+    pairs = ["POM / POM", "PA6 / 1.7225-normalised", "1.7225-normalised / 1.7225-normalised"]
+    found = []
+    for order in (pairs, pairs[::-1]):
+        ds = grid_study({"axial_force": [0.0, 30.0], "material_pair": order})
+        entries = {c["name"]: c for c in json.loads(explorer(view_of(ds))["header"])["columns"]}
+        pair = entries["material_pair"]
+        found.append(dict(zip(pair["texts"], pair["colours"], strict=True)))
+        assert entries["axial_force"]["colours"] == style.palette(2) and "colours" not in entries["state"]
+    assert found[0] == found[1] and len(set(found[0].values())) == 3
+    assert list(found[0].values()) == style.colours(list(found[0]), True)
 
 
 def test_a_uniform_factor_does_not_stand_on_a_logarithmic_axis():

@@ -1,11 +1,8 @@
-// Colours that keep apart in greyscale and for every kind of colour vision, and a shape for each state.
+// Colours that keep apart in greyscale and for every kind of colour vision, and a shape for each state. Levels of a factor
+// have the colours of the figures.
 const STATES = {
   light: ["#0b5a8f", "#6b7177", "#b87400", "#c03a00", "#111111", "#9a3f7e", "#00785a"],
   dark: ["#7cc0ee", "#9aa2aa", "#f0b03c", "#ff8a5c", "#f4f4f4", "#e39ac8", "#4fc9a4"],
-};
-const LEVELS = {
-  light: ["#0b5a8f", "#c07700", "#00785a", "#b23a7a", "#5b5b5b", "#6f8f00", "#7a4fb5", "#111111"],
-  dark: ["#7cc0ee", "#f0b03c", "#4fc9a4", "#f29ac6", "#b5b5b5", "#c4de5a", "#bda2ec", "#f4f4f4"],
 };
 // cividis (Nuñez, Anderton and Renslow 2018), read at eight places
 const CIVIDIS = ["#00224e", "#123570", "#3b496c", "#575d6d", "#797877", "#a59c74", "#d3c164", "#fee838"];
@@ -39,10 +36,9 @@ function sequence() {
 
 // Colours by a column: an index into `list` for each row, and entries for the legend.
 export function colouring(column, scale, rows) {
-  const kind = isDark() ? "dark" : "light";
   const index = new Uint8Array(rows);
   if (column.codes && (!column.number || column.levels.length <= 8)) {
-    const list = column.name === "state" ? STATES[kind] : LEVELS[kind];
+    const list = column.colours ?? STATES[isDark() ? "dark" : "light"];
     for (let i = 0; i < rows; i++) index[i] = column.codes[i] < 0 ? list.length : column.codes[i] % list.length;
     const legend = column.texts.map((text, i) => [list[i % list.length], text]);
     return { list: [...list, "#888888"], index, legend };

@@ -12,10 +12,13 @@ from typing import Any
 import numpy as np
 
 from trackroller.report.explorer.rows import Column
+from trackroller.report.figures.style import colours
+from trackroller.study.design.levels import OF_MATERIALS
 
 # a page of 6 MB, its figures included, can be sent by mail and opens in three seconds
 MOST_BYTES, MOST_ROWS = 4_500_000, 50_000
 PROBED = 2_000
+MOST_COLOURS = 40  # levels that get a colour each, the same as in the figures
 
 
 def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
@@ -44,6 +47,8 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
         if column.levels is not None:
             entry["levels"] = [plain_level(level) for level in column.levels]
             entry["texts"] = list(column.texts)
+            if column.name != "state":
+                entry["colours"] = colours(column.texts[:MOST_COLOURS], column.name in OF_MATERIALS)
             entry["number"] = all(isinstance(level, float) for level in column.levels)
         header.append(entry | {"type": array.dtype.str[1:], "start": start, "bytes": len(part)})
         parts.append(part)
