@@ -328,7 +328,7 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
     below, above = (
         int(((np.arange(40) % 4 > 0) & hit).sum()) for hit in (stress[:, 0, 0] < 360, stress[:, 0, 0] > 720)
     )
-    assert f"{share(below, 30)} of the 30 rolling designs stay below the fatigue limit" in info.sentence
+    assert f"{share(below, 30)} of the 30 rolling cases stay below the fatigue limit" in info.sentence
     assert f"{share(above, 30)} exceed its tensile strength" in info.sentence
     assert "10 % have failed at 0.5 times its median life" in info.sentence
     assert "10 cases that do not roll" in info.caption
