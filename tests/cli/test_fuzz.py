@@ -168,7 +168,7 @@ def test_tables(tmp_path_factory, rows, mark):
 @pytest.mark.parametrize(
     "raw",
     [
-        b"\xff\xfe",
+        b"\xff\xfe\xff",
         b"\x00",
         b"a" * 100_000,
         b"[" * 5_000,

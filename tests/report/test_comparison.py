@@ -175,7 +175,7 @@ def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_
     assert set(drawn) >= FIGURES and "48 cases that differ in nothing but the model" in text
     gathered = study(tmp_path, factors, design="lhs", samples=24, models=["sliding", "kalker"])
     drawn, text = compared(gathered, tmp_path)
-    assert not set(drawn) & FIGURES and "The contact models cannot be compared: no design was solved" in text
+    assert not set(drawn) & FIGURES and "The contact models cannot be compared: no case was solved" in text
 
 
 def test_without_kalker_fastsim_is_the_reference(tmp_path):

@@ -37,6 +37,8 @@ def print_facts(ds: xr.Dataset) -> None:
     if facts.not_given:
         print_text("Values from 'example' were not given: the paper's example has them. Give yours.")
     print_text(facts.options, "options")
+    if regime == "failed":  # nothing else is known
+        return
     if any(contact.carries for contact in facts.contacts):
         heads = ["quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit"]
         print_table(heads, side_by_side(facts.contacts), (1, 2))
