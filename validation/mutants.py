@@ -101,7 +101,7 @@ DECISIONS = {
     "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("analysis/designs.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
     "median-case": ("analysis/designs.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
-    "beyond-data": ("analysis/table.py", "> limit) | np.isposinf", "> limit) & np.isposinf", DESIGNS),
+    "beyond-data": ("analysis/lives.py", "> limit) | endless", "> limit) & endless", DESIGNS),
     "class-of-a-value": ("analysis/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
     "target-met": ("analysis/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
     "all-targets": ("analysis/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),

@@ -165,13 +165,14 @@ def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
 OVERFLOW = """(() => {
   const width = document.documentElement.clientWidth, out = [];
   for (const e of document.querySelectorAll('body *')) {
-    if (e.closest('.wide, .cases, svg, script')) continue;  // a wide table scrolls inside itself
+    if (e.closest('.wide, .cases, figure a, svg, script')) continue;  // they scroll inside themselves
     const box = e.getBoundingClientRect();
     if (box.width && (box.right > width + 1 || box.left < -1)) out.push(e.tagName + ' ' + e.textContent.slice(0, 30));
+    if (e.querySelector('.lines')) continue;  // the lines of the explorer use the margins of the page
     if (e.scrollWidth > e.clientWidth + 1 && e.clientWidth && !['SUB', 'I', 'A', 'SELECT', 'INPUT'].includes(e.tagName))
       out.push('inner ' + e.tagName + ' ' + e.textContent.slice(0, 30));
   }
-  for (const e of document.querySelectorAll('.wide, .cases'))
+  for (const e of document.querySelectorAll('.wide, .cases, figure a'))
     if (e.getBoundingClientRect().right > width + 1) out.push('wide ' + e.textContent.slice(0, 30));
   const images = [...document.images].filter(i => !i.complete || !i.naturalWidth).length;
   return {width, page: document.documentElement.scrollWidth, out: out.slice(0, 5), images};

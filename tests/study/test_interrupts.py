@@ -106,7 +106,7 @@ def stopped_runs(place, tries, seed, sent, phases):
         again = phase == "solve" and number % (8 * len(phases)) == 0
         remove(place / "rough", ("chunks", "study.nc") if again else deleted)
         if words[0] in ("report", "explore") and not (place / "rough/stopped/study.nc").is_file():
-            command(place, PHASES["solve"][1], "rough")
+            command(place, PHASES["everything"][1], "rough")  # makes deleted results again, too
         code, told = stopped_after(chance.uniform(0.1, 1.05) * lengths[phase], place, words, "rough", sent)
         assert code in (0, *(STOPPED_CODES if sent == signal.SIGINT else (-sent,))), f"{phase}: {code} {told}"
         assert "Traceback" not in told, f"{phase}: {told}"

@@ -24,12 +24,14 @@ PLAIN_RESULTS = (
     "roller_life_hours",
     "guide_life_hours",
     "pair_life_hours",
+    "pair_life_to_first_limit_hours",
     "first_to_fail",
     *WHOLE_RESULTS,
     "stopped",
     "energy_residual",
     "contact_model_used",
 )
+OF_BODIES = ("validity_body", "life_to_first_limit_hours", "limiting_mechanism")
 SURFACE_SHARE = 0.01  # of the smaller semi-axis: a peak above this depth counts as lying at the surface
 
 
@@ -59,7 +61,7 @@ def case_columns(ds: xr.Dataset, dims: Sequence[str]) -> dict[str, np.ndarray]:
         columns |= {f"{name}_{i}": values for i, values in enumerate(column(name).T, 1)}
     if {"peak_stress", "peak_z"} <= set(ds):
         ds = ds.assign(at_surface=at_surface(ds))
-    needed = {n: {"contact", "body"} for n in (*BODY_RESULTS, "at_surface")} | {"validity_body": {"body"}}
+    needed = {n: {"contact", "body"} for n in (*BODY_RESULTS, "at_surface")} | {name: {"body"} for name in OF_BODIES}
     of_bodies = {n: column(n) for n, inner in needed.items() if n in ds and inner <= set(ds[n].dims)}
     for name, table in _of_bodies(of_bodies).items():
         columns |= {f"{name}_{body}": values for body, values in zip(ds["body"].values, table.T, strict=True)}
@@ -85,7 +87,7 @@ def _of_bodies(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     ----------
     results : results by name, shape (n, contacts, bodies) or (n, bodies)
     """
-    worse_of = {"validity": results["validity_body"]} if "validity_body" in results else {}
+    worse_of = {name.removesuffix("_body"): results[name] for name in OF_BODIES if name in results}
     if "peak_stress" in results:
         peak = results["peak_stress"]
         worse = np.argmax(np.where(np.isnan(peak), -np.inf, peak), axis=1)[:, None]

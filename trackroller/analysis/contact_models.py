@@ -11,7 +11,8 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.analysis.columns import CONTACT_RESULTS, input_columns
-from trackroller.analysis.table import LIVES, StudyView
+from trackroller.analysis.lives import LIVES
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.roller.geometry import contact_geometry
 from trackroller.study.outputs import flat

@@ -13,8 +13,9 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.limits import column
+from trackroller.analysis.lives import FIRST_LIMIT, body_lives, first_failing
 from trackroller.analysis.robustness import b10, material_deviations
-from trackroller.analysis.table import BODIES, StudyView
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import parse
@@ -160,13 +161,13 @@ class Designs:
         for name, rows in (("rolls", view.rolling), ("valid", self.usable)):
             found[name] = self._count(rows)
         found = found.assign(**self._spread())
-        first = view.column("first_to_fail", FIRST_TO_FAIL.index("unknown"))
+        first = first_failing(view, self.goal[0])
         for code, word in enumerate(FIRST_TO_FAIL):
             found[f"first_{word}"] = self._count(self.usable & (first == code))
-        for body in BODIES:
-            case = self._least(view.column(f"{body}_life_hours"), self.usable)
-            found[f"worst_{body}"] = np.where(case < 0, np.nan, view.column(f"{body}_life_hours")[case])
-            found[f"worst_{body}_beyond"] = (case >= 0) & view.beyond_data(f"{body}_life_hours")[case]
+        for body, name in body_lives(self.goal[0]).items():
+            case = self._least(view.column(name), self.usable)
+            found[f"worst_{body}"] = np.where(case < 0, np.nan, view.column(name)[case])
+            found[f"worst_{body}_beyond"] = (case >= 0) & view.beyond_data(name)[case]
         for name, margin in (("slip_margin", slip_margin(view)), ("lift_off_margin", lift_off_margin(view))):
             case = self._least(margin, view.rolling)
             found[name] = np.where(case < 0, np.nan, margin[case])
@@ -248,12 +249,12 @@ class Designs:
         """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond.
 
         Cases that are not valid have life 0. The scatter of the material of the body that fails first counts if the
-        study asks for it.
+        study asks for it, and if the S-N curve decides.
         """
         view = self.view
         lives = np.where(self.usable, view.column(self.goal[0]), 0.0)
-        own = material_deviations(view.results) if view.results else {}
-        guide = view.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
+        own = material_deviations(view.results) if view.results and self.goal != FIRST_LIMIT else {}
+        guide = first_failing(view, self.goal[0]) == FIRST_TO_FAIL.index("guide")
         scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
         cases = [self.cases_of(i) for i in range(len(self.size))]
         ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T

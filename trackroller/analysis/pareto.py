@@ -232,7 +232,8 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
     """
     found: dict[str, str] = {}
     known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
-    lives = ["pair_life_hours"] * known + ["roller_life_hours"]  # of the pair where the guide's hours are known
+    # of the pair where the guide's hours are known
+    lives = ["pair_life_to_first_limit_hours", *["pair_life_hours"] * known, "roller_life_hours"]
     lives = [n for n in lives if n in ds and np.isfinite(ds[n]).any()]
     if lives:
         found[lives[0]] = "max"

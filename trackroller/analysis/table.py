@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -14,22 +13,15 @@ import xarray as xr
 
 from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import allowed_cases
-from trackroller.parameters import EXACTNESS, FIRST_TO_FAIL, PARAMETERS
+from trackroller.analysis.lives import FIRST_LIMIT, LIVES, beyond_data
+from trackroller.parameters import EXACTNESS, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 
-LIVES = (
-    ("pair_life_hours", "life of the pair", "h"),
-    ("roller_life_hours", "life of the roller", "h"),
-    ("guide_life_hours", "life of the guide", "h"),
-    ("life_cycles_roller", "life of the roller", "overrollings"),
-    ("life_cycles_guide", "life of the guide", "overrollings"),
-)
 BODIES = ("roller", "guide")
-DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 MOST_LEVELS = 12  # a factor with more levels is divided into classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
 
@@ -213,13 +205,24 @@ class StudyView:
     def life(self) -> tuple[str, str, str] | None:
         """Return the column, wording and unit of the life to show, or None when the study has no life.
 
-        It is the life of the pair where the hours of the guide are known in a case, otherwise that of the roller.
+        It is the life to the first limit if the study asks for limits. Otherwise it is the life of the pair where the
+        hours of the guide are known in a case, and that of the roller where they are not.
         """
-        known = self.has("guide_life_hours")
-        for column, words, unit in LIVES[0 if known else 1 :]:
+        for column, words, unit in (FIRST_LIMIT, *self.fatigue_lives):
             if column in self.table and (self.table[column] > 0).any():
                 return column, words, unit
         return None
+
+    @property
+    def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
+        """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of the guide."""
+        return LIVES[0 if self.has("guide_life_hours") else 1 :]
+
+    @cached_property
+    def limits(self) -> tuple[str, ...]:
+        """Return the names of the limits by their numbers in the columns `limiting_mechanism_`."""
+        known = self.results is not None and "limiting_mechanism" in self.data
+        return tuple(self.data["limiting_mechanism"].attrs["flag_meanings"].split()) if known else ()
 
     @cached_property
     def regime(self) -> np.ndarray:
@@ -286,20 +289,7 @@ class StudyView:
         ----------
         column : a life, such as `pair_life_hours` or `life_cycles_guide`
         """
-        if "life" not in column:
-            return np.zeros(len(self.table), dtype=bool)
-        if not any(body in column for body in BODIES):
-            guide = self.column("first_to_fail") == FIRST_TO_FAIL.index("guide")
-            return np.where(guide, *(self.beyond_data(f"{body}_life_hours") for body in ("guide", "roller")))
-        body = "guide" if "guide" in column else "roller"
-        names = pd.Series(self.material(body))
-        stored = json.loads(str(self.attrs.get("materials", "{}")))
-        knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
-        limit = np.minimum(names.map(knees).to_numpy(dtype=float), DATA_END)
-        beyond: np.ndarray = (self.column(f"life_cycles_{body}") > limit) | np.isposinf(
-            self.column(f"{body}_life_hours")
-        )
-        return beyond
+        return beyond_data(self, column)
 
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from trackroller.damage.limit import BODIES, Limit, Results, SolvedRollers, variables
+from trackroller.damage.pair import first_failure
 
 GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
@@ -16,6 +17,7 @@ RESULTS = variables(
     ("utilisation", _LB, "1", "", "load over the load at which the limit is reached"),
     ("life_hours_by_limit", _LB, "h", "", "hours to the limit at the failure probability"),
     ("life_to_first_limit_hours", ("body",), "h", "", "hours to the first limit that is known"),
+    ("pair_life_to_first_limit_hours", (), "h", "", "hours to the first limit of roller or guide that is known"),
 )
 
 
@@ -37,7 +39,7 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
     -------
     dict of str to numpy.ndarray
         `utilisation` [1], `life_hours_by_limit` [h], (n, limit, body); `life_to_first_limit_hours` [h] and
-        `limiting_mechanism`, (n, body).
+        `limiting_mechanism`, (n, body); `pair_life_to_first_limit_hours` [h], (n,).
 
     Notes
     -----
@@ -66,9 +68,11 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
     missing = (~known & concerned).any(axis=1)
     rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
     which = np.asarray(numbers, dtype=int)[np.argmax(rank, axis=1)]
+    lives = np.where(np.isinf(first) & missing, np.nan, first)
     return {
         "utilisation": used,
         "life_hours_by_limit": hours,
-        "life_to_first_limit_hours": np.where(np.isinf(first) & missing, np.nan, first),
+        "life_to_first_limit_hours": lives,
+        "pair_life_to_first_limit_hours": first_failure(*lives.T)[0],
         "limiting_mechanism": np.where(known.any(axis=1), which, unknown),
     }

@@ -32,6 +32,13 @@ FIELDS = {"x", "y", "z", "grid"}
 
 # Outputs that are analysed by default: name -> (variable, selection, how contacts are joined, scale, words).
 DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
+    "pair_life_to_first_limit_hours": (
+        "pair_life_to_first_limit_hours",
+        {},
+        "min",
+        "log10",
+        "life to the first limit",
+    ),
     "pair_life_hours": ("pair_life_hours", {}, "min", "log10", "life of the pair"),
     "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
     "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),

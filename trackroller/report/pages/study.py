@@ -22,6 +22,7 @@ from trackroller.report.numbers import capital, count, lives_in_years, long_name
 from trackroller.report.tables.cases import reason_table, regime_table, validity_table
 from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.designs import best_table
+from trackroller.report.tables.first_limits import first_limit_table
 from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import (
     Row,
@@ -42,6 +43,7 @@ from trackroller.report.words.comparison import report_section
 from trackroller.report.words.design_points import best_point
 from trackroller.report.words.designs import size_words
 from trackroller.report.words.in_short import in_short
+from trackroller.report.words.limits import limit_sentences
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
@@ -129,9 +131,9 @@ def _doubts(view: StudyView) -> list[str]:
 def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     """Return the tables and the sentences of each section; a sentence that a figure has is not repeated."""
     sens, error = view.analysis, friction_error(view)
-    decide: list[Table | None] = [best_table(view)]
+    decide: list[Table | None] = [best_table(view), first_limit_table(view)]
     front = study_pareto(view)
-    said: list[str] = []
+    said = [s.text for s in limit_sentences(view)]
     if front is not None:
         said.append(pareto_sentence(front, view).text)
         decide.append(pareto_table(front, view, error))

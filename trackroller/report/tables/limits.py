@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from trackroller.analysis.table import DATA_END
+from trackroller.analysis.lives import DATA_END
 from trackroller.damage import LIMITS
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.report.numbers import lasting, listing, number, rounded, unit_text

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.analysis.table import BODIES, DATA_END
+from trackroller.analysis.lives import DATA_END
+from trackroller.analysis.table import BODIES
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.parameters import FIRST_TO_FAIL

@@ -1,0 +1,93 @@
+"""Which limit ends the pair first, which factors decide it, and how it turns the order of the designs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from trackroller.analysis.designs import Designs
+from trackroller.analysis.lives import FIRST_LIMIT, first_failing
+from trackroller.analysis.table import BODIES, MOST_LEVELS, StudyView
+from trackroller.damage import LIMITS
+from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.study.outputs import flat
+
+AMONG = 20  # designs whose order is compared, the best by either life
+
+
+def first_limit(view: StudyView) -> np.ndarray:
+    """Return the name of the limit that ends the pair first in every case, shape (n,); '' where it is not known."""
+    guide = first_failing(view, FIRST_LIMIT[0]) == FIRST_TO_FAIL.index("guide")
+    numbers = [np.nan_to_num(view.column(f"limiting_mechanism_{body}", np.nan), nan=-1).astype(int) for body in BODIES]
+    names = np.array([*(name if name in LIMITS else "" for name in view.limits), ""], dtype=object)
+    return np.asarray(names[np.where(guide, numbers[1], numbers[0])])
+
+
+def deciding(view: StudyView, names: np.ndarray, most: int = 2) -> list[str]:
+    """Return the factors that tell most about the first limit of the valid cases, the strongest first.
+
+    Parameters
+    ----------
+    view : the study
+    names : first limit of every case, shape (n,)
+    most : number of factors at most
+
+    Notes
+    -----
+    Factors are ranked by the mutual information of their levels and the first limit; those that tell nothing are left
+    out, and those with more than `MOST_LEVELS` levels, because the table would not be readable.
+    """
+    told: dict[str, float] = {}
+    for factor in (f for f in view.factors if len(view.levels(f)) <= MOST_LEVELS):
+        counts = pd.crosstab(view.table[factor].to_numpy()[view.valid], names[view.valid]).to_numpy(dtype=float)
+        share = counts / max(counts.sum(), 1.0)
+        expected = share.sum(axis=1, keepdims=True) * share.sum(axis=0, keepdims=True)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            told[factor] = float(np.nansum(share * np.log(share / expected)))
+    return sorted((f for f in told if told[f] > 1e-9), key=lambda f: -told[f])[:most]
+
+
+@dataclass(frozen=True)
+class Turn:
+    """How the order of the best designs changes from the life by the S-N curve to the first limit.
+
+    Attributes
+    ----------
+    correlation : rank correlation (Spearman) of the worst cases of the designs [1]
+    before, after : designs (rows of `Designs.table`), the best first, by the S-N curve and by the first limit
+    """
+
+    correlation: float
+    before: tuple[int, ...]
+    after: tuple[int, ...]
+
+
+def turn(designs: Designs) -> Turn | None:
+    """Return how the order of at most `AMONG` designs turns; None with fewer than three designs or without lives."""
+    view = designs.view
+    published = next((life for life in view.fatigue_lives if life[0] in view.table), None)
+    if designs.goal != FIRST_LIMIT or published is None or not designs.comparable:
+        return None
+    by_fatigue = replace(designs, goal=published).table
+    known = designs.table.index[designs.table["valid"] > 0]
+    after = [int(i) for i in known[:AMONG]]
+    before = [int(i) for i in by_fatigue.index if i in after]
+    if len(after) < 3:
+        return None
+    places = pd.Series(range(len(before)), index=before)[after]
+    return Turn(float(np.corrcoef(places, range(len(after)))[0, 1]), tuple(before), tuple(after))
+
+
+def without_first(view: StudyView, case: int) -> tuple[str, float, str, float]:
+    """Return first limit and hours of a case, and limit and hours that come next if the first were moved far away."""
+    used, hours = (flat(view.data, name, view.dims)[case] for name in ("utilisation", "life_hours_by_limit"))
+    names = view.data["limit"].values.tolist()
+    at_once = np.array([LIMITS[name].ends_at_once for name in names])[:, None]
+    timeless = np.where(used >= 1.0, 0.0, np.inf)
+    reached = np.where(np.isnan(hours), timeless, np.where((used >= 1.0) & at_once, 0.0, hours)).min(axis=1)
+    use = np.nan_to_num(used, nan=0.0).max(axis=1)
+    order = np.lexsort((-use, reached))
+    first, second = int(order[0]), int(order[1]) if len(order) > 1 else int(order[0])
+    return names[first], float(reached[first]), names[second], float(reached[second])

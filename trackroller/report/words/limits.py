@@ -1,0 +1,78 @@
+"""Sentences on limits: which one ends the pair first, how the order of the designs turns, and what moving it gains."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trackroller.analysis.designs import Designs
+from trackroller.analysis.first_limits import first_limit, turn, without_first
+from trackroller.analysis.lives import FIRST_LIMIT, body_lives
+from trackroller.analysis.table import StudyView
+from trackroller.damage import LIMITS
+from trackroller.report.numbers import capital, count, lasting, listing, rounded
+from trackroller.report.words.designs import design_words
+from trackroller.report.words.sentence import Sentence
+
+
+def title(name: str) -> str:
+    """Return the words of a limit without the remark in brackets."""
+    return LIMITS[name].title.partition(" (")[0]
+
+
+def limit_of_best(view: StudyView) -> Sentence | None:
+    """Say which limit ends the best design first, and what it would gain without it; None without limits."""
+    designs = Designs.of(view)
+    if designs is None or designs.goal != FIRST_LIMIT or not designs.comparable or not designs.table.iloc[0]["valid"]:
+        return None
+    return _gain(designs)
+
+
+def limit_sentences(view: StudyView) -> list[Sentence]:
+    """Say how often each limit comes first, and how the order of the designs turns; nothing without limits."""
+    designs = Designs.of(view)
+    if designs is None or designs.goal != FIRST_LIMIT:
+        return []
+    names = first_limit(view)[view.valid]
+    counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
+    told = [f"{title(n)} in {count(k)}" for n, k in counts.items()]
+    text = f"The first limit of the pair is {listing(told)} of the {count(int(view.valid.sum()))} valid cases."
+    said = [Sentence("first_limits", text, counts, view.valid)] if counts else []
+    order = turn(designs)
+    if order is not None:
+        said.append(_turned(designs, order.before, order.after, order.correlation))
+    return said
+
+
+def _gain(designs: Designs) -> Sentence:
+    """Say what the best design would last at its worst condition without its first limit."""
+    case = int(designs.table.iloc[0]["worst_case"])
+    first, now, following, then = without_first(designs.view, case)
+    lives = body_lives("").values()
+    beyond = following == "fatigue" and any(designs.view.beyond_data(name)[case] for name in lives)
+    where = " at its worst condition" if designs.conditions else ""
+    text = f"{capital(title(first))} ends the best design first{where}"
+    if np.isinf(now):
+        text = f"The best design reaches no limit{where}"
+    elif np.isinf(then):
+        text += "; without it, it would reach no other limit that is known"
+    else:
+        text += f"; without it, {title(following)} would follow after {lasting(then, 'h', beyond)}"
+    values = {"first": first, "hours": now, "next": following, "then": then, "case": case}
+    return Sentence("gain", f"{text}.", values, designs.usable)
+
+
+def _turned(designs: Designs, before: tuple[int, ...], after: tuple[int, ...], correlation: float) -> Sentence:
+    """Say how many designs change their place, and which one changes most."""
+    rows = designs.usable
+    steps = {i: before.index(i) - after.index(i) for i in after}
+    changed = sum(step != 0 for step in steps.values())
+    values = {"changed": changed, "correlation": correlation, "before": before, "after": after}
+    if not changed:
+        text = f"Ranked by the life of the S-N curve alone, the best {count(len(after))} designs have the same order."
+        return Sentence("turned", text, values, rows)
+    most = max(steps, key=lambda i: abs(steps[i]))
+    name = design_words(designs, designs.table.iloc[after.index(most)])
+    text = f"Ranked by the first limit instead of the S-N curve alone, {count(changed)} of the best "
+    text += f"{count(len(after))} designs change their place (rank correlation {rounded(correlation, 2)}); "
+    text += f"most of all {name}, from {before.index(most) + 1} to {after.index(most) + 1}."
+    return Sentence("turned", text, values, rows)
