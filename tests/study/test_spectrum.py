@@ -254,3 +254,11 @@ def test_command_prints_the_shifts_of_the_delivered_example(tmp_path):
     (tmp_path / "wrong.yaml").write_text("blocks: [{name: a, distanc: 3}]")
     refused = CliRunner().invoke(app, ["spectrum", str(tmp_path / "wrong.yaml")])
     assert isinstance(refused.exception, InputError) and "distanc" in str(refused.exception)
+
+
+def test_a_life_beyond_the_data_is_said_to_be():
+    """More overrollings than N_k, or than 1e8, lie beyond the S-N data; fewer do not."""
+    for force, beyond in ((-40.0, True), (-300.0, False)):
+        ds = solved(spectrum({"distance": 1000.0, "radial_force": force, "guide_overrollings": 10.0}))
+        total = float(ds.roller_life_shifts) * float(ds.overrollings.sel(body="roller").sum())
+        assert (total > 5e6) == beyond and ("beyond the S-N data" in summary(ds)[0]) == beyond

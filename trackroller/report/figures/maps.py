@@ -18,7 +18,7 @@ from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
-from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
+from trackroller.report.numbers import capital, count, factor_label, level_text, long_name, rounded, with_unit
 from trackroller.report.words.cases import extremes
 from trackroller.report.words.levels import held_words
 from trackroller.report.words.regimes import occurrence
@@ -59,6 +59,10 @@ def life_map(view: StudyView) -> style.Drawn:
     over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
     style.head(figure, capital(over))
     how = "Grey cells have no life" if view.grid else "Each cell is the median of its cases; grey cells have no life"
+    drawn = view.rolling[rows.index]
+    beyond = int((view.beyond_data(column)[rows.index] & drawn).sum())
+    if beyond:
+        how += f"; {count(beyond)} of the {count(int(drawn.sum()))} lives drawn lie beyond the S-N data (in brackets)"
     inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
     said = extremes(view, column, words, unit, pair, inside)
     return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held_words(held)}".strip(), said.text)
@@ -117,18 +121,20 @@ def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, col
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.tick_params(length=2)
-    _written(axes, life, image)
+    beyond = pd.Series(view.beyond_data(column)[rows.index], rows.index, dtype=float)
+    _written(axes, life, _table(beyond.where(view.rolling[rows.index]), keys, shape) >= 0.5, image)
     return image
 
 
-def _written(axes: Axes, values: np.ndarray, image: Any) -> None:
-    """Write the lives into the cells of a small map."""
+def _written(axes: Axes, values: np.ndarray, beyond: np.ndarray, image: Any) -> None:
+    """Write the lives into the cells of a small map, those beyond the S-N data in brackets."""
     if values.size > MOST_WRITTEN or values.shape[1] > MAX_TICKS:
         return
     for (j, i), value in np.ndenumerate(values):
         if np.isfinite(value):
             colour = "black" if image.norm(value) > 0.55 else "white"
-            axes.text(i + 0.5, j + 0.5, rounded(float(value), 2), color=colour, ha="center", va="center", fontsize=7)
+            text = f"({rounded(float(value), 2)})" if beyond[j, i] else rounded(float(value), 2)
+            axes.text(i + 0.5, j + 0.5, text, color=colour, ha="center", va="center", fontsize=7)
 
 
 def set_ticks(axis: Axis, texts: list[str]) -> None:

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.analysis.lives import DATA_END
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.numbers import chance, life, listing
+from trackroller.report.numbers import BEYOND, chance, life, listing
 from trackroller.report.words.sentence import Sentence
 from trackroller.study.spectrum.solve import BODIES
 
@@ -44,12 +46,20 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
     worst = int(np.argmax(part))
     lives = {name: float(ds[f"{body}_life_{name}"]) for name, _ in UNITS}
     lengths = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
+    lengths += f", {BEYOND}" if _beyond(ds, body, lives["shifts"]) else ""
     text = (
         f"The {body} lasts {_life(lives['shifts'])} shifts ({lengths}); contact {contact} fails first, and "
         f"{chance(float(part[worst]))} of its damage comes from '{ds['block'].values[worst]}'."
     )
     values = {"body": body, "contact": contact, "block": str(ds["block"].values[worst]), "share": float(part[worst])}
     return Sentence("spectrum", text, values | lives)
+
+
+def _beyond(ds: xr.Dataset, body: str, shifts: float) -> bool:
+    """Say whether a body lasts more overrollings than its fatigue limit or the S-N data reach."""
+    material = json.loads(str(ds.attrs.get("materials", "{}"))).get(f"{body}_material", {})
+    most = min(float(material.get("cycles_at_fatigue_limit", np.inf)), DATA_END)
+    return shifts * float(ds["overrollings"].sel(body=body).sum()) > most
 
 
 def _at_most(ds: xr.Dataset, body: str) -> str:
