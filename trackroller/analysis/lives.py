@@ -47,9 +47,10 @@ def beyond_data(view: StudyView, column: str) -> np.ndarray:
         own = body_lives(column)
         return np.where(guide, *(beyond_data(view, own[body]) for body in ("guide", "roller")))
     body = "guide" if "guide" in column else "roller"
-    if "first_limit" in column:  # only fatigue has S-N data
+    if "first_limit" in column:
         fatigue = view.column(f"limiting_mechanism_{body}") == view.limits.index("fatigue")
-        return np.asarray(fatigue & beyond_data(view, f"{body}_life_hours"))
+        rate = view.column(f"life_cycles_{body}") / view.column(f"{body}_life_hours")  # overrollings an hour
+        return np.asarray((fatigue & beyond_data(view, f"{body}_life_hours")) | (view.column(column) * rate > DATA_END))
     names = pd.Series(view.material(body))
     stored = json.loads(str(view.attrs.get("materials", "{}")))
     knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
