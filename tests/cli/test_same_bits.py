@@ -27,7 +27,7 @@ ANALYSE += "from trackroller.report.build import write_analysis; "
 ANALYSE += "write_analysis(open_study('results/bits/study.nc'), pathlib.Path(sys.argv[1]))"
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_command_and_workflow_write_the_same_analysis(tmp_path):
     (tmp_path / "study.yaml").write_text(STUDY)
     trackroller("run", "study.yaml", "-q", cwd=tmp_path)

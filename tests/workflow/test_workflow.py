@@ -66,6 +66,7 @@ def captions_in_the_archive(path: Path, out: Path) -> None:
     assert captions and all(text.split(".")[0][:40] in page + told for text in captions)
 
 
+@pytest.mark.slow
 def test_killed_study_goes_on_to_its_report_and_after_a_change_runs_only_what_depends_on_it(place, tmp_path_factory):
     program = tmp_path_factory.mktemp("program")
     snakefile = copy_program(program)
