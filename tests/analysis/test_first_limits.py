@@ -63,6 +63,16 @@ def test_without_its_first_limit_a_case_lasts_until_the_next(solved, rows):
         assert own[names.index(first)] == pytest.approx(hours) and own[names.index(following)] == pytest.approx(then)
 
 
+def test_a_life_that_is_not_known_is_no_first_limit():
+    """Above its fatigue limit a guide without a number of overrollings does not fail at once."""
+    base = {key: value for key, value in STUDY["base"].items() if key != "guide_overrollings_per_hour"}
+    unknown = tr.run(parse_study(STUDY | {"base": base | {"radial_force": -200}}), progress=False)
+    used = unknown.data["utilisation"].sel(limit="fatigue", body="guide")
+    assert (used > 1).any() and unknown.data["life_hours_by_limit"].sel(body="guide").isnull().all()
+    for case, pair in enumerate(unknown.view.column("pair_life_to_first_limit_hours")):
+        assert without_first(unknown.view, case)[1] == pytest.approx(pair, rel=1e-12)
+
+
 def test_designs_are_ranked_by_the_first_limit_and_the_turn_is_a_rank_correlation(solved, rows):
     _, fatigue, pair = rows
     view, designs = solved.view, Designs.of(solved.view)

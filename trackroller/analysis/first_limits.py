@@ -11,6 +11,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.lives import FIRST_LIMIT, first_failing
 from trackroller.analysis.table import BODIES, MOST_LEVELS, StudyView
 from trackroller.damage import LIMITS
+from trackroller.damage.verdict import hours_until_reached
 from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.study.outputs import flat
 
@@ -85,8 +86,8 @@ def without_first(view: StudyView, case: int) -> tuple[str, float, str, float]:
     used, hours = (flat(view.data, name, view.dims)[case] for name in ("utilisation", "life_hours_by_limit"))
     names = view.data["limit"].values.tolist()
     at_once = np.array([LIMITS[name].ends_at_once for name in names])[:, None]
-    timeless = np.where(used >= 1.0, 0.0, np.inf)
-    reached = np.where(np.isnan(hours), timeless, np.where((used >= 1.0) & at_once, 0.0, hours)).min(axis=1)
+    timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values[:, None]
+    reached = np.nan_to_num(hours_until_reached(used, hours, timed, at_once), nan=np.inf, posinf=np.inf).min(axis=1)
     use = np.nan_to_num(used, nan=0.0).max(axis=1)
     order = np.lexsort((-use, reached))
     first, second = int(order[0]), int(order[1]) if len(order) > 1 else int(order[0])

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
+from trackroller.damage.limit import BODIES
 from trackroller.damage.pair import first_failure
 from trackroller.parameters import FIRST_TO_FAIL
 
@@ -28,7 +29,7 @@ DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 def body_lives(goal: str) -> dict[str, str]:
     """Return the columns of the lives of roller and guide that belong to the life of a pair."""
     name = "life_to_first_limit_hours_{}" if goal == FIRST_LIMIT[0] else "{}_life_hours"
-    return {body: name.format(body) for body in ("roller", "guide")}
+    return {body: name.format(body) for body in BODIES}
 
 
 def first_failing(view: StudyView, goal: str) -> np.ndarray:
@@ -42,7 +43,7 @@ def beyond_data(view: StudyView, column: str) -> np.ndarray:
     """Mark the cases in which a life lies beyond the S-N data, shape (n,); see `StudyView.beyond_data`."""
     if "life" not in column:
         return np.zeros(len(view.table), dtype=bool)
-    if not any(body in column for body in ("roller", "guide")):
+    if not any(body in column for body in BODIES):
         guide = first_failing(view, column) == FIRST_TO_FAIL.index("guide")
         own = body_lives(column)
         return np.where(guide, *(beyond_data(view, own[body]) for body in ("guide", "roller")))

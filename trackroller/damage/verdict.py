@@ -21,6 +21,21 @@ RESULTS = variables(
 )
 
 
+def hours_until_reached(used: np.ndarray, hours: np.ndarray, timed: np.ndarray, at_once: np.ndarray) -> np.ndarray:
+    """Return the hours until limits are reached [h]; NaN where they are not known. The arrays broadcast.
+
+    Parameters
+    ----------
+    used, hours : numpy.ndarray
+        Utilisation [1] and life [h], NaN where they are not known.
+    timed, at_once : numpy.ndarray of bool
+        Whether a limit has a life, and whether a utilisation of 1 ends the life at once although it has one. A limit
+        without a life is reached at once or never.
+    """
+    never = np.where(np.isnan(used), np.nan, np.inf)
+    return np.where((used >= 1.0) & (at_once | ~timed), 0.0, np.where(timed, hours, never))
+
+
 def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
     """Return utilisation and hours of each limit, the hours to the first limit, and its number.
 
@@ -55,12 +70,10 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
         own = limit.verdict(solved, dict(solved.values))
         if own.utilisation is not None:
             used[:, i] = own.utilisation
-        over = used[:, i] >= 1.0
-        if own.life_hours is None:
-            reached[:, i] = np.where(np.isnan(used[:, i]), np.nan, np.where(over, 0.0, np.inf))
-        else:
+        if own.life_hours is not None:
             hours[:, i] = own.life_hours
-            reached[:, i] = np.where(over & limit.ends_at_once, 0.0, hours[:, i])
+        timed, at_once = np.array(own.life_hours is not None), np.array(limit.ends_at_once)
+        reached[:, i] = hours_until_reached(used[:, i], hours[:, i], timed, at_once)
     for values in (used, hours, reached):
         values[:, ~concerned] = np.nan
     known = ~np.isnan(reached)
