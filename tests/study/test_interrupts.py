@@ -51,8 +51,8 @@ PHASES = {
 KILLED = {name: PHASES[name] for name in ("solve", "gather")} | {
     "solve by workers": (("chunks", "study.nc"), ("run", "study.yaml", "-q", "--scheduler", "local")),
 }
-# A shell reports 130 for both. CPython notes an interrupt that passes through `exec` or `eval` of a text, as in the
-# definition of a data class, as unhandled; at its end it then sends the signal to itself, although the code was 130.
+# A shell reports 130 for both codes. CPython treats an interrupt as unhandled if it passes through `exec` or `eval` of
+# a text, as in the definition of a data class. At its end, CPython then sends the signal to itself.
 STOPPED_CODES = (130, -signal.SIGINT)
 
 

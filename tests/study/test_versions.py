@@ -15,6 +15,7 @@ import fake_solver
 import numpy as np
 import pytest
 import xarray as xr
+from test_edits import STUDY as EDITED
 from test_edits import command
 
 import trackroller as tr
@@ -26,15 +27,7 @@ from trackroller.study.store.folder import STORE_FORMAT, StudyFolder, _digest
 from trackroller.study.store.seal import sealing
 
 STORED = Path(__file__).parents[1] / "data" / "sealed_study.zip"
-STUDY = """
-name: sealed
-design: lhs
-samples: 12
-factors: {axial_force: {uniform: [20, 50]}, friction_coefficient: {uniform: [0.1, 0.3]}}
-outputs: [forces]
-contact_model: sliding
-chunk_size: 5
-"""
+STUDY = EDITED.replace("name: edited", "name: sealed")
 FORMATS = {"missing": None, "unknown": STORE_FORMAT + 1}
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from trackroller.numerics.compiled import compiled
 
 GAP, FINE = 1e-4, 1e-7  # relative gaps of a squared radius: for the radius, and for the centre, whose error is its root
-MOST_MOVES, MOST_POINTS = 2_000, 60  # ends of the search of a ball; what is found then is still an upper bound
+MOST_MOVES, MOST_POINTS = 2_000, 60  # where the search of a ball gives up; its radius is an upper bound
 COARSE, KEPT, ROUNDS = 95, 3, 7  # planes searched first, those refined, and how often the step is halved
 
 

@@ -187,7 +187,7 @@ def draw_kernels(record: Record, out_dir: Path) -> FigureInfo:
     return FigureInfo(
         "extremes_kernels",
         "Relative errors of kernels at places of cancellation.",
-        "Every kernel keeps nine digits or more (the 12-point rule seven, by its quadrature).",
+        "Every kernel keeps at least nine digits; the 12-point rule keeps seven, because its quadrature is coarse.",
     )
 
 

@@ -110,7 +110,7 @@ def margins(
     materials: Mapping[str, Material],
     lifeless: Mapping[str, str],
 ) -> list[Margin]:
-    """Return the margins of a solved case, the limit that comes first at the head.
+    """Return the margins of a solved case in the order in which their limits are reached.
 
     Parameters
     ----------

@@ -125,7 +125,7 @@ def validity(table: CaseTable, block: Block) -> None:
 
     with np.errstate(invalid="ignore"):
         warn("half_space", size[:, None] > 0.3 * smallest)
-        # ASSUME: R_m replaces the yield strength, which the database does not have.
+        # ASSUME: R_m stands for the yield strength, whose values in the database are guesses.
         warn("yield", np.max(v["max_pressure"], axis=1)[:, None] > 1.6 * strength)
         warn("conformal", a >= r_g * np.minimum(np.pi / 2 - alpha, alpha))
         warn("split_pole", (block.model == CONTACT_MODELS.index("sliding")) & split_pole(table, v))
