@@ -92,6 +92,31 @@ def test_a_study_of_another_solver_is_read_whole_and_says_so(sealed):
     assert command(("verify", "results/sealed"))[0] == 0
 
 
+def test_rerun_solves_every_case_again_and_compares_what_is_stored(sealed):
+    """The stored numbers come from the real solver, so another version of it may differ by its accuracy only."""
+    before = forces(sealed)
+    code, out, err = command(("rerun", "results/sealed", "--results", "again"))
+    again = forces(Path("again/sealed"))
+    np.testing.assert_allclose(again, before, rtol=1e-6)
+    same = np.array_equal(again, before)
+    assert (code == 0, "have the same values as" in out) == (same, same), out + err
+    assert same or "normal_force: differs by" in out
+    assert "lacks them: drive_torque" in out, "an output that this version adds is named"
+    np.testing.assert_array_equal(forces(sealed), before)
+
+
+def test_rerun_names_each_variable_that_differs(sealed):
+    with sealing(sealed / "study.nc"):
+        data = xr.load_dataset(sealed / "study.nc")
+        data["normal_force"] = data["normal_force"] * 1.01
+        data["slip"][:1] = np.nan
+        data["former_output"] = data["slip"]
+        data.to_netcdf(sealed / "study.nc")
+    code, out, _ = command(("rerun", "results/sealed", "--results", "again"))
+    assert code == 1 and "normal_force: differs by 9.9e-03 (relative)" in out
+    assert "slip: is missing now, or has other gaps" in out and "former_output: is missing now" in out
+
+
 def test_what_needs_this_solver_says_what_is_missing(sealed):
     code, out, _ = command(("status", "sealed"))
     assert code == 0 and "0 done, 12 missing" in out and "another version of the solver" in out
@@ -102,7 +127,7 @@ def test_what_needs_this_solver_says_what_is_missing(sealed):
 
 
 @pytest.mark.parametrize("damage", FORMATS)
-@pytest.mark.parametrize("words", ["status", "report", "plot", "repeat", "explore", "open"])
+@pytest.mark.parametrize("words", ["status", "report", "plot", "repeat", "explore", "rerun", "open"])
 def test_another_format_is_refused_by_name(sealed, damage, words):
     rewrite(sealed, FORMATS[damage])
     files = {path: path.read_bytes() for path in sealed.rglob("*") if path.is_file()}
@@ -110,9 +135,8 @@ def test_another_format_is_refused_by_name(sealed, damage, words):
         with pytest.raises(InputError, match=r"study\.nc of sealed.*format.*another version"):
             tr.open_study(sealed)
     else:
-        code, _, err = command(
-            (words, *(("results/sealed",) if words == "explore" else ("sealed",)), *["3"] * (words == "repeat"))
-        )
+        study = "results/sealed" if words in ("explore", "rerun") else "sealed"
+        code, _, err = command((words, study, *["3"] * (words == "repeat")))
         assert code in (1, 2) and ("plan.json" in err or "study.nc" in err) and "another version" in err, err
         assert "internal error" not in err
     kept = {path: path.read_bytes() for path in sealed.rglob("*") if path.is_file() and path in files}

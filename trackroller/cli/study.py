@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import sys
 from collections.abc import Iterable, Mapping
 from pathlib import Path
@@ -172,11 +173,14 @@ def print_rerun(crate: Path, results: Path) -> int:
     plan = run_study(study, results)
     compared = compare_results(stored, plan.folder.gathered)
     for name, apart in compared.items():
-        if apart:
-            print(f"{name}: differs by {apart:.1e} (relative)")
-    same = not any(compared.values())
+        if apart > 0:
+            how = f"differs by {apart:.1e} (relative)" if apart < math.inf else "is missing now, or has other gaps"
+            print(f"{name}: {how}")
+    if new := [name for name, apart in compared.items() if math.isnan(apart)]:
+        print(f"not compared, because {stored} lacks them: {', '.join(new)}")
+    same = not any(apart > 0 for apart in compared.values())
     if same:
-        print(f"{len(compared)} variables have the same values as {stored}")
+        print(f"{len(compared) - len(new)} variables have the same values as {stored}")
     return int(not same)
 
 

@@ -98,14 +98,16 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
 def compare(one: xr.Dataset, two: xr.Dataset) -> dict[str, float]:
     """Return the largest relative difference of each variable of two data sets.
 
-    0 is the same to the last bit; a variable that one of them lacks differs without bound.
+    0 is the same to the last bit; inf means that the second one lacks the variable, NaN that the first one does.
     """
     return {str(name): _difference(one, two, str(name)) for name in sorted({*one.variables, *two.variables}, key=str)}
 
 
 def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
     """Return the largest relative difference of a variable; NaN in one data set alone counts as inf."""
-    if name not in one.variables or name not in two.variables or one[name].shape != two[name].shape:
+    if name not in one.variables:
+        return np.nan
+    if name not in two.variables or one[name].shape != two[name].shape:
         return np.inf
     old, new = one[name].values, two[name].values
     if old.dtype.kind not in "fc":
