@@ -16,7 +16,7 @@ from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import chunks
-from trackroller.study.store.crate import damaged_files, read_crate
+from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import chunk_name
 from trackroller.study.store.inventory import take_inventory
@@ -123,6 +123,28 @@ def _draw(view, out_dir: Path) -> list[str]:
     for number in range(9):
         (out_dir / f"{number}.svg").write_text("<svg/>")
     return ["one"]
+
+
+@pytest.mark.parametrize("name", ["sensitivity.nc", "report.html", "figures"])
+def test_a_part_of_the_report_may_be_deleted_but_not_altered(tmp_path, monkeypatch, name):
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    monkeypatch.chdir(tmp_path)
+    _grow(7)
+    folder = StudyFolder(Path("results/grown"))
+    build_report(folder)
+    part = folder.root / name
+    file = part / "0.svg" if part.is_dir() else part
+    kept = file.read_bytes()
+    file.write_bytes(kept + b" ")
+    with pytest.raises(WorkError, match=file.name):
+        write_crate(folder.root)
+    shutil.rmtree(part) if part.is_dir() else part.unlink()
+    write_crate(folder.root)
+    listed = read_crate(folder.root)
+    assert "study.nc" in listed and not any(entry.startswith(name) for entry in listed)
+    assert damaged_files(folder.root) == {}
+    build_report(folder)
+    assert file.is_file() and damaged_files(folder.root) == {}
 
 
 def test_three_reports_at_once_lose_nothing(tmp_path, monkeypatch):

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 
 INPUTS = "inputs"
 STUDY_FILE = f"{INPUTS}/study.yaml"
-RESULTS = ("design.nc", "study.nc", "sensitivity.nc", "report.html", "figures", "tables")
+DATA, REPORT = ("design.nc", "study.nc"), ("sensitivity.nc", "report.html", "figures", "tables")
 LICENCE = "https://spdx.org/licenses/MIT"
 PROFILES = tuple(f"https://w3id.org/ro/wfrun/{name}" for name in ("process/0.5", "workflow/0.5"))
 
@@ -56,7 +56,9 @@ def write_crate(root: Path) -> Path:
         If an input or a result was altered after it was written, or the folder cannot be written.
     """
     study = study_of_folder(StudyFolder(root))
-    results = [root / name for name in RESULTS if recorded(root / name) is not None]
+    # a user may delete what a report made: `trackroller report` makes it again
+    kept = [*DATA, *(name for name in REPORT if (root / name).exists())]
+    results = [root / name for name in kept if recorded(root / name) is not None]
     inputs, written = files_of(root / INPUTS), [file for path in results for file in files_of(check_sealed(path))]
     graph = _graph(study, root, *([file.relative_to(root).as_posix() for file in files] for files in (inputs, written)))
     text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
