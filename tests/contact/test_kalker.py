@@ -292,7 +292,7 @@ def test_profile_slip_is_that_of_the_circle_in_full_sliding():
     found, exact = [], []
     for profile, kinematics in ((False, flat), (True, slip)):
         settings = KalkerSettings(elements=40, profile_slip=profile)
-        f = kalker.resultants(patch(), slip, mu, STEEL, settings)
+        f = solve_patch(patch(), Creepage.of_slip(slip, profile), mu, STEEL, settings).resultants
         g = sliding.integrals(patch(), kinematics, mu, spin_model="concentric", nodes=32).resultants
         found.append([f.driving_force[0] / limit, f.spin_moment[0] / limit / 0.3])
         exact.append([g.driving_force[0] / limit, g.spin_moment[0] / limit / 0.3])

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import contextlib
 import io
 import os
 import shutil
@@ -15,8 +14,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-from trackroller.errors import InputError, check_names
-from trackroller.files import read_text
+from trackroller.errors import InputError, WorkError, check_names
+from trackroller.files import read_text, write_whole
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
@@ -75,7 +74,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     build_database(text, str(path), over=builtin)  # raises an error if the file is wrong before the change
     text = _with_entry(text, path, name, _entry(values), replace)
     material = build_database(text, str(path), over=builtin).material(name)
-    _write_at_once(path, text)
+    _write(path, text)
     return material
 
 
@@ -152,22 +151,17 @@ def _text(value: Any) -> Any:
     return DoubleQuotedScalarString(value) if isinstance(value, str) and needs_quotes(value) else value
 
 
-def _write_at_once(path: Path, text: str) -> None:
-    """Write a temporary file and rename it, so that a reader sees the whole old file or the whole new one."""
-    beside = path.with_name(f".{path.name}.{os.getpid()}.part")
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        with open(beside, "w", encoding="utf-8", newline="") as file:
-            file.write(text)
-            file.flush()
-            os.fsync(file.fileno())
+def _write(path: Path, text: str) -> None:
+    """Write the file whole or not at all, with the permissions that it had."""
+
+    def save(beside: Path) -> None:
+        beside.write_text(text, encoding="utf-8", newline="")
         if path.exists():
             shutil.copymode(path, beside)
-        os.replace(beside, path)
-    except OSError as error:
-        allowed = f"a file in a folder that can be written ({error.strerror})"
+
+    try:
+        write_whole(path, save)
+    except WorkError as error:
+        allowed = f"a file in a folder that can be written ({error.__cause__})"
         remedy = "Give another path, or allow writing to this folder."
         raise InputError("materials file", str(path), allowed, remedy) from None
-    finally:
-        with contextlib.suppress(OSError):
-            beside.unlink()

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from trackroller.contact.kalker.patch import resultants, shares, solve_patch, to_tractions, tractions
+from trackroller.contact.kalker.patch import shares, solve_patch, to_tractions
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution
 from trackroller.contact.slip import Creepage
 
@@ -10,9 +10,7 @@ __all__ = [
     "Creepage",
     "KalkerSettings",
     "PatchSolution",
-    "resultants",
     "shares",
     "solve_patch",
     "to_tractions",
-    "tractions",
 ]

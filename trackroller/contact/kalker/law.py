@@ -43,9 +43,10 @@ class KalkerLaw:
         self.elastic, self.settings = elastic, settings or KalkerSettings()
         self.travel = None if travel_speed is None else np.asarray(travel_speed, float)
         self._starts: dict[tuple[int, int, bool], tuple[np.ndarray, float]] = {}  # tractions and creepage
-        self._misses: dict[tuple[int, int], int] = {}
-        self._states: dict[tuple[int, int], tuple[float, bool]] = {}
-        self._errors: dict[tuple[int, int], float] = {}
+        n = np.size(elastic.shear_modulus)
+        # of the last fine solution of both patches of each roller; the misses count those that did not converge
+        self._residual, self._converged = np.zeros((n, 2)), np.ones((n, 2), bool)
+        self._error, self._misses = np.full((n, 2), np.nan), np.zeros((n, 2), int)
         self._kept: tuple[dict[bytes, int], PatchSolution] | None = None
 
     def __call__(
@@ -73,12 +74,12 @@ class KalkerLaw:
         settings = self.settings
         if not fine:
             settings = dataclasses.replace(settings, elements=settings.elements // 2, extrapolate=False)
-        keys = [(int(row), int(sine < 0), fine) for row, sine in zip(rows, slip.sine, strict=True)]
+        side = (slip.sine < 0).astype(int)
+        keys = [(*key, fine) for key in zip(rows.tolist(), side.tolist(), strict=True)]
         creep = Creepage.of_slip(slip, self.settings.profile_slip)
         friction = np.broadcast_to(np.asarray(friction, float), len(rows))
         known = self._near(keys, creep, patch)
-
-        tired = np.array([self._misses.get(key[:2], 0) >= MISSES for key in keys], bool)
+        tired = self._misses[rows, side] >= MISSES
         picks, parts = [], []
         for started, cut in ((True, False), (True, True), (False, True), (False, False)):
             pick = np.flatnonzero((known == started) & (tired == cut))
@@ -103,13 +104,10 @@ class KalkerLaw:
         self._starts.update(zip(keys, kept, strict=True))
         if fine and settings.extrapolate:
             with np.errstate(divide="ignore", invalid="ignore"):
-                error = solution.force_error / (friction * patch.normal_force)
-            self._errors.update(zip((key[:2] for key in keys), error, strict=True))
-        for key, value, good in zip(keys, solution.residual, solution.converged, strict=True):
-            if not good:
-                self._misses[key[:2]] = self._misses.get(key[:2], 0) + 1
-            if fine:
-                self._states[key[:2]] = (float(value), bool(good))
+                self._error[rows, side] = solution.force_error / (friction * patch.normal_force)
+        np.add.at(self._misses, (rows, side), ~solution.converged)
+        if fine:
+            self._residual[rows, side], self._converged[rows, side] = solution.residual, solution.converged
         return solution
 
     def _near(self, keys, creep: Creepage, patch: Ellipse | GridPatch) -> np.ndarray:
@@ -121,13 +119,11 @@ class KalkerLaw:
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return the larger residual of both patches at the last fine solution, and if both converged, (n,)."""
-        both = [[self._states.get((i, k), (0.0, True)) for k in (0, 1)] for i in range(n)]
-        values = np.array(both, float).reshape(n, 2, 2)
-        return values[:, :, 0].max(axis=1), values[:, :, 1].min(axis=1) > 0
+        return self._residual.max(axis=1), np.logical_and.reduce(self._converged, axis=1)
 
     def error(self, n: int) -> np.ndarray:
         """Return the estimated error of the friction forces over mu F_N, (n, 2)."""
-        return np.array([[self._errors.get((i, k), np.nan) for k in (0, 1)] for i in range(n)]).reshape(n, 2)
+        return self._error.copy()
 
     def kept(self, patch: Ellipse | GridPatch, slip: Slip, friction, rows: np.ndarray) -> PatchSolution:
         """Return the solution as `solve` does; reuse that of the last call of `kept` for the same patches."""

@@ -19,7 +19,7 @@ from trackroller.contact.kalker.cells import cells, unit_cells
 from trackroller.contact.kalker.columns import column_ranges
 from trackroller.contact.kalker.loops import row_means
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
-from trackroller.contact.slip import Creepage, Slip
+from trackroller.contact.slip import Creepage
 
 BLOCK = 256  # patches that are solved together, to limit the memory for their tractions
 
@@ -216,14 +216,6 @@ def solve_patch(
     return parts[0] if len(parts) == 1 else joined(parts, slice(None))
 
 
-def resultants(
-    ellipse: Ellipse | GridPatch, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
-) -> Resultants:
-    """Return the friction forces [N] and the spin moment [N mm] on the roller, (n,); see `solve_patch`."""
-    settings = settings or KalkerSettings()
-    return solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings).resultants
-
-
 def _slip_of_law(solution: PatchSolution, height: np.ndarray) -> np.ndarray:
     """Return the slips with which tractions agree: under a falling law the means that the law has used."""
     if solution.factor.shape[1:] == (1, 1):
@@ -271,12 +263,3 @@ def _grid_tractions(patch: GridPatch, friction, solution: PatchSolution) -> Surf
     return SurfaceTractions(
         patch.x, patch.y, patch.pressure, shear[:, 0], shear[:, 1], slip[:, 0], slip[:, 1], loaded & stick
     )
-
-
-def tractions(
-    ellipse: Ellipse | GridPatch, slip: Slip, friction, elastic: Elastic, settings: KalkerSettings | None = None
-) -> SurfaceTractions:
-    """Return pressure, shear, slip and adhesion on the grid of elements; see `solve_patch`."""
-    settings = settings or KalkerSettings()
-    solution = solve_patch(ellipse, Creepage.of_slip(slip, settings.profile_slip), friction, elastic, settings)
-    return to_tractions(ellipse, friction, solution)
