@@ -15,8 +15,9 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation 
 from trackroller import parameters as p
 from trackroller.damage import declared
 from trackroller.parameters.declared import FILE as DECLARED
+from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.accuracy import PRESETS
-from trackroller.roller.dataset import COMMENTS, VALIDITY_BITS, VARIABLES
+from trackroller.roller.dataset import COMMENTS, VARIABLES
 from validation.pages import TEMPLATES
 from validation.pages import render as render_written
 
@@ -118,7 +119,7 @@ def render() -> str:
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",
     ]
     lines += ["### validity\n", "`validity` is a sum of bits; 0 means that no warning applies.\n"]
-    bits = [(1 << i, f"`{name}`", meaning) for i, (name, meaning) in enumerate(VALIDITY_BITS.items())]
+    bits = [(1 << i, f"`{name}`", flag.criterion) for i, (name, flag) in enumerate(VALIDITY.items())]
     lines += _table(("bit", "name", "meaning"), bits)
     return "\n".join(lines).rstrip() + "\n"
 

@@ -13,13 +13,13 @@ import xarray as xr
 from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, sampled_study, view_of
 
+from trackroller.parameters.validity import VALIDITY
 from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
 from trackroller.report.pages.study import contents, models_used, write_report
 from trackroller.report.tables.cases import regime_table, validity_table
 from trackroller.report.tables.inputs import Row
 from trackroller.report.words.regimes import occurrence
-from trackroller.roller.dataset import VALIDITY_BITS
 from trackroller.study.store.folder import StudyFolder
 
 FACTORS = {
@@ -119,7 +119,7 @@ def test_validity_bits_are_counted_by_mask():
     view = view_of(ds)
     rows = {row[0]: row for row in validity_table(view).rows}
     assert rows["conformal"][3] == int((((ds["validity"] & 8) > 0) & (ds["regime"] == 0)).sum()) > 0
-    assert rows["static"][2] == VALIDITY_BITS["static"]
+    assert rows["static"][2] == VALIDITY["static"].criterion
     assert "half space" not in rows  # no case carries it
 
 

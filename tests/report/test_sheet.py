@@ -22,6 +22,7 @@ from trackroller.cli.main import app
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
+from trackroller.parameters.validity import VALIDITY
 from trackroller.report.figures.roller_section import content_of
 from trackroller.report.pages.sheet import render
 from trackroller.report.pages.sheet_facts import collect
@@ -147,6 +148,15 @@ def test_flags_name_the_body_they_hold_for(facts):
     assert "fatigue limit of the guide" in plastic["deep_life"]  # a steel guide under a plastic roller
     assert "static" in {flag.name for flag in facts["overloaded"].flags}
     assert all(flag.remedy for fact in facts.values() for flag in fact.flags)
+
+
+def test_every_validity_flag_has_words_and_a_remedy(solved):
+    """A roller with every flag set; the flag of the heat limit once had no words and ended the sheet."""
+    every = sum(validity_bit(name) for name in VALIDITY)
+    ds = solved["example"].assign(validity=every, validity_body=("body", [every, every]))
+    flags = [flag for flag in flags_of(ds) if flag.name in VALIDITY]
+    assert [flag.name for flag in flags] == list(VALIDITY) and all(flag.remedy for flag in flags)
+    assert flags[-1].sentence == "The temperature rises above the limit of the material of the roller and the guide."
 
 
 def test_deep_life_is_flagged_where_the_worse_contact_stays_below_the_fatigue_limit():

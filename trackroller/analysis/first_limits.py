@@ -9,10 +9,10 @@ import pandas as pd
 
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.lives import FIRST_LIMIT, first_failing
-from trackroller.analysis.table import BODIES, MOST_LEVELS, StudyView
+from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import hours_until_reached
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.study.outputs import flat
 
 AMONG = 20  # designs whose order is compared, the best by either life

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pandas as pd
 
-from trackroller.damage.limit import BODIES
 from trackroller.damage.pair import first_failure
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 
 if TYPE_CHECKING:
     from trackroller.analysis.table import StudyView

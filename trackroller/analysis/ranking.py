@@ -11,6 +11,8 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import BODIES
+
 ENDS = ("low", "high")
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
 SIZED = ("mu_star", "effect")  # indices with the unit of the output; all others are shares of variance
@@ -94,7 +96,7 @@ def ranked_factors(sens: xr.Dataset | None, column: str, among: Sequence[str]) -
     the order of the study file, because no factor is known to decide.
     """
     quantity, _, body = column.rpartition("_")
-    output = f"{body}_{quantity}" if body in ("roller", "guide") else column
+    output = f"{body}_{quantity}" if body in BODIES else column
     size = dict.fromkeys(among, 0.0)
     if sens is not None and not robust_design(sens) and output in sens["output"].values:
         size |= {rank.factor: abs(rank.value) for rank in order(sens, output) if rank.factor in size}

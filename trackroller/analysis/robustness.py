@@ -23,7 +23,7 @@ from trackroller.analysis.table import StudyResults
 from trackroller.analysis.targets import body_of, inner_sample
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90, SNCurve
 from trackroller.errors import InputError
-from trackroller.parameters import MATERIAL_FIELDS, REGIMES
+from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
 from trackroller.study.design.factors import readable
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
@@ -128,7 +128,7 @@ def material_deviations(results: StudyResults) -> dict[str, np.ndarray]:
         return {}
     known = json.loads(ds.attrs.get("materials", "{}"))
     out = {}
-    for field, body in zip(MATERIAL_FIELDS, ("roller", "guide"), strict=True):
+    for field, body in zip(MATERIAL_FIELDS, BODIES, strict=True):
         if wanted is not True:
             out[body] = np.full(
                 int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DEVIATES_10_TO_90

@@ -14,14 +14,13 @@ import xarray as xr
 from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import allowed_cases
 from trackroller.analysis.lives import FIRST_LIMIT, LIVES, beyond_data
-from trackroller.parameters import EXACTNESS, PARAMETERS
+from trackroller.parameters import BODIES, EXACTNESS, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 
-BODIES = ("roller", "guide")
 MOST_LEVELS = 12  # a factor with more levels is divided into classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
 

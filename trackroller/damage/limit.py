@@ -19,10 +19,9 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage.histories import Tractions
 from trackroller.damage.mapping import MappingField
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS, Parameter
+from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS, Parameter
 from trackroller.parameters.variables import Variable
 
-BODIES = ("roller", "guide")
 SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
 Results = dict[str, np.ndarray]
 

@@ -6,8 +6,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from trackroller.damage.limit import BODIES, Limit, Results, SolvedRollers, variables
+from trackroller.damage.limit import Limit, Results, SolvedRollers, variables
 from trackroller.damage.pair import first_failure
+from trackroller.parameters import BODIES
 
 GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"

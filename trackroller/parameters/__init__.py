@@ -33,7 +33,8 @@ SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy
 DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
-FIRST_TO_FAIL = ("roller", "guide", "none", "unknown")
+BODIES = ("roller", "guide")
+FIRST_TO_FAIL = (*BODIES, "none", "unknown")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MECHANICAL_MAPPINGS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
     "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "

@@ -12,6 +12,7 @@ from trackroller import __version__
 from trackroller.damage import LIMITS, verdict
 from trackroller.damage.limit import variables
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIMES
+from trackroller.parameters.validity import VALIDITY
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -128,26 +129,9 @@ def shown(*dims: str) -> tuple[str, ...]:
     return tuple(name for name, v in VARIABLES.items() if v.shown and v.dims == dims)
 
 
-VALIDITY_BITS = {
-    "half_space": "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",
-    "yield": "p_max above 1.6 R_m of a body (R_m taken for the yield strength): plastic flow under the surface",
-    "static": "peak stress above R_m of the body: static failure; the life lies beyond the end of the S-N curve",
-    "conformal": "the patch reaches the edge of the groove or the middle of the guide",
-    "jamming": "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or, after lift-off, without "
-    "the axial force: the wedge may lock, and the slightest axial force lifts a contact",
-    "large_slip": "longitudinal creepage above 10 %: friction heat and wear decide",
-    "deep_life": "fatigue stress of the worse contact below the fatigue limit: the life depends on life_rule",
-    "split_pole": "the slip of the sliding model vanishes away from its spin pole, or twice in a patch: there the "
-    "stress of the model grows without bound, as a logarithm; use kalker",
-    "steep_friction": "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip speed "
-    "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
-    "overheated": "temperature rise above what the temperature limit of the material leaves (group heat)",
-}
-
-
 def validity_bit(name: str) -> int:
-    """Return the flag of `validity` (a power of two) that a name of `VALIDITY_BITS` stands for."""
-    return 1 << list(VALIDITY_BITS).index(name)
+    """Return the flag of `validity` (a power of two) that a name of `VALIDITY` stands for."""
+    return 1 << list(VALIDITY).index(name)
 
 
 COMMENTS = {
@@ -177,9 +161,9 @@ def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, d
         "long_name": "validity flags: where an assumption of the model does not hold"
         + (" for a body" if name == "validity_body" else ""),
         "units": "1",
-        "flag_masks": np.array([1 << i for i in range(len(VALIDITY_BITS))], dtype=np.int32),
-        "flag_meanings": " ".join(VALIDITY_BITS),
-        "comment": "; ".join(f"{k}: {v}" for k, v in VALIDITY_BITS.items()),
+        "flag_masks": np.array([1 << i for i in range(len(VALIDITY))], dtype=np.int32),
+        "flag_meanings": " ".join(VALIDITY),
+        "comment": "; ".join(f"{name}: {flag.criterion}" for name, flag in VALIDITY.items()),
     }
     return ("case", "body")[: values.ndim], values.astype(np.int32), attrs
 
@@ -212,7 +196,7 @@ def build(
         Arrays by their names in `VARIABLES`; the first axis is the case.
     flags : mapping of str to numpy.ndarray
         Arrays of integers, shape (n,), by their names in `FLAGS`, and the flags of
-        `VALIDITY_BITS` as `validity`, shape (n,), and `validity_body`, shape (n, 2).
+        `VALIDITY` as `validity`, shape (n,), and `validity_body`, shape (n, 2).
     attrs : mapping
         Global attributes.
     single : bool

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
 
 BOOKKEEPING = {
     "regime",
@@ -103,7 +103,7 @@ def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...])
     """Return the outputs that are analysed by default: those of `DEFAULTS`, otherwise every scalar result."""
     free = _available(ds, factors, dims)
     names = [n for n, (var, *_) in DEFAULTS.items() if var in free and np.isfinite(ds[var]).any()]
-    for body in ("roller", "guide"):  # Hours and cycles of one body are proportional, so only the hours are kept.
+    for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"{body}_life_cycles" in names:
             names.remove(f"{body}_life_cycles")
     if "pair_life_hours" in names and "guide_life_hours" not in names:

@@ -11,8 +11,8 @@ import xarray as xr
 
 from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
 from trackroller.analysis.groups import spaced_by_ratio
-from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.analysis.table import StudyView
+from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
 from trackroller.report.words.flags import words_of

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from trackroller.analysis.groups import Groups, classes, groups
 from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
+from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
@@ -76,7 +77,7 @@ def shown_output(view: StudyView) -> tuple[str, str, str] | None:
     """Return column, words and unit of the life of a study, or of its peak stress where it has no life."""
     if view.life:
         return view.life
-    stresses = [(f"peak_stress_{b}", f"peak stress of the {b}", "MPa") for b in ("roller", "guide")]
+    stresses = [(f"peak_stress_{b}", f"peak stress of the {b}", "MPa") for b in BODIES]
     return next((s for s in stresses if view.has(s[0])), None)
 
 

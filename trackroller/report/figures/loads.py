@@ -8,7 +8,8 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.table import BODIES, StudyView
+from trackroller.analysis.table import StudyView
+from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
 from trackroller.report.numbers import factor_label, level_text, listing, number, quantity, symbol, with_unit

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.analysis.table import BODIES, StudyView
+from trackroller.analysis.table import StudyView
 from trackroller.damage.sn_curve import CONVENTIONS, PROBABILITIES, SNCurve
 from trackroller.materials import Material
 from trackroller.materials.properties import REQUIRED
+from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import capital, count, listing, rounded, with_unit

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.numbers import chance, listing
 from trackroller.report.words.spectrum import known_damage
-from trackroller.study.spectrum.solve import BODIES
 
 MOST = 16  # blocks drawn one by one; the others stand together
 

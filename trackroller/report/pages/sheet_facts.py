@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.analysis.columns import at_surface
-from trackroller.analysis.table import BODIES
-from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, OF_LIMITS, OPTIONS, REGIMES
+from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OF_LIMITS, OPTIONS, REGIMES
 from trackroller.parameters.example import not_given_text
 from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
 from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source

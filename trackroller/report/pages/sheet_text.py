@@ -7,8 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.analysis.table import BODIES
-from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
+from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
 from trackroller.report.pages.spectrum import block_table, life_rows, warnings

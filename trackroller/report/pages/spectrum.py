@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.analysis.table import BODIES
-from trackroller.parameters import PARAMETERS, REGIME_LABELS
+from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS
 from trackroller.report import html
 from trackroller.report.numbers import capital, chance, listing, long_name, unit_text, with_unit
 from trackroller.report.pages.sheet import _pictures

@@ -5,13 +5,13 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.table import BODIES, StudyView
+from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
+from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import plain, share
 from trackroller.report.tables.table import Table
-from trackroller.report.words.flags import OF_BODY, words_of
+from trackroller.report.words.flags import bodies_of, words_of
 from trackroller.report.words.regimes import occurrence
-from trackroller.roller.dataset import VALIDITY_BITS
 
 
 def regime_table(view: StudyView) -> Table | None:
@@ -30,13 +30,13 @@ def validity_table(view: StudyView) -> Table | None:
     """Count the rolling cases that carry each validity flag, by body where it is known, and say where they occur."""
     rows = []
     for flag in view.flags:
-        for body in BODIES if view.by_body and flag in OF_BODY else ("",):
+        for body in bodies_of(flag, view.by_body):
             hit = view.flagged(flag, body) & view.rolling
             if not hit.any():
                 continue
             said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
             cases, rolls = int(hit.sum()), int(view.rolling.sum())
-            meaning = VALIDITY_BITS.get(flag, words_of(flag))
+            meaning = VALIDITY[flag].criterion if flag in VALIDITY else words_of(flag)
             rows.append([plain(flag), body or "either", meaning, cases, share(cases, rolls), said.text if said else ""])
     if not rows:
         return None

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.designs import Designs
-from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.analysis.table import StudyView
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import Life, capital, count, percent, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEYOND_MEANS, alone, condition_words

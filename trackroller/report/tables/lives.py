@@ -9,10 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.analysis.lives import DATA_END
-from trackroller.analysis.table import BODIES
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import hour_unit, lasting, number, rounded
 from trackroller.report.tables.inputs import Row
 from trackroller.roller.geometry import rolling_radius

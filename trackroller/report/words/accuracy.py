@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import CONTACT_MODELS
+from trackroller.analysis.table import StudyView
+from trackroller.parameters import BODIES, CONTACT_MODELS
 from trackroller.report.numbers import count, level_text, listing, number, percent, rounded
 from trackroller.report.words.sentence import Sentence
 from trackroller.roller.record import friction_records

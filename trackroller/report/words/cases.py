@@ -6,10 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from trackroller.analysis.table import BODIES, MOST_LEVELS, OUTSIDE, StudyView
+from trackroller.analysis.table import MOST_LEVELS, OUTSIDE, StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import BEYOND, NO_FAILURE, capital, count, lasting, listing, setting, shortened
-from trackroller.report.words.flags import OF_BODY, of_body, words_of
+from trackroller.report.words.flags import bodies_of, of_body, words_of
 from trackroller.report.words.sentence import Sentence
 
 
@@ -59,7 +59,7 @@ def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:
     """Return the rolling cases outside the model by flag, and by body if the data set has flags of bodies."""
     found = []
     for flag in (f for f in OUTSIDE if f in view.flags):
-        for body in BODIES if view.by_body and flag in OF_BODY else ("",):
+        for body in bodies_of(flag, view.by_body):
             found.append((flag, body, view.flagged(flag, body) & view.rolling))
     return found
 

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.designs import FEWEST, Designs, factor_roles
-from trackroller.analysis.table import BODIES, StudyView
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.analysis.table import StudyView
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
     GUIDE_UNKNOWN,

@@ -8,10 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.analysis.lives import DATA_END
-from trackroller.parameters import REGIME_LABELS
+from trackroller.parameters import BODIES, REGIME_LABELS
 from trackroller.report.numbers import BEYOND, chance, life, listing
 from trackroller.report.words.sentence import Sentence
-from trackroller.study.spectrum.solve import BODIES
 
 if TYPE_CHECKING:
     import xarray as xr

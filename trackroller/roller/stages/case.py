@@ -12,8 +12,8 @@ from trackroller.damage import LIMITS, asked, computed, judged, of_patches, verd
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, SolvedRollers, lacks
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
-from trackroller.roller.dataset import VALIDITY_BITS
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import Results, surface_tractions
 
@@ -107,9 +107,9 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def validity(table: CaseTable, block: Block) -> None:
-    """Set the validity flags where the assumptions of the model do not hold, see `dataset.VALIDITY_BITS`."""
+    """Set the validity flags where the assumptions of the model do not hold, see `parameters.validity`."""
     v = block.values
-    bit = {name: 1 << i for i, name in enumerate(VALIDITY_BITS)}
+    bit = {name: 1 << i for i, name in enumerate(VALIDITY)}
     r_g, alpha = table.guide_profile_radius, np.deg2rad(table.contact_angle)
     r_a = rolling_radius(table.axis_distance, r_g, alpha)
     radii = [[table.roller_profile_radius, r_a / np.cos(alpha)], [r_g, table.guide_curve_radius / np.cos(alpha)]]

@@ -16,7 +16,7 @@ import xarray as xr
 from trackroller.damage import fatigue, miner
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.materials import load_database
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import to_table
 from trackroller.roller.record import material_values, plain_inputs
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
@@ -24,7 +24,6 @@ from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
 
-BODIES = ("roller", "guide")
 _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
 

@@ -1,0 +1,91 @@
+"""The validity flags of a result: where an assumption of the model does not hold, and what the user can do."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+
+class ValidityFlag(NamedTuple):
+    """A validity flag.
+
+    Attributes
+    ----------
+    words : str
+        What the flag says, as a clause of a sentence; of a flag `of_body`, "of the roller" may follow.
+    criterion : str
+        When the flag is set, for the data set and the reference.
+    remedy : str
+        Advice to the user.
+    of_body : bool
+        Whether the flag may hold for one body alone.
+    """
+
+    words: str
+    criterion: str
+    remedy: str
+    of_body: bool = False
+
+
+# the place in this list is the bit of the flag in `validity`, so that a new flag comes last
+VALIDITY: dict[str, ValidityFlag] = {
+    "half_space": ValidityFlag(
+        "the patch is too large for a half-space",
+        "a or b above 0.3 of the smallest radius of curvature: the bodies are not half-spaces",
+        "A semi-axis exceeds 0.3 of the smallest radius: take pressure and stress as estimates, or choose a less close "
+        "fit.",
+        of_body=True,
+    ),
+    "yield": ValidityFlag(
+        "the contact pressure exceeds the yield limit",
+        "p_max above 1.6 R_m of a body (R_m taken for the yield strength): plastic flow under the surface",
+        "The body yields below the surface: choose a closer fit, a stronger material or less load.",
+        of_body=True,
+    ),
+    "static": ValidityFlag(
+        "the peak stress exceeds the tensile strength",
+        "peak stress above R_m of the body: static failure; the life lies beyond the end of the S-N curve",
+        "The body fails at once and has no fatigue life: choose a closer fit, a stronger material or less load.",
+        of_body=True,
+    ),
+    "conformal": ValidityFlag(
+        "the patch reaches the edge of the groove or the middle of the guide",
+        "the patch reaches the edge of the groove or the middle of the guide",
+        "Choose a less close fit, or solve drawn profiles with normal: halfspace.",
+    ),
+    "jamming": ValidityFlag(
+        "friction alone can carry the lateral load of a contact, and the wedge may lock",
+        "friction carries the lateral load: |F_T| >= F_N tan(alpha) in a contact, or, after lift-off, without "
+        "the axial force: the wedge may lock, and the slightest axial force lifts a contact",
+        "Choose a larger contact angle or less friction.",
+    ),
+    "large_slip": ValidityFlag(
+        "the longitudinal creepage exceeds 10 %",
+        "longitudinal creepage above 10 %: friction heat and wear decide",
+        "Friction heat and wear decide the life: choose less motor force or more radial force.",
+    ),
+    "deep_life": ValidityFlag(
+        "the peak stress lies below the fatigue limit",
+        "fatigue stress of the worse contact below the fatigue limit: the life depends on life_rule",
+        "The life rests on the rule beyond the limit: state the rule with the life (life_rule), and do not trust more "
+        "than its order of magnitude.",
+        of_body=True,
+    ),
+    "split_pole": ValidityFlag(
+        "the stress of full sliding is singular",
+        "the slip of the sliding model vanishes away from its spin pole, or twice in a patch: there the "
+        "stress of the model grows without bound, as a logarithm; use kalker",
+        "Solve it with contact_model: kalker.",
+    ),
+    "steep_friction": ValidityFlag(
+        "friction falls faster with the slip speed than the surfaces follow",
+        "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip speed "
+        "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
+        "The roller may not roll steadily: use a friction law that falls less steeply.",
+    ),
+    "overheated": ValidityFlag(
+        "the temperature rises above the limit of the material",
+        "temperature rise above what the temperature limit of the material leaves (group heat)",
+        "Choose less friction, speed or load, or a material for higher temperatures.",
+        of_body=True,
+    ),
+}
