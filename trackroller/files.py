@@ -14,6 +14,7 @@ import threading
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from importlib.machinery import ExtensionFileLoader
 from pathlib import Path
 from types import FrameType
 from typing import IO, Any
@@ -217,14 +218,16 @@ def whole_folder(path: Path) -> Iterator[Path]:
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
-    """Raise `KeyboardInterrupt`, but try again in 20 ms if the libraries of netCDF files are at work.
+    """Raise `KeyboardInterrupt`, but try again in 20 ms where Python or a library would not pass it on as it is.
 
-    These libraries hold a lock, which an interrupt would leave held, so that the next access would wait forever. Python
-    drops an exception that is raised while it disposes of an object.
+    The libraries of netCDF files hold a lock, which an interrupt would leave held, so that the next access would wait
+    forever. Python drops an exception that is raised while it disposes of an object. A compiled module that is
+    interrupted while it is imported raises `ImportError` instead.
     """
     while frame is not None:
-        module = str(frame.f_globals.get("__name__"))
-        if module.startswith(("netCDF4", "xarray.backends", "weakref")) or frame.f_code.co_name == "__del__":
+        module, imported = str(frame.f_globals.get("__name__")), frame.f_locals.get("self")
+        waits = module.startswith(("netCDF4", "xarray.backends", "weakref")) or frame.f_code.co_name == "__del__"
+        if waits or (module == "importlib._bootstrap_external" and isinstance(imported, ExtensionFileLoader)):
             signal.setitimer(signal.ITIMER_REAL, 0.02)
             return
         frame = frame.f_back

@@ -5,6 +5,8 @@ An interrupted one ends with one sentence that says what is kept. `tests/workflo
 
 from __future__ import annotations
 
+import _imp
+import importlib.util
 import os
 import random
 import shutil
@@ -13,6 +15,7 @@ import subprocess
 import sys
 import time
 from collections import Counter
+from importlib.machinery import ExtensionFileLoader
 
 import pytest
 import xarray as xr
@@ -143,6 +146,27 @@ def test_an_interrupt_waits_while_a_file_is_written_and_comes_afterwards(tmp_pat
         data.to_netcdf(tmp_path / "b.nc", engine="netcdf4")  # would wait forever if the lock were held
         xr.testing.assert_identical(xr.load_dataset(tmp_path / "b.nc"), data)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_an_interrupt_waits_while_a_compiled_module_is_imported(monkeypatch):
+    """Such a module turns an interrupt into ImportError, as those of scipy do."""
+    spec, create = importlib.util.find_spec("_queue"), _imp.create_dynamic
+    assert isinstance(spec.loader, ExtensionFileLoader)
+
+    def interrupted(spec):
+        try:
+            os.kill(os.getpid(), signal.SIGINT)
+            time.sleep(0.1)
+        except KeyboardInterrupt:
+            raise ImportError("initialization failed") from None
+        return create(spec)
+
+    monkeypatch.setattr(_imp, "create_dynamic", interrupted)
+    made = []
+    with pytest.raises(KeyboardInterrupt), interrupts_wait_for_files():
+        made.append(importlib.util.module_from_spec(spec))
+        time.sleep(1)
+    assert made[0].__name__ == "_queue"
 
 
 def test_an_interrupt_at_once_is_not_swallowed():

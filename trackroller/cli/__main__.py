@@ -8,6 +8,7 @@ from pathlib import Path
 
 from trackroller.cli import ALLOW_CODE, INTERRUPTED, STOPPED
 from trackroller.errors import InputError
+from trackroller.files import interrupts_wait_for_files
 
 
 def run() -> None:
@@ -16,7 +17,8 @@ def run() -> None:
         if ALLOW_CODE in sys.argv:  # anywhere on the line, because limits are known before anything else is imported
             sys.argv.remove(ALLOW_CODE)
             os.environ["TRACKROLLER_ALLOW_CODE"] = str(Path("config", "limits").resolve())
-        from trackroller.cli.main import main  # the import takes longer than everything before it
+        with interrupts_wait_for_files():
+            from trackroller.cli.main import main  # the import takes longer than everything before it
 
         main()
     except InputError as error:
