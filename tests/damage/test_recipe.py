@@ -34,7 +34,7 @@ def test_a_limit_of_one_file_reaches_the_data_set(tmp_path):
     (room / "lining.py").write_text(re.search(r"```python\n(.*?)```", recipe, re.DOTALL)[1], encoding="utf-8")
     entry = room / "__init__.py"
     listed = entry.read_text(encoding="utf-8")
-    listed = listed.replace("import bearing,", "import lining, bearing,").replace("_FILES = (", "_FILES = (lining, ")
+    listed = listed.replace("    bearing,\n", "    bearing,\n    lining,\n").replace("_FILES = (", "_FILES = (lining, ")
     entry.write_text(listed, encoding="utf-8")
     declare = "from trackroller.damage import declared; "
     declare += "from trackroller.parameters.declared import FILE; FILE.write_text(declared())"

@@ -561,8 +561,8 @@ def test_rows_show_values_marks_and_origin(user):
     assert details["youngs_modulus"]["placeholder"] == "placeholder"
     assert details["fatigue_limit"]["value"] == "18"
     assert "Wenzel" in details["tensile_strength"]["source"]
-    marked = [row for row in friction_rows(own) if row["placeholder"]]
-    assert len(friction_rows(own)) == 18 and len(marked) == 10
+    friction = [row for row in friction_rows(own) if row["field"] == "friction_coefficient"]
+    assert len(friction) == 18 and sum(bool(row["placeholder"]) for row in friction) == 10
     with pytest.raises(InputError, match="PA6"):
         material_details(own, "PA 6")
 
@@ -608,3 +608,34 @@ def test_the_list_of_materials_can_be_searched(tmp_path):
     assert "POM" in trackroller("materials", "list", cwd=tmp_path).stdout
     told = trackroller("materials", "list", "unobtainium", cwd=tmp_path, code=2).stderr
     assert "unobtainium" in told and "EN AW-7075" in told
+
+
+def test_wear_coefficient_by_pair_and_body():
+    database = builtin_database()
+    pom, steel = database.on("POM", "1.7225-normalised"), database.on("1.7225-normalised", "POM")
+    assert pom.wear_coefficient > 10 * steel.wear_coefficient > 0
+    quenched = "1.7225-quenched-tempered"
+    named, family = (database.on(quenched, other).wear_coefficient for other in (quenched, "1.7225-normalised"))
+    assert named == 1e-5 and family == 3e-5  # a pair of names goes before a pair of families
+    record = pom.records["wear_coefficient"]
+    assert record.placeholder and record.range[0] <= record.value <= record.range[1]
+    assert pom.guesses_of_limits["wear_coefficient"].startswith("on 1.7225-normalised, expected from ")
+    own = {"like": "POM", "wear_coefficient": 5e-7}
+    assert database.on(own, quenched).wear_coefficient == 5e-7  # a material's own value goes first
+    rows = {row["pair"]: row for row in friction_rows(database) if row["field"] == "wear_coefficient"}
+    assert rows["POM on metal"]["value"] == "1e-06" and rows["POM on metal"]["placeholder"]
+
+
+def test_wear_of_the_user_goes_first_and_bad_entries_are_refused(user):
+    own = load_database(user("wear: [{pair: [metal, POM], second: 3.0e-6}]"))
+    assert own.on("POM", "1.7225-normalised").wear_coefficient == 3e-6
+    assert own.on("1.7225-normalised", "POM").wear_coefficient == 1e-8  # the file leaves it as it is
+    for text, message in (
+        ("wear: [{pair: [POM, metal], third: 1.0e-6}]", "third"),
+        ("wear: [{pair: [POM, metal]}]", "it must give one of first, second"),
+        ("wear: [{pair: [POM], first: 1.0e-6}]", "a list of two families"),
+        ("wear: [{pair: [POM, metal], first: 2}]", "wear_coefficient = 2"),
+        ("wear: [{pair: [POM, metal], first: -1.0e-6}]", "wear_coefficient"),
+    ):
+        with pytest.raises(InputError, match=message):
+            load_database(user(text))

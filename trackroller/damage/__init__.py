@@ -4,11 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Collection
 
-from trackroller.damage import bearing, catalogue, fatigue, heat, multiaxial, own, rating, shakedown, static, verdict
+from trackroller.damage import (
+    bearing,
+    catalogue,
+    fatigue,
+    heat,
+    multiaxial,
+    own,
+    rating,
+    shakedown,
+    static,
+    verdict,
+    wear,
+)
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
 from trackroller.parameters import own_limits
 
-_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, multiaxial)
+_FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 LIMITS |= {path.stem: own.load(path) for path in own_limits.files()}
 
@@ -34,8 +46,14 @@ def computed(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]
 
 
 def of_patches(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
-    """Return the limits to compute that need the tractions of each case."""
-    return tuple(limit for limit in computed(outputs, life_criterion) if TRACTIONS in limit.needs)
+    """Return the limits to compute that need the tractions of each case, not of each mechanics alone."""
+    wanted = computed(outputs, life_criterion)
+    return tuple(limit for limit in wanted if TRACTIONS in limit.needs and limit.shared is None)
+
+
+def of_mechanics(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
+    """Return the limits to compute of which cases with equal mechanics share a part."""
+    return tuple(limit for limit in computed(outputs, life_criterion) if limit.shared is not None)
 
 
 def declared() -> str:

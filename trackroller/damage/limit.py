@@ -118,6 +118,10 @@ class Limit:
         Meaning of the group for the documentation. A group of the solver has its meaning there.
     needs : tuple of str
         What has to be computed first: the groups "peak_stress" and "friction_work" of the solver, and `TRACTIONS`.
+    shared : callable, optional
+        Function of a `SolvedRollers` that returns what `evaluate` needs of the tractions. Cases with equal forces and
+        tractions share its values, so it must not use the speed or values of strength and wear. A name that begins
+        with an underscore is no result.
     results : tuple of Variable
         What `evaluate` returns.
     parameters : tuple of Parameter
@@ -150,6 +154,7 @@ class Limit:
     verdict: Callable[[SolvedRollers, Results], Verdict] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
+    shared: Callable[[SolvedRollers], Results] | None = None
     results: tuple[Variable, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     materials: tuple[Parameter, ...] = ()

@@ -1,11 +1,11 @@
-"""Fields of a case that are mappings of numbers and words, such as the ratings of a bearing."""
+"""Fields of a case that are mappings of numbers, words and lists, such as the ratings of a bearing."""
 
 from __future__ import annotations
 
 import json
 import math
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -28,6 +28,8 @@ class MappingField:
         Keys that are numbers.
     words : mapping of str to tuple of str
         Keys that are words, with the words that each allows.
+    lists : tuple of Parameter
+        Keys that are lists of numbers.
     may_miss : tuple of str
         Keys that may be left out.
     check : callable, optional
@@ -36,14 +38,15 @@ class MappingField:
 
     name: str
     meaning: str
-    numbers: tuple[Parameter, ...]
-    words: Mapping[str, tuple[str, ...]]
+    numbers: tuple[Parameter, ...] = ()
+    words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    lists: tuple[Parameter, ...] = ()
     may_miss: tuple[str, ...] = ()
     check: Callable[[dict[str, Any]], None] | None = None
 
     def canonical(self, value: Mapping[str, Any]) -> dict[str, Any]:
         """Return the checked mapping; raise `InputError` for an unknown, missing or impossible entry."""
-        keys = [*self.words, *(number.name for number in self.numbers)]
+        keys = [*self.words, *(number.name for number in (*self.numbers, *self.lists))]
         check_names(f"{self.name}: key", value, keys)
         missing = [key for key in keys if value.get(key) is None and key not in self.may_miss]
         if missing:
@@ -53,18 +56,31 @@ class MappingField:
             check_names(f"{self.name}.{key}", [value[key]], allowed)
             given[key] = str(value[key])
         for number in self.numbers:
-            if value.get(number.name) is None:
-                continue
-            where = f"{self.name}.{number.name}"
-            given[number.name] = number_in(value[number.name], where, number.allowed(), unit=number.unit)
-            if not math.isfinite(given[number.name]) or not number.accepts(given[number.name]):
-                raise InputError(where, value[number.name], number.allowed())
+            if value.get(number.name) is not None:
+                given[number.name] = self._number(number, value[number.name])
+        for number in self.lists:
+            listed = value[number.name]
+            if not isinstance(listed, (list, tuple)):
+                raise InputError(f"{self.name}.{number.name}", listed, f"a list of numbers [{number.unit}]")
+            given[number.name] = [self._number(number, one) for one in listed]
         if self.check is not None:
             self.check(given)
         return given
 
+    def _number(self, number: Parameter, value: Any) -> float:
+        """Return a number that is finite and lies within its bounds."""
+        where = f"{self.name}.{number.name}"
+        given = number_in(value, where, number.allowed(), unit=number.unit)
+        if not math.isfinite(given) or not number.accepts(given):
+            raise InputError(where, value, number.allowed())
+        return given
+
+    def parsed(self, text: str) -> dict[str, Any]:
+        """Return the mapping of a canonical JSON text; {} where it is not given."""
+        return json.loads(text) if text else {}
+
     def columns(self, texts: np.ndarray) -> dict[str, np.ndarray]:
         """Return the entries of n cases by key, (n,), from their canonical JSON: NaN and "" where not given."""
-        parsed = once_each(lambda text: json.loads(text) if text else {}, texts)
+        parsed = once_each(self.parsed, texts)
         out = {n.name: np.array([own.get(n.name, np.nan) for own in parsed], dtype=float) for n in self.numbers}
         return out | {key: np.array([own.get(key, "") for own in parsed], dtype=object) for key in self.words}

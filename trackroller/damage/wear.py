@@ -1,9 +1,29 @@
-"""Wear of roller and guide: depth of one overrolling by Archard's law."""
+"""Wear of roller and guide at the rate of the new profiles: depth, volume, run-in distance and life.
+
+The depth of an overrolling is the integral of a local rate along the rolling direction: k p |s| by Archard's law, or a
+loss of mass by a table over the frictional work |tau| |s| of the place. The integral of all depths is the volume. It is
+tied to the friction energy of the contact model, which is more exact than the sum over the elements.
+
+ASSUME: wear coefficients do not depend on pressure, speed or temperature; the debris leaves the contact.
+ASSUME: a braked roller in full slip stands still, so that the guide slides below it over the whole distance.
+ASSUME: beyond its last work rate, a table of the energy law continues with its last slope.
+"""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike
+
+from trackroller.damage.histories import Tractions
+from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
+from trackroller.damage.mapping import MappingField
+from trackroller.errors import InputError
+from trackroller.parameters import Parameter
+
+KM_PER_HOUR = 0.06  # for 1 m/min
+TIE = 1e-9  # relative difference below which the outer one of two depths counts as the deeper one
 
 
 def wear_depth(pressure: np.ndarray, slip_speed: np.ndarray, spacing: np.ndarray, coefficient: ArrayLike) -> np.ndarray:
@@ -43,3 +63,210 @@ def wear_depth(pressure: np.ndarray, slip_speed: np.ndarray, spacing: np.ndarray
     worn = np.einsum("...yx,...yx->...x", pressure, slip_speed) * np.asarray(spacing)[..., None]
     k = np.asarray(coefficient, float)
     return np.asarray(1e-3 * k.reshape(k.shape + (1,) * (worn.ndim - k.ndim)) * worn)
+
+
+def mass_loss(work: np.ndarray, rates: ArrayLike, losses: ArrayLike) -> np.ndarray:
+    """Return the loss of mass of the energy law, linear between the points of its table.
+
+    Parameters
+    ----------
+    work : numpy.ndarray
+        Frictional work per area and distance travelled, |tau| |s| [N/mm2].
+    rates, losses : array_like
+        Work rates, rising [N/mm2], and losses of mass there [ug/(m mm2)].
+
+    Returns
+    -------
+    numpy.ndarray
+        Loss per area and distance, of the shape of `work` [ug/(m mm2)]; beyond the table with its last slope.
+    """
+    x, y = np.asarray(rates, float), np.asarray(losses, float)
+    slope = (y[-1] - y[-2]) / (x[-1] - x[-2])
+    return np.asarray(np.interp(work, x, y) + slope * np.maximum(work - x[-1], 0.0))
+
+
+def deepest(x: np.ndarray, depth: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest depth over x and its place, by a parabola through the three highest neighbours.
+
+    Parameters
+    ----------
+    x : numpy.ndarray
+        Equidistant places, (n, contact, x) [mm].
+    depth : numpy.ndarray
+        Depths, (n, contact, body, x) [mm]. Of two equal depths the outer one counts, in mirrored contacts too.
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        Depth and place, (n, contact, body) [mm]; the place is NaN where nothing wears.
+    """
+    outward = np.array([1.0, -1.0])[:, None] * np.arange(x.shape[-1])
+    at = np.argmax(np.nan_to_num(depth) * (1.0 + TIE * outward[:, None, :]), axis=-1)[..., None]
+    inner = np.clip(at, 1, x.shape[-1] - 2)
+    left, top, right = (np.take_along_axis(depth, inner + i, axis=-1)[..., 0] for i in (-1, 0, 1))
+    curved = (at == inner)[..., 0] & (2.0 * top > left + right)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        shift = np.where(curved, 0.5 * (right - left) / (2.0 * top - left - right), 0.0)
+    largest = np.where(curved, top + 0.25 * shift * (right - left), np.take_along_axis(depth, at, axis=-1)[..., 0])
+    step = (x[..., 1] - x[..., 0])[..., None]
+    place = np.take_along_axis(np.broadcast_to(x[:, :, None, :], depth.shape), at, axis=-1)[..., 0] + shift * step
+    return largest, np.where(largest > 0.0, place, np.nan)
+
+
+def _gaps_at_edges(solved: SolvedRollers, t: Tractions) -> np.ndarray:
+    """Return the smaller gap of the unworn profiles at the two lateral edges of each patch, (n, contact) [mm]."""
+    c = solved.cases
+    if solved.options["normal"] == "hertz":
+        curvature = 1.0 / c["roller_profile_radius"] + 1.0 / c["guide_profile_radius"]
+        return np.asarray(0.5 * curvature[:, None] * solved.values["semi_axis_lateral"] ** 2)
+    from trackroller.contact.drawn_profiles import gap  # heavy, and planning reads only the declaration below
+
+    out = np.full(t.x.shape[:2], np.nan)
+    for case, contact in t.patches():
+        side = 1 - 2 * contact  # a gap counts x outward
+        x, loaded = side * t.x[case, contact], (t.pressure[case, contact] > 0.0).any(axis=0)
+        half, own = 0.5 * abs(x[1] - x[0]), x[loaded]
+        guide, roller = str(c["guide_profile"][case]), str(c["roller_profile"][case])
+        r_g, r_r = float(c["guide_profile_radius"][case]), float(c["roller_profile_radius"][case])
+        alpha, curve = float(np.deg2rad(c["contact_angle"][case])), float(c["guide_curve_radius"][case])
+        between = gap(guide, roller, r_g, r_r, alpha, float(solved.rolling_radius[case]), curve, contact + 1)
+        height = between.lateral(np.array([own.min() - half, *own, own.max() + half]))
+        out[case, contact] = max(min(height[0], height[-1]) - height.min(), 0.0)
+    return t.spread(out)
+
+
+def _rates(solved: SolvedRollers, t: Tractions, sliding: np.ndarray) -> list[np.ndarray]:
+    """Return p |s| [MPa], or the loss of mass [ug/(m mm2)] of roller and guide, (n, contact, y, x) each."""
+    if solved.options["wear_law"] == "archard":
+        return [t.pressure * sliding] * 2
+    work, texts = np.hypot(t.shear_lateral, t.shear_rolling) * sliding, solved.cases["wear_table"]
+    out = [np.full_like(work, np.nan) for _ in BODIES]
+    for text in set(texts.tolist()) - {""}:
+        own, rows = TABLE.parsed(text), texts == text
+        for body, rate in zip(BODIES, out, strict=True):
+            rate[rows] = mass_loss(work[rows], own["work_rate"], own[body])
+    return out
+
+
+def of_mechanics(solved: SolvedRollers) -> Results:
+    """Return what does not depend on coefficients and speed: depths and volumes for a coefficient of 1.
+
+    The coefficient is k by Archard's law, and 1/density by the energy law. Results are `_worn_depth` [mm], `wear_place`
+    [mm] and `_worn_volume` [mm3/km], (n, contact, body), and `_gap_at_edge` [mm], (n, contact).
+    """
+    t = solved.tractions()
+    locked = (solved.cases["motor_force"] > 0.0)[:, None, None, None] & np.isnan(t.slip_rolling) & (t.pressure >= 0.0)
+    sliding = np.where(locked, 1.0, np.hypot(t.slip_lateral, t.slip_rolling))
+    wide, long = (axis[..., 1] - axis[..., 0] for axis in (t.x, t.y))
+    summed = np.sum(np.hypot(t.shear_lateral, t.shear_rolling) * sliding, axis=(2, 3)) * wide * long
+    with np.errstate(divide="ignore", invalid="ignore"):
+        tied = solved.values["friction_energy_per_distance"] / summed
+    long = long * np.where(np.isfinite(tied), tied, 1.0)
+    lines = [wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate))) for rate in _rates(solved, t, sliding)]
+    depth = np.stack(lines, axis=2)
+    largest, place = deepest(t.x, depth)
+    largest[:, :, 0] = np.where(locked.any(axis=(2, 3)), np.nan, largest[:, :, 0])  # it is not overrolled
+    return {
+        "_worn_depth": largest,
+        "wear_place": place,
+        "_worn_volume": 1e6 * depth.sum(axis=-1) * wide[..., None],
+        "_gap_at_edge": _gaps_at_edges(solved, t),
+    }
+
+
+def evaluate(solved: SolvedRollers) -> Results:
+    """Return depths, volume and life, (n, contact, body), and the run-in distance [km], (n,)."""
+    c, v, hourly = solved.cases, solved.values, solved.overrollings_per_hour
+    archard = solved.options["wear_law"] == "archard"
+    k = solved.materials["wear_coefficient"] if archard else 1.0 / solved.materials["density"]
+    k = (k * c["wear_coefficient_factor"][:, None])[:, None, :]
+    depth = k * v["_worn_depth"]
+    travel = c["velocity"] * KM_PER_HOUR
+    per_km = depth * (hourly / travel[:, None])[:, None, :]
+    counted = np.where(np.isnan(hourly)[:, None, :], 0.0, per_km)  # a guide without overrollings does not count
+    with np.errstate(divide="ignore", invalid="ignore"):
+        run_in = np.min(v["_gap_at_edge"] / np.max(counted, axis=2), axis=1)
+        life = c["permissible_wear_depth"][:, None, None] / (depth * hourly[:, None, :])
+    return {
+        "wear_depth_per_overrolling": depth,
+        "wear_depth_per_km": per_km,
+        "wear_place": v["wear_place"],
+        "wear_volume_per_km": k * v["_worn_volume"],
+        "run_in_distance": run_in,
+        "wear_life_hours": life,
+    }
+
+
+def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+    """Return the depth per km over the one that the required travel allows, and the hours, (n, body)."""
+    allowed = solved.cases["permissible_wear_depth"] / solved.cases["required_travel"]
+    return Verdict(worst(results["wear_depth_per_km"]) / allowed[:, None], -worst(-results["wear_life_hours"]))
+
+
+def check(given: dict[str, Any]) -> None:
+    """Refuse a table whose lists differ in length, or whose work rates do not rise."""
+    lengths = {key: len(values) for key, values in given.items()}
+    if len(set(lengths.values())) > 1 or min(lengths.values()) < 2:
+        told = ", ".join(f"{key} {length}" for key, length in lengths.items())
+        raise InputError("wear_table", f"numbers of entries: {told}", "lists of equal length, at least 2")
+    if np.any(np.diff(given["work_rate"]) <= 0.0):
+        raise InputError("wear_table.work_rate", given["work_rate"], "work rates that rise")
+
+
+BODIES = ("roller", "guide")
+_CB = ("contact", "body")
+TABLE = MappingField(
+    "wear_table",
+    "for wear_law: energy, loss of mass of each body [ug/(m mm2)] over the frictional work [N/mm2], such as the "
+    "railway values for wheel R8T on rail 900A, to be checked before use: {work_rate: [0, 10.4, 77.2, 100], roller: "
+    "[0, 55, 55, 1466], guide: [0, 55, 55, 1466]}",
+    lists=(
+        optional("work_rate", "T gamma/A", "N/mm2", "frictional work per area and distance", 0.0, closed=True),
+        optional("roller", "", "ug/(m mm2)", "loss of mass of the roller", 0.0, closed=True),
+        optional("guide", "", "ug/(m mm2)", "loss of mass of the guide", 0.0, closed=True),
+    ),
+    check=check,
+)
+
+LIMIT = Limit(
+    name="wear",
+    title="wear (permissible depth)",
+    group="wear",
+    meaning="depth and volume of wear, travel until the groove has changed, life to the permissible depth",
+    shared=of_mechanics,
+    evaluate=evaluate,
+    verdict=verdict,
+    needs=("friction_work", TRACTIONS),
+    results=variables(
+        "wear",
+        ("wear_depth_per_overrolling", _CB, "mm", "delta", "largest depth that an overrolling wears off"),
+        ("wear_depth_per_km", _CB, "mm km-1", "", "largest depth that is worn off per km of travel"),
+        ("wear_place", _CB, "mm", "x_C", "lateral place of the largest wear depth", {"odd": True}),
+        ("wear_volume_per_km", _CB, "mm3 km-1", "V", "volume that is worn off per km of travel"),
+        ("run_in_distance", (), "km", "", "travel until the wear equals the gap at the edge", {"shown": True}),
+        ("wear_life_hours", _CB, "h", "L_h,W", "hours to the permissible wear depth at the rate of new profiles"),
+    ),
+    parameters=(
+        optional("permissible_wear_depth", "h_zul", "mm", "permissible wear depth of roller and guide", 0.0, 1e3),
+        optional("required_travel", "", "km", "travel that the wear depth has to allow", 0.0, 1e9),
+        Parameter(
+            "wear_coefficient_factor",
+            "f_k",
+            "-",
+            1.0,
+            "factor on the wear coefficients of both bodies, which are rarely known better than to a decade",
+            0.0,
+            1e6,
+            role="condition",
+        ),
+    ),
+    materials=(optional("wear_coefficient", "k", "mm3/(N m)", "wear coefficient", 0.0, 1.0, closed=True),),
+    mappings=(TABLE,),
+    requires=("wear_coefficient", "permissible_wear_depth", "guide_overrollings_per_hour"),
+    ends_at_once=False,
+    compares=("wear_depth_per_km", "permissible wear depth over the required travel"),
+    assumes=(
+        "Wear: the rate of the new profiles holds as far as the run-in distance; no wear coefficient depends on "
+        "pressure, speed or temperature.",
+    ),
+)

@@ -1,10 +1,11 @@
-"""Materials by name and friction coefficients by pair."""
+"""Materials by name, and friction and wear coefficients by pair."""
 
 from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from itertools import product
 from typing import Any
 
 from trackroller.errors import InputError, nearest, unknown_name
@@ -32,11 +33,14 @@ class MaterialDatabase:
         Friction coefficients of each pair of names or families, by level.
     files : tuple of str
         Files from which the database was read, the built-in file first.
+    wear_table : mapping of tuple of str to Value
+        Wear coefficients by the name or family of the body that wears, and by that of its partner.
     """
 
     materials: Mapping[str, Material]
     friction_table: Mapping[frozenset[str], Mapping[str, Value]]
     files: tuple[str, ...] = ()
+    wear_table: Mapping[tuple[str, str], Value] = field(default_factory=dict)
 
     def names(self) -> tuple[str, ...]:
         """Return the names of all materials."""
@@ -119,12 +123,28 @@ class MaterialDatabase:
         if level not in FRICTION_LEVELS:
             raise unknown_name("friction level", level, FRICTION_LEVELS)
         names = [self._names_of(body) for body in (first, second)]
-        for a in names[0]:
-            for b in names[1]:
-                levels = self.friction_table.get(frozenset((a, b)), {})
-                if level in levels:
-                    return levels[level]
+        for pair in product(*names):
+            levels = self.friction_table.get(frozenset(pair), {})
+            if level in levels:
+                return levels[level]
         raise self._unknown_pair(names, level)
+
+    def on(self, body: str | Material, partner: str | Material) -> Material:
+        """Return the material of a body with its wear coefficient on the material of its partner.
+
+        A wear coefficient of the material itself has priority over that of the pair. Without either, the material has
+        no wear coefficient.
+        """
+        own, other = self.material(body), self.material(partner)
+        if own.wear_coefficient is not None:
+            return own
+        for pair in product(self._names_of(own), self._names_of(other)):
+            if pair in self.wear_table:
+                known = self.wear_table[pair]
+                records = {**own.records, "wear_coefficient": replace(known, note=f"on {other.name}")}
+                changed: dict[str, Any] = {"wear_coefficient": known.value, "records": records}
+                return replace(own, **changed)
+        return own
 
     def friction_record(self, roller: str | Material, guide: str | Material, level: str | None) -> dict[str, Any]:
         """Return the friction coefficient of a pair as a result records it: pair, level, value, source, placeholder.

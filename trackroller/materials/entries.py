@@ -15,6 +15,7 @@ from trackroller.parameters import FRICTION_LEVELS, PARAMETERS, Parameter
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range")
 NUMBERS = PROPERTIES | ALTERNATIVES
+BODIES_OF_PAIR = ("first", "second")  # keys of a wear coefficient: the body of the pair that wears
 
 
 class EntryParser:
@@ -166,22 +167,32 @@ class EntryParser:
 
     def friction(self, entry: Any) -> tuple[frozenset[str], dict[str, Value]]:
         """Return the pair of names and the friction coefficients by level of one entry of the friction list."""
-        where = f"{self.file}: friction"
+        prop = PARAMETERS["friction_coefficient"]
+        pair, levels = self._of_pair(entry, "friction", "level", FRICTION_LEVELS, prop)
+        return frozenset(pair), levels
+
+    def wear(self, entry: Any) -> dict[tuple[str, str], Value]:
+        """Return the wear coefficients of one entry of the wear list, by the body that wears and its partner."""
+        pair, given = self._of_pair(entry, "wear", "body", BODIES_OF_PAIR, PROPERTIES["wear_coefficient"])
+        return {pair if body == "first" else (pair[1], pair[0]): value for body, value in given.items()}
+
+    def _of_pair(
+        self, entry: Any, section: str, kind: str, keys: tuple[str, ...], prop: Parameter
+    ) -> tuple[tuple[str, str], dict[str, Value]]:
+        """Return the pair of names of an entry, and its values by `keys`, of which at least one must be given."""
+        where = f"{self.file}: {section}"
         if not isinstance(entry, Mapping):
-            raise InputError(where, entry, "an entry must look like {pair: [metal, PA6], typical: 0.2}")
+            raise InputError(where, entry, f"an entry must look like {{pair: [metal, PA6], {keys[0]}: NUMBER}}")
         pair = entry.get("pair")
         if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(p, str) and p for p in pair):
             allowed = "it must be a list of two families or material names"
             raise InputError(f"{where}.pair", pair, allowed, "Write pair: [metal, PA6].")
         where = f"{where}.{'-'.join(pair)}"
         given = {key: value for key, value in entry.items() if key != "pair"}
-        check_names(f"{where}: level", given, FRICTION_LEVELS)
-        levels = {
-            key: self.value(PARAMETERS["friction_coefficient"], value, f"{where}.{key}") for key, value in given.items()
-        }
-        if not levels:
-            raise InputError(where, dict(entry), f"it must give one of {', '.join(FRICTION_LEVELS)}")
-        return frozenset(pair), levels
+        check_names(f"{where}: {kind}", given, keys)
+        if not given:
+            raise InputError(where, dict(entry), f"it must give one of {', '.join(keys)}")
+        return (pair[0], pair[1]), {key: self.value(prop, value, f"{where}.{key}") for key, value in given.items()}
 
 
 def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> Material:

@@ -17,7 +17,7 @@ BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
 ENVIRONMENT = "TRACKROLLER_MATERIALS"
 BUILTIN = "built-in"
-SECTIONS: dict[str, type] = {"sources": dict, "materials": dict, "friction": list}
+SECTIONS: dict[str, type] = {"sources": dict, "materials": dict, "friction": list, "wear": list}
 
 
 def find_user_file(argument: Path | str | None = None) -> Path | None:
@@ -68,7 +68,7 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     Parameters
     ----------
     text : str
-        YAML with the sections sources, materials and friction, each optional.
+        YAML with the sections sources, materials, friction and wear, each optional.
     file : str
         Name of the file in messages and as the origin of its values.
     over : MaterialDatabase, optional
@@ -77,7 +77,7 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     Returns
     -------
     MaterialDatabase
-        Materials and friction coefficients of both.
+        Materials, friction and wear coefficients of both.
 
     Raises
     ------
@@ -87,6 +87,7 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     sections = _sections(text, file)
     materials = dict(over.materials) if over else {}
     friction = dict(over.friction_table) if over else {}
+    wear = dict(over.wear_table) if over else {}
     origin = file if over is None else Path(file).name
     parser = EntryParser(file, origin, {str(k): " ".join(str(v).split()) for k, v in sections["sources"].items()})
     for name, entry in sections["materials"].items():
@@ -94,7 +95,9 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     for entry in sections["friction"]:
         pair, levels = parser.friction(entry)
         friction[pair] = {**friction.get(pair, {}), **levels}
-    return MaterialDatabase(materials, friction, (*(over.files if over else ()), file))
+    for entry in sections["wear"]:
+        wear |= parser.wear(entry)
+    return MaterialDatabase(materials, friction, (*(over.files if over else ()), file), wear)
 
 
 def _sections(text: str, file: str) -> dict[str, Any]:

@@ -130,9 +130,12 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     def guesses_of_limits(self) -> dict[str, str]:
         """Return the values of single limits that are guesses without a source, with the range that is expected."""
         return {
-            name: "no range is given"
-            if r.range is None
-            else f"expected from {r.range[0]:g} to {r.range[1]:g} {r.unit}".rstrip(" -")
+            name: f"{r.note}, " * bool(r.note)
+            + (
+                "no range is given"
+                if r.range is None
+                else f"expected from {r.range[0]:g} to {r.range[1]:g} {r.unit}".rstrip(" -")
+            )
             for name, r in self.records.items()
             if r.placeholder and name in OF_LIMITS
         }

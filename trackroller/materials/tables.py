@@ -44,13 +44,16 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
 
 
 def friction_rows(database: MaterialDatabase) -> list[dict[str, str]]:
-    """Return one row for each pair and level of the friction table."""
+    """Return one row for each pair and level of the friction table, and for each pair and body of the wear table."""
     rows = []
     for pair, levels in database.friction_table.items():
         names = sorted(pair) if len(pair) == 2 else [*pair, *pair]
         for level, record in levels.items():
             head = {"pair": " - ".join(names), "level": level}
             rows.append(head | _row("friction_coefficient", "mu", record))
+    for (body, partner), record in database.wear_table.items():
+        head = {"pair": f"{body} on {partner}", "level": f"wear of {body}"}
+        rows.append(head | _row("wear_coefficient", PROPERTIES["wear_coefficient"].symbol, record))
     return rows
 
 

@@ -224,6 +224,15 @@ _OPTIONS = (
         kind="switch",
     ),
     Option(
+        "wear_law",
+        "archard",
+        "how friction wears a surface",
+        {
+            "archard": "depth by pressure times slip (wear_coefficient of the pair)",
+            "energy": "loss of mass by frictional work (wear_table of the case, density of the material)",
+        },
+    ),
+    Option(
         "failure_probability",
         0.5,
         "failure probability at which the group limits states each life",

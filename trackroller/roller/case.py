@@ -86,8 +86,12 @@ class Case(_Numbers):
     heat_transfer_coefficient, cooled_area, ambient_temperature : float or None
         Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the temperature of the air [degC],
         for the limit `heat`.
-    bearing, catalogue : mapping or None
-        Bearing inside the roller and limits of a maker's catalogue; see "Parameters, options and results".
+    permissible_wear_depth, required_travel, wear_coefficient_factor : float or None
+        Wear depth that ends the life [mm], travel that it has to allow [km], and a factor on the wear coefficients [1],
+        for the limit `wear`.
+    bearing, catalogue, wear_table : mapping or None
+        Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of wear; see "Parameters,
+        options and results".
 
     Attributes
     ----------
@@ -276,6 +280,10 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
         level = level if isinstance(level, str) else "typical"
         friction[i] = database.friction(roller[i], guide[i], level=level).value
     numbers["friction_coefficient"] = friction
+    pairs = list(zip(map(id, roller), map(id, guide), strict=True))
+    bodies = dict(zip(pairs, zip(roller, guide, strict=True), strict=True))
+    worn = {pair: (database.on(a, b), database.on(b, a)) for pair, (a, b) in bodies.items()}
+    roller, guide = ([worn[pair][i] for pair in pairs] for i in (0, 1))
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
     return CaseTable(**numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide))
 

@@ -72,7 +72,9 @@ def plain_inputs(case: Case) -> dict[str, Any]:
 
 def material_values(case: Case, database: MaterialDatabase) -> dict[str, dict[str, Any]]:
     """Return the values of both materials of a case with their sources, by `roller_material` and `guide_material`."""
-    return {name: database.material(getattr(case, name)).with_sources() for name in MATERIAL_FIELDS}
+    roller, guide = case.roller_material, case.guide_material
+    pair = database.on(roller, guide), database.on(guide, roller)
+    return {name: body.with_sources() for name, body in zip(MATERIAL_FIELDS, pair, strict=True)}
 
 
 def _plain(value: Any) -> Any:

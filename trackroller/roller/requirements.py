@@ -52,7 +52,7 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     columns += [m.youngs_modulus for m in (table.roller, table.guide)]
     columns += [m.poisson_ratio for m in (table.roller, table.guide)]
     columns.append(np.where(table.friction_law != "", table.velocity, 0.0))
-    for name in MECHANICAL_MAPPINGS:
+    for name in (*MECHANICAL_MAPPINGS, "wear_table"):  # the wear of a patch by the energy law is computed once, too
         texts = getattr(table, name)
         known = {text: i for i, text in enumerate(dict.fromkeys(texts.tolist()))}
         columns.append(np.array([known[text] for text in texts.tolist()], dtype=float))

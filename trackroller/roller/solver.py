@@ -14,7 +14,7 @@ from trackroller.contact.settings import converged_up_to
 from trackroller.damage import computed, fatigue, judged, of_patches, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
-from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS
+from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
@@ -59,6 +59,7 @@ def solve(
     life_rule: str | None = None,
     life_criterion: str | None = None,
     credit_pressure: bool | None = None,
+    wear_law: str | None = None,
     failure_probability: float | None = None,
     normal: str | None = None,
     stop_if: str | None = None,
@@ -99,6 +100,8 @@ def solve(
         Stress that enters the S-N curve: "von_mises_peak", "von_mises_amplitude", "findley" or "dang_van".
     credit_pressure : bool
         Whether hydrostatic pressure lowers Dang Van's stress (default).
+    wear_law : str
+        Law of wear: "archard" with the wear coefficient of the pair, or "energy" with the `wear_table` of the case.
     failure_probability : float
         Failure probability in (0, 1) at which the group "limits" states each life.
     normal : str
@@ -142,23 +145,7 @@ def solve(
     >>> dict(both.roller_life_hours.sizes)
     {'case': 2}
     """
-    named = {
-        "outputs": outputs,
-        "contact_model": contact_model,
-        "spin_model": spin_model,
-        "accuracy": accuracy,
-        "hertz": hertz,
-        "stress_bodies": stress_bodies,
-        "life_rule": life_rule,
-        "life_criterion": life_criterion,
-        "credit_pressure": credit_pressure,
-        "failure_probability": failure_probability,
-        "normal": normal,
-        "stop_if": stop_if,
-        "shortcuts": shortcuts,
-        "slip_terms": slip_terms,
-    }
-    given = {name: value for name, value in named.items() if value is not None}
+    given = {name: value for name, value in locals().items() if name in OPTIONS and value is not None}
     if hasattr(cases, "data_vars"):
         return _solve_design(cases, given, database)
     single = isinstance(cases, Case) or hasattr(cases, "keys")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, computed, judged, of_patches, verdict
+from trackroller.damage import LIMITS, asked, computed, judged, of_mechanics, of_patches, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, SolvedRollers, lacks
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -53,15 +53,17 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None
     """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
     wanted, solved = asked(options.outputs), solved_of(table, v, options)
     for limit in wanted:
-        if TRACTIONS not in limit.needs:  # the others are there: `patch_limits`
+        if TRACTIONS not in limit.needs or limit.shared is not None:  # the others are there: `patch_limits`
             v |= limit.evaluate(solved)
     if verdict.GROUP in options.outputs:
         names, counted = list(LIMITS), judged(options.outputs)
         v |= verdict.verdict(solved, counted, [names.index(limit.name) for limit in counted], len(names))
+    for name in [name for name in v if name.startswith("_")]:
+        del v[name]
 
 
 def patch_limits(results: Results, options: Options) -> None:
-    """Add the results of the limits that need the tractions of the patches."""
+    """Add the results of the limits that need the tractions of the patches, or what these limits share."""
     scene = results.scene
 
     def fields() -> Tractions:
@@ -72,21 +74,28 @@ def patch_limits(results: Results, options: Options) -> None:
     solved = dataclasses.replace(solved_of(scene.table, results.values, options), tractions=fields)
     for limit in of_patches(options.outputs, options.life_criterion):
         results.values |= limit.evaluate(solved)
+    for limit in of_mechanics(options.outputs, options.life_criterion):
+        assert limit.shared is not None
+        results.values |= limit.shared(solved)
 
 
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
     solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
     names = {body: own.name for body, own in bodies.items()}
-    guesses = {str(name): own for body in bodies.values() for name, own in zip(body.name, body.guesses, strict=True)}
+    guesses = dict.fromkeys(
+        (str(name), tuple(own.items()))
+        for body in bodies.values()
+        for name, own in zip(body.name, body.guesses, strict=True)
+    )
     out = []
     for limit in computed(options.outputs, options.life_criterion):
         out += lacks(limit, solved, names)
-        for material, placeholders in guesses.items():
-            guessed = [f"{name} ({words})" for name, words in placeholders.items() if name in limit.requires]
+        for material, placeholders in guesses:
+            guessed = [f"{name} ({words})" for name, words in placeholders if name in limit.requires]
             if guessed:
                 out.append(f"{limit.name}: placeholders of material '{material}': {', '.join(guessed)}.")
-    return out
+    return list(dict.fromkeys(out))
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:

@@ -97,7 +97,7 @@ def chunk_name(cases: np.ndarray) -> str:
 def solver_and_materials(database: MaterialDatabase) -> str:
     """Return a digest of the solver and of every value in a database: the two that a planned case does not state."""
     friction = sorted((sorted(pair), levels) for pair, levels in database.friction_table.items())
-    stated = repr((solver_digest(), sorted(database.materials.items()), friction))
+    stated = repr((solver_digest(), sorted(database.materials.items()), friction, sorted(database.wear_table.items())))
     return hashlib.sha256(stated.encode()).hexdigest()
 
 
