@@ -32,7 +32,9 @@ class InputError(ValueError):
         self.value = value
         self.allowed = allowed
         self.remedy = remedy
+        self.file: str | None = None  # a file that another file or the command names
         self.line: int | None = None  # of the file, the first line being 1
+        self.path: tuple[str, ...] = ()  # of the entry in the file, as far as `field` does not say it
         text = f"{field} = {value!r} is not usable: {allowed}"
         super().__init__(f"{text}. {remedy}" if remedy else text)
 
@@ -41,11 +43,26 @@ class InputError(ValueError):
         """Return the single errors, of which `InputErrors` has several."""
         return (self,)
 
+    @property
+    def shown(self) -> list[str]:
+        """Return the messages to print, one a line."""
+        return [str(self)]
+
+    def at(self, file: object, line: int) -> InputError:
+        """Return this error after noting the file and the line in which the value stands."""
+        self.file, self.line = str(file), line
+        return self
+
     def __str__(self) -> str:
-        return super().__str__() if self.line is None else f"line {self.line}: {super().__str__()}"
+        where = ", ".join(filter(None, (self.file, f"line {self.line}" if self.line else None)))
+        return f"{where}: {super().__str__()}" if where else super().__str__()
 
     def __reduce__(self):  # another process rebuilds the error from its four parts
-        return type(self), (self.field, self.value, self.allowed, self.remedy), {"line": self.line}
+        parts = (self.field, self.value, self.allowed, self.remedy)
+        return type(self), parts, {"file": self.file, "line": self.line, "path": self.path}
+
+
+MOST_SHOWN = 30  # errors of a file that a message names
 
 
 class InputErrors(InputError):
@@ -61,8 +78,14 @@ class InputErrors(InputError):
         """Return the single errors in the order of the file."""
         return self._errors
 
+    @property
+    def shown(self) -> list[str]:
+        """Return the messages of the first errors, and how many there are further."""
+        more = len(self._errors) - MOST_SHOWN
+        return [*map(str, self._errors[:MOST_SHOWN]), *([f"{more} further errors are not shown."] if more > 0 else [])]
+
     def __str__(self) -> str:
-        return "\n".join(map(str, self._errors))
+        return "\n".join(self.shown)
 
     def __reduce__(self):
         return type(self), (self._errors,)
@@ -85,15 +108,18 @@ class Collector:
         self.errors: list[InputError] = []
 
     @contextmanager
-    def part(self) -> Iterator[None]:
-        """Keep the input errors of one part instead of raising them."""
+    def part(self, *path: str) -> Iterator[None]:
+        """Keep the input errors of one part, which stands at `path` in its file, instead of raising them."""
         try:
             yield
         except InputError as error:
+            for one in error.errors:
+                one.path = (*path, *one.path)
             self.errors += error.errors
 
     def check(self) -> None:
         """Raise the errors that were collected, if there are any; a single one as it is."""
+        self.errors = list({str(error): error for error in self.errors}.values())  # two checks may read one table
         if self.errors:
             raise self.errors[0] if len(self.errors) == 1 else InputErrors(self.errors)
 

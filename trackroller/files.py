@@ -39,6 +39,33 @@ def noted_reads() -> Iterator[Reads]:
         _noted.reset(token)
 
 
+def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
+    """Return the content of a user's file, see `read_text`, and note its digest for `noted_reads`."""
+    path = Path(path)
+    try:
+        if path.is_dir():
+            raise InputError(what, str(path), "a file; this is a folder", "Give the path of a file.")
+        if path.exists() and not path.is_file():
+            raise InputError(what, str(path), "a regular file; this is a device or a pipe", "Give the path of a file.")
+        if path.stat().st_size > most:
+            raise InputError(
+                what,
+                str(path),
+                f"a file of at most {MAX_BYTES // 1_000_000} MB",
+                "Put many cases into a CSV file and use design: table.",
+            )
+        content = path.read_bytes()
+        if (noted := _noted.get()) is not None:
+            noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
+        return content
+    except InputError:
+        raise
+    except FileNotFoundError:
+        raise InputError(what, str(path), "a file that exists", "Check the path.") from None
+    except (OSError, ValueError) as exc:
+        raise InputError(what, str(path), f"a readable file ({exc})", "Check path and rights.") from None
+
+
 def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     """Return the text of a user's file.
 
@@ -61,36 +88,16 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     InputError
         If the file is missing, no regular file, too large, unreadable or neither UTF-8 nor UTF-16 with its mark.
     """
-    path = Path(path)
+    content = read_bytes(path, what, most)
+    utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))  # Excel's "Unicode text"
     try:
-        if path.is_dir():
-            raise InputError(what, str(path), "a file; this is a folder", "Give the path of a file.")
-        if path.exists() and not path.is_file():
-            raise InputError(what, str(path), "a regular file; this is a device or a pipe", "Give the path of a file.")
-        if path.stat().st_size > most:
-            raise InputError(
-                what,
-                str(path),
-                f"a file of at most {MAX_BYTES // 1_000_000} MB",
-                "Put many cases into a CSV file and use design: table.",
-            )
-        content = path.read_bytes()
-        if (noted := _noted.get()) is not None:
-            noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
-        utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))  # Excel's "Unicode text"
         text = content.decode("utf-16" if utf_16 else "utf-8-sig")
-        if "\0" in text:
-            raise InputError(what, str(path), "a text; this file holds zero bytes", "Save the file as UTF-8.")
-        return text
-    except InputError:
-        raise
-    except FileNotFoundError:
-        raise InputError(what, str(path), "a file that exists", "Check the path.") from None
     except UnicodeDecodeError as exc:
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
         raise InputError(what, str(path), f"{exc.encoding.upper()} text (byte {exc.start} is not)", remedy) from None
-    except (OSError, ValueError) as exc:
-        raise InputError(what, str(path), f"a readable file ({exc})", "Check path and rights.") from None
+    if "\0" in text:
+        raise InputError(what, str(path), "a text; this file holds zero bytes", "Save the file as UTF-8.")
+    return text
 
 
 @contextmanager

@@ -12,7 +12,7 @@ import io
 import math
 import re
 from collections.abc import Collection, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -187,7 +187,7 @@ def lines_of(text: str) -> dict[tuple[str, ...], int]:
 
 
 @contextmanager
-def errors_by_line(text: str, elsewhere: Collection[str] = ()) -> Iterator[None]:
+def errors_by_line(text: str, elsewhere: Collection[str] = (), file: str | None = None) -> Iterator[None]:
     """Give the input errors of a file their lines in the text, and raise them in this order.
 
     Parameters
@@ -196,20 +196,36 @@ def errors_by_line(text: str, elsewhere: Collection[str] = ()) -> Iterator[None]
         Text of the file.
     elsewhere : collection of str
         Keys whose values come from elsewhere, such as the command line.
+    file : str, optional
+        Name of the file for the messages, if the user did not name it on the command line.
     """
     try:
         yield
     except InputError as error:
-        lines = lines_of(text)
+        lines: dict[tuple[str, ...], int] = {}
+        with suppress(YAMLError):  # the two parsers of ruamel.yaml differ in odd texts
+            lines = {_parts(".".join(path)): line for path, line in lines_of(text).items()}
         for one in error.errors:
-            parts = [part for part in re.split(r"[.\[\]\s:]+", one.field) if part]
-            paths = [(*parts[:n], *own) for n in range(len(parts), -1, -1) for own in ((str(one.value),), ())]
-            own = (path for path in paths if path in lines and path and path[0] not in elsewhere)
-            named = (line for path, line in lines.items() if path and parts and path[-1] == parts[-1] != path[0])
-            one.line = next((lines[path] for path in own), next(named, None))
+            if one.file is None:  # an error of another file has its line already
+                one.file, one.line = file, _line_of(one, lines, elsewhere)
         wrong = Collector()
-        wrong.errors = sorted(error.errors, key=lambda one: one.line or 0)
+        wrong.errors = sorted(error.errors, key=lambda one: (one.file or "", one.line or 0))
         wrong.check()
+
+
+def _parts(text: str) -> tuple[str, ...]:
+    return tuple(part for part in re.split(r"[.\[\]\s:]+", text) if part)
+
+
+def _line_of(error: InputError, lines: Mapping[tuple[str, ...], int], elsewhere: Collection[str]) -> int | None:
+    """Return the line of the entry of an error: the longest part of its field, or of its value, that is a key there."""
+    parts, value = _parts(error.field), _parts(str(error.value)[:200])
+    slices = [parts[i : i + n] for n in range(len(parts), -1, -1) for i in range(len(parts) - n + 1)]
+    before = _parts(".".join(error.path))
+    paths = [(*before, *some, *own) for some in slices for own in (value, ())]
+    own = (path for path in paths if path and path in lines and path[0] not in elsewhere)
+    named = (line for path, line in lines.items() if path and parts and path[-1] == parts[-1] != path[0])
+    return next((lines[path] for path in own), next(named, None))
 
 
 def parse_mapping(text: str, what: str) -> dict[str, Any]:

@@ -55,8 +55,10 @@ def tell_doubts(case: Case) -> None:
 
 def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return the case, the options and the duty among these values."""
-    duty = checked_duty(values.pop("duty")) if "duty" in values else None
-    wrong, options = Collector(), {key: values.pop(key) for key in OPTIONS if key in values}
+    wrong, duty = Collector(), None
+    options = {key: values.pop(key) for key in OPTIONS if key in values}
+    with wrong.part():
+        duty = checked_duty(values.pop("duty")) if "duty" in values else None
     with wrong.part():
         check_names("case field", values, (*FIELDS, *ALIASES, *RADII, *OPTIONS, "duty"))
     for key in options:
@@ -64,6 +66,11 @@ def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[st
             options[key] = [part.strip() for part in options[key].split(",")]
     with wrong.part():
         case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
+    with wrong.part():
+        if options:
+            from trackroller.roller.options import Options  # heavy: numba
+
+            Options(**options)  # refuses wrong options before the solver is imported
     wrong.check()
     return case, options, duty
 
@@ -82,9 +89,6 @@ def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
     case, options, duty = case_of(path, words)
     tell_doubts(case)
-    from trackroller.roller.options import Options  # heavy: numba
-
-    Options(**options)  # refuses wrong options before the solver is imported
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
     return with_duty(solve(case, **(options | more)), duty)

@@ -282,7 +282,7 @@ def run_app(command: Callable[[], object]) -> int:
         code = exc.code if isinstance(exc.code, int) else int(exc.code is not None)
         return _tell(STOPPED, code) if code == INTERRUPTED else code
     except InputError as exc:
-        return max(_tell(str(error), 2) for error in exc.errors)
+        return max(_tell(text, 2) for text in exc.shown)
     except WorkError as exc:
         return _tell(str(exc), 1)
     except KeyboardInterrupt:

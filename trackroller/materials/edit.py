@@ -73,7 +73,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     builtin = read_database(None)
     build_database(text, str(path), over=builtin)  # raises an error if the file is wrong before the change
     text = _with_entry(text, path, name, _entry(values), replace)
-    material = build_database(text, str(path), over=builtin).material(name)
+    material = build_database(text, str(path), over=builtin, by_line=False).material(name)
     _write(path, text)
     return material
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from trackroller.errors import InputError, check_names, unknown_name
+from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.materials.material import Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import complete_curve
@@ -23,18 +23,19 @@ class EntryParser:
 
     Parameters
     ----------
-    file : str
-        Name of the file in error messages.
+    prefix : str
+        What stands before the name of a material in error messages, such as 'materials.'.
     origin : str
         Name of the file that each value keeps as its origin.
     sources : mapping of str to str
         Full references by their short names.
     """
 
-    def __init__(self, file: str, origin: str, sources: Mapping[str, str]) -> None:
-        self.file = file
+    def __init__(self, prefix: str, origin: str, sources: Mapping[str, str]) -> None:
+        self.prefix = prefix
         self.origin = origin
         self.sources = sources
+        self.wrong: set[str] = set()  # names of materials that could not be read
 
     def source(self, text: str) -> str:
         """Return the full reference of a source, or of several separated by ', '; otherwise the text itself."""
@@ -124,23 +125,14 @@ class EntryParser:
         """
         if not isinstance(name, str) or not name.strip():
             remedy = f'Put it in quotes: "{name}".'
-            raise InputError(f"{self.file}: materials", name, "a material's name must be a text", remedy)
-        where = f"{self.file}: materials.{name}"
+            raise InputError("name of a material", name, "a material's name must be a text", remedy)
+        where = f"{self.prefix}{name}"
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, f"it must be a mapping with {', '.join(REQUIRED)}")
-        check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS))
-        for key in TEXTS:
-            if entry.get(key) is not None and not isinstance(entry[key], str):
-                raise InputError(f"{where}.{key}", entry[key], "it must be a text", "Put it in quotes.")
-        if (like := entry.get("like")) is not None and like not in known:
-            raise unknown_name(f"{where}.like", like, known)
+        given = self._given(where, entry, known)
+        like = entry.get("like")
         base = known.get(name if like is None else like)
         inherited = dict(base.records) if base else {}
-        given = {
-            key: self.value(prop, entry[key], where)
-            for key, prop in NUMBERS.items()
-            if key in entry and not (entry[key] is None and prop.allow_missing)
-        }
         records = inherited | {key: value for key, value in given.items() if key in PROPERTIES}
         if ALTERNATIVES.keys() & given.keys():
             records |= complete_curve(given, inherited, where)
@@ -165,6 +157,26 @@ class EntryParser:
             field = error.field.rpartition(".")[2]
             raise InputError(f"{where}.{field}", error.value, error.allowed, error.remedy) from None
 
+    def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
+        """Return the numbers that an entry gives; raise the errors of all its fields together."""
+        wrong, given = Collector(), {}
+        with wrong.part():
+            check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS))
+        for key in TEXTS:
+            if entry.get(key) is not None and not isinstance(entry[key], str):
+                wrong.errors.append(InputError(f"{where}.{key}", entry[key], "it must be a text", "Put it in quotes."))
+        with wrong.part():
+            if isinstance(like := entry.get("like"), str) and like not in known:
+                if like in self.wrong:
+                    raise InputError(f"{where}.like", like, "a material without errors", f"Mend '{like}' first.")
+                raise unknown_name(f"{where}.like", like, known)
+        for key, prop in NUMBERS.items():
+            if key in entry and not (entry[key] is None and prop.allow_missing):
+                with wrong.part():
+                    given[key] = self.value(prop, entry[key], where)
+        wrong.check()
+        return given
+
     def friction(self, entry: Any) -> tuple[frozenset[str], dict[str, Value]]:
         """Return the pair of names and the friction coefficients by level of one entry of the friction list."""
         prop = PARAMETERS["friction_coefficient"]
@@ -180,7 +192,7 @@ class EntryParser:
         self, entry: Any, section: str, kind: str, keys: tuple[str, ...], prop: Parameter
     ) -> tuple[tuple[str, str], dict[str, Value]]:
         """Return the pair of names of an entry, and its values by `keys`, of which at least one must be given."""
-        where = f"{self.file}: {section}"
+        where = section
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, f"an entry must look like {{pair: [metal, PA6], {keys[0]}: NUMBER}}")
         pair = entry.get("pair")
@@ -189,10 +201,16 @@ class EntryParser:
             raise InputError(f"{where}.pair", pair, allowed, "Write pair: [metal, PA6].")
         where = f"{where}.{'-'.join(pair)}"
         given = {key: value for key, value in entry.items() if key != "pair"}
-        check_names(f"{where}: {kind}", given, keys)
-        if not given:
+        levels, wrong = {}, Collector()
+        with wrong.part():
+            check_names(f"{where}: {kind}", given, keys)
+        for key in filter(given.__contains__, keys):
+            with wrong.part(key):
+                levels[key] = self.value(prop, given[key], f"{where}.{key}")
+        wrong.check()
+        if not levels:
             raise InputError(where, dict(entry), f"it must give one of {', '.join(keys)}")
-        return (pair[0], pair[1]), {key: self.value(prop, value, f"{where}.{key}") for key, value in given.items()}
+        return (pair[0], pair[1]), levels
 
 
 def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> Material:
@@ -200,7 +218,7 @@ def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> 
     entry = dict(entry)
     name = entry.pop("name", None) or "inline"
     entry = {key: value for key, value in entry.items() if value is not None}
-    parser = EntryParser("case", "case", {})
+    parser = EntryParser("material ", "case", {})
     # A mapping inherits from a known material only if it asks for it by `like`, not because both have the same name.
     lenders = {key: known[key] for key in known if key != name or entry.get("like") == name}
     return parser.material(name, entry, lenders)

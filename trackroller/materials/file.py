@@ -4,14 +4,15 @@ from __future__ import annotations
 
 import functools
 import os
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
 
-from trackroller.errors import InputError, check_names
+from trackroller.errors import Collector, InputError, check_names
 from trackroller.files import read_text
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
-from trackroller.yaml_file import parse_yaml
+from trackroller.yaml_file import errors_by_line, parse_yaml
 
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
@@ -62,7 +63,9 @@ def _cached(user_file: Path | None, text: str) -> MaterialDatabase:
     return build_database(text, str(user_file), over=_cached(None, ""))
 
 
-def build_database(text: str, file: str, over: MaterialDatabase | None = None) -> MaterialDatabase:
+def build_database(
+    text: str, file: str, over: MaterialDatabase | None = None, *, by_line: bool = True
+) -> MaterialDatabase:
     """Return the database of a file's text, based on another database.
 
     Parameters
@@ -73,6 +76,8 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
         Name of the file in messages and as the origin of its values.
     over : MaterialDatabase, optional
         Database whose values are used where the file gives none.
+    by_line : bool
+        Whether errors name the file and their lines; the text may not be the one that the user sees.
 
     Returns
     -------
@@ -82,36 +87,53 @@ def build_database(text: str, file: str, over: MaterialDatabase | None = None) -
     Raises
     ------
     InputError
-        If the text is wrong; the error names file, material, field, value and remedy.
+        If the text is wrong; the errors of all entries name material, field, value and remedy.
     """
-    sections = _sections(text, file)
+    data = parse_yaml(text, f"materials file {file}")
+    with errors_by_line(text, file=file) if by_line else nullcontext():
+        return _checked(data, file, over)
+
+
+def _checked(data: Any, file: str, over: MaterialDatabase | None) -> MaterialDatabase:
+    """Return the database of the data of a file, see `build_database`."""
+    wrong = Collector()
+    sections = _sections(data, file, wrong)
     materials = dict(over.materials) if over else {}
     friction = dict(over.friction_table) if over else {}
     wear = dict(over.wear_table) if over else {}
     origin = file if over is None else Path(file).name
-    parser = EntryParser(file, origin, {str(k): " ".join(str(v).split()) for k, v in sections["sources"].items()})
+    sources = {str(k): " ".join(str(v).split()) for k, v in sections["sources"].items()}
+    parser = EntryParser("materials.", origin, sources)
     for name, entry in sections["materials"].items():
-        materials[name] = parser.material(name, entry, materials)
-    for entry in sections["friction"]:
-        pair, levels = parser.friction(entry)
-        friction[pair] = {**friction.get(pair, {}), **levels}
-    for entry in sections["wear"]:
-        wear |= parser.wear(entry)
+        known = len(wrong.errors)
+        with wrong.part("materials", str(name)):
+            materials[name] = parser.material(name, entry, materials)
+        if len(wrong.errors) > known:
+            parser.wrong.add(name)
+    for i, entry in enumerate(sections["friction"]):
+        with wrong.part("friction", str(i)):
+            pair, levels = parser.friction(entry)
+            friction[pair] = {**friction.get(pair, {}), **levels}
+    for i, entry in enumerate(sections["wear"]):
+        with wrong.part("wear", str(i)):
+            wear |= parser.wear(entry)
+    wrong.check()
     return MaterialDatabase(materials, friction, (*(over.files if over else ()), file), wear)
 
 
-def _sections(text: str, file: str) -> dict[str, Any]:
-    """Return the checked sections of a file; a missing section is empty."""
-    data = parse_yaml(text, f"materials file {file}")
+def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:
+    """Return the sections of a file; a missing or wrong section is empty."""
     data = {} if data is None else data
     if not isinstance(data, dict):
         allowed = f"its top level must be a mapping with {', '.join(SECTIONS)}"
         raise InputError("materials file", file, allowed)
-    check_names(f"{file}: section", data, SECTIONS)
+    with wrong.part():
+        check_names("section", data, SECTIONS)
     result: dict[str, Any] = {}
     for section, kind in SECTIONS.items():
-        result[section] = kind() if data.get(section) is None else data[section]
-        if not isinstance(result[section], kind):
+        given = data.get(section)
+        result[section] = given if isinstance(given, kind) else kind()
+        if given is not None and not isinstance(given, kind):
             form = "a list of pairs" if kind is list else "a mapping from names"
-            raise InputError(f"{file}: {section}", result[section], f"it must be {form}")
+            wrong.errors.append(InputError(section, given, f"it must be {form}"))
     return result

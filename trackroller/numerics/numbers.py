@@ -15,6 +15,10 @@ _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|
 MAX_LENGTH = 400  # characters of a number
 
 
+class RangeError(ValueError):
+    """A number that the computer cannot hold."""
+
+
 def read_number(value: Any) -> float:
     """Return a number, or a text that is a number in the digits 0 to 9, as a float.
 
@@ -43,7 +47,7 @@ def read_number(value: Any) -> float:
             return float(text.lstrip("."))
         number = float(text)
         if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
-            raise ValueError(f"{text} is too {'large' if number else 'small'} for a number of the computer")
+            raise RangeError(f"{text} is too {'large' if number else 'small'} for a number of the computer")
         return number
     try:
         with np.errstate(over="raise"):
@@ -80,6 +84,8 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
         return in_unit(read_number(parts[0]), parts[1], unit, field, difference)
     try:
         return read_number(value)
+    except RangeError as exc:
+        raise InputError(field or "number", value, str(exc)) from None
     except ValueError:
         return math.nan
 

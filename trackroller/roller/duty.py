@@ -7,7 +7,7 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import InputError, check_names
+from trackroller.errors import Collector, InputError, check_names
 from trackroller.numerics.numbers import number_in
 
 if TYPE_CHECKING:
@@ -22,15 +22,17 @@ def checked_duty(value: Any) -> dict[str, float]:
     """Return a duty with both numbers; raise `InputError` if a number is missing or impossible."""
     if not isinstance(value, Mapping):
         raise InputError("duty", value, "hours_per_day and days_per_year", EXAMPLE)
-    check_names("duty", value, MOST)
-    for name in MOST:
-        if name not in value:
-            raise InputError(f"duty.{name}", None, "a number for each of hours_per_day and days_per_year", EXAMPLE)
-    least = math.nextafter(0.0, 1.0)
-    return {
-        name: number_in(value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most)
-        for name, most in MOST.items()
-    }
+    wrong, duty = Collector(), {}
+    with wrong.part():
+        check_names("duty", value, MOST)
+    for name, most in MOST.items():
+        with wrong.part():
+            if name not in value:
+                raise InputError(f"duty.{name}", None, "a number for each of hours_per_day and days_per_year", EXAMPLE)
+            least = math.nextafter(0.0, 1.0)
+            duty[name] = number_in(value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most)
+    wrong.check()
+    return duty
 
 
 def years(hours: float, duty: Mapping[str, float]) -> float:

@@ -5,7 +5,7 @@ Lengths are in mm and angles in rad unless a name says otherwise; arrays have sh
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -121,24 +121,29 @@ def geometry_problem(columns: Mapping[str, np.ndarray]) -> InputError | None:
         An error that names the field to change: if the rolling radius is not positive, or if a relative curvature is
         not positive, so that the surfaces conform or interlock and there is no point contact.
     """
+    return next((problem for _, problem in geometry_problems(columns)), None)
+
+
+def geometry_problems(columns: Mapping[str, np.ndarray]) -> Iterator[tuple[int, InputError]]:
+    """Yield the number of each case whose geometry contradicts itself, with the error; see `geometry_problem`."""
     names = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
     full = np.broadcast_arrays(*(np.atleast_1d(np.asarray(columns[name], dtype=float)) for name in names))
     get = dict(zip(names, full, strict=True))
     with np.errstate(divide="ignore"):
         geometry = contact_geometry(get)
+    sound = np.ones(len(full[0]), dtype=bool)
     for name, value, allowed, remedy in (
         ("axis_distance", geometry.rolling_radius, *_AXIS),
         ("roller_profile_radius", geometry.curvature_lateral, *_GROOVE),
         ("guide_curve_radius", geometry.curvature_rolling, *_CURVE),
     ):
-        bad = np.flatnonzero(~(value > 0))
-        if bad.size:
-            i = bad[0]
+        bad = np.flatnonzero(sound & ~(value > 0))
+        sound[bad] = False
+        for i in bad.tolist():
             groove, radius = get["guide_profile_radius"][i], geometry.rolling_radius[i]
             limit = groove * np.cos(geometry.contact_angle[i])
             words = {"value": value[i], "groove": -groove, "radius": -radius, "limit": limit}
-            return InputError(name, float(get[name][i]), allowed.format(**words), remedy.format(**words))
-    return None
+            yield i, InputError(name, float(get[name][i]), allowed.format(**words), remedy.format(**words))
 
 
 _AXIS = (

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.contact.friction_laws import law_of
-from trackroller.errors import InputError
+from trackroller.errors import Collector, InputError
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import (
@@ -43,14 +43,20 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
     """
 
     def __post_init__(self) -> None:
+        wrong = Collector()
         for option in OPTIONS.values():
-            if option.kind != "accuracy":  # may be an `Accuracy` or a number as text: `accuracy_settings` checks it
-                object.__setattr__(self, option.name, option.check(getattr(self, option.name)))
-            if option.kind == "condition" and getattr(self, option.name) is not None:
-                parse_condition(getattr(self, option.name))
+            with wrong.part():
+                if option.kind != "accuracy":  # may be an `Accuracy` or a number as text: `accuracy_settings` checks it
+                    object.__setattr__(self, option.name, option.check(getattr(self, option.name)))
+                if option.kind == "condition" and getattr(self, option.name) is not None:
+                    parse_condition(getattr(self, option.name))
+        refused = {error.field for error in wrong.errors}
+        with wrong.part():
+            known = {n: OPTIONS[n].default if n in refused else getattr(self, n) for n in ("contact_model", "outputs")}
+            accuracy_settings(self.accuracy, **known)
+        wrong.check()
         check_pairs(self.hertz, self.normal, self.slip_terms, self.contact_model)
         check_spin_model((self.spin_model,), (self.contact_model,))
-        accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
     @property
     def settings(self) -> Accuracy:

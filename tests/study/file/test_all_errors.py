@@ -8,7 +8,7 @@ import pytest
 from command_line import trackroller
 
 import trackroller as tr
-from trackroller.errors import Collector, InputErrors, likeliest, nearest
+from trackroller.errors import MOST_SHOWN, Collector, InputErrors, likeliest, nearest
 from trackroller.roller.fields import FIELDS
 from trackroller.yaml_file import lines_of
 
@@ -34,6 +34,37 @@ design: lsh
 outputs: [forces, lief]
 """
 
+MATERIALS = """\
+materials:
+  "1.7225-mine":
+    youngs_modulus: 70 kN
+    poison_ratio: 0.3
+    family: 3
+  softer: {like: 1.7225-mine, tensile_strength: -3}
+  lacking: {youngs_modulus: 100 GPa}
+friction:
+  - {pair: [metal, PA6], typicl: 0.2, upper: 20}
+sorces: {}
+"""
+TABLE = """\
+radial_force [kN];roller_materal;mu;roller_material
+-0,2;a;0,1;PA6
+
+0,3;b;5;PA7
+-0,2;c;typical
+-0,2;d;high;PA7
+"""
+SPECTRUM = """\
+nme: sorter
+base: {axis_distance: -3}
+blocks:
+  - {name: loaded, distance: 4000 kg, radial_force: 300}
+  - {name: empty, distnce: 4000, guide_overrollings: -900}
+  - {name: third, distance: 1 km, roller_material: POM}
+life_rule: haibch
+failure_probabilities: [0.1, 2]
+"""
+
 
 def lines(text: str) -> list[str]:
     """Return the start of each message after the name of the program."""
@@ -56,6 +87,119 @@ def test_a_study_file_names_all_its_errors_in_order(tmp_path):
     starts = ["line 1: study key = 'nmae'", "line 5: base = 'groove_width'", "line 7: factors.friction_coefficient"]
     starts += ["line 9: factors.velocity.uniform", "line 10: design = 'lsh'", "line 11: outputs = 'lief'"]
     assert [line[: len(start)] for line, start in zip(told, starts, strict=True)] == starts
+
+
+def starts_of(told: list[str]) -> list[str]:
+    """Return each message up to the value that it refuses."""
+    return [line.partition(" is not usable")[0] for line in told]
+
+
+def test_a_materials_file_names_all_its_errors_in_order(tmp_path, monkeypatch):
+    (tmp_path / "own.yaml").write_text(MATERIALS)
+    monkeypatch.setenv("TRACKROLLER_MATERIALS", "own.yaml")
+    told = lines(trackroller("materials", "list", cwd=tmp_path, code=2).stderr)
+    assert starts_of([line.removeprefix(f"{tmp_path / 'own.yaml'}, ") for line in told]) == [
+        "line 3: materials.1.7225-mine.youngs_modulus = 'kN'",
+        "line 4: materials.1.7225-mine: field = 'poison_ratio'",
+        "line 5: materials.1.7225-mine.family = 3",
+        "line 6: materials.softer.like = '1.7225-mine'",
+        "line 6: materials.softer.tensile_strength = -3",
+        "line 7: materials.lacking = 'youngs_modulus'",
+        "line 9: friction.metal-PA6: level = 'typicl'",
+        "line 9: friction.metal-PA6.upper.friction_coefficient = 20",
+        "line 10: section = 'sorces'",
+    ]
+
+
+def test_an_added_material_names_all_its_errors_and_no_line_of_a_file_that_does_not_hold_it(tmp_path):
+    words = ["--set", "like=PA6", "--set", "youngs_modulus=-3", "--set", "poisson_ratio=3", "--file", "own.yaml"]
+    told = trackroller("materials", "add", "mine", *words, cwd=tmp_path, code=2).stderr
+    assert starts_of(lines(told)) == ["materials.mine.youngs_modulus = -3", "materials.mine.poisson_ratio = 3"]
+
+
+def test_a_table_of_cases_names_all_its_errors_in_order(tmp_path):
+    (tmp_path / "s.yaml").write_text(
+        "name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\npareto: {slip: min, slop: max}\n"
+    )
+    (tmp_path / "t.csv").write_text(TABLE)
+    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
+    assert told == [
+        "line 5: pareto = 'slop'",
+        "t.csv, line 1: table column = 'roller_materal'",
+        "t.csv, line 4: radial_force = '0.3 kN'",
+        "t.csv, line 4: friction_coefficient = '5'",
+        "t.csv, line 5: table = '-0,2, c, typical'",
+        "t.csv, line 6: friction_coefficient = 'high'",
+    ]
+
+
+def test_a_table_of_cases_names_the_lines_of_unknown_materials_and_of_impossible_geometry(tmp_path):
+    (tmp_path / "s.yaml").write_text("name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n")
+    (tmp_path / "t.csv").write_text("material_pair,mu\nPA6 / PA7,0.1\nPOM/PA6,0.2\nPA8 / PA7,0.1\n")
+    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
+    assert told == [
+        "t.csv, line 2: material_pair = 'PA7'",
+        "t.csv, line 4: material_pair = 'PA8'",
+        "t.csv, line 4: material_pair = 'PA7'",
+    ]
+    (tmp_path / "t.csv").write_text("roller_profile_radius [cm]\n-0.7\n-0.5\n-1\n-0.4\n")
+    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
+    assert told == ["t.csv, line 3: roller_profile_radius = -5.0", "t.csv, line 5: roller_profile_radius = -4.0"]
+
+
+def test_words_and_units_of_a_table_are_those_of_a_case(tmp_path):
+    (tmp_path / "s.yaml").write_text("name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n")
+    (tmp_path / "t.csv").write_text("axial_force,mu,material_pair\n10 N,0.25,PA6 / POM\n0.02 kN,typical,POM / PA6\n")
+    design = tr.load_study(tmp_path / "s.yaml").design()
+    typical = tr.load_database().friction("PA6", "POM").value
+    assert design.axial_force.values.tolist() == [10.0, 20.0]
+    assert design.friction_coefficient.values.tolist() == [0.25, typical]
+    assert design.material_pair.values.tolist() == ["PA6 / POM", "POM / PA6"]
+
+
+def test_a_spectrum_names_all_its_errors_in_order(tmp_path):
+    (tmp_path / "s.yaml").write_text(SPECTRUM)
+    assert starts_of(lines(trackroller("spectrum", "s.yaml", cwd=tmp_path, code=2).stderr)) == [
+        "line 1: spectrum: key = 'nme'",
+        "line 2: base.axis_distance = -3",
+        "line 4: block 'loaded'.distance = 'kg'",
+        "line 4: block 'loaded'.radial_force = 300",
+        "line 5: block 'empty': field = 'distnce'",
+        "line 5: block 'empty'.guide_overrollings = -900",
+        "line 6: block 'third'.roller_material = 'POM'",
+        "line 7: life_rule = 'haibch'",
+        "line 8: failure_probabilities = 2.0",
+    ]
+
+
+def test_a_table_of_blocks_names_all_its_errors_in_order(tmp_path):
+    (tmp_path / "s.yaml").write_text("blocks: b.csv\ncritical_damage: 0\n")
+    (tmp_path / "b.csv").write_text("name,distance [km],radial_force [kN]\na,1,0.2\n\nb,x,-0.2\nc,1\n")
+    assert starts_of(lines(trackroller("spectrum", "s.yaml", cwd=tmp_path, code=2).stderr)) == [
+        "line 2: critical_damage = 0",
+        "b.csv, line 2: block 'a'.radial_force = '0.2 kN'",
+        "b.csv, line 4: block 'b'.distance = 'x km'",
+        "b.csv, line 5: blocks = 'c, 1'",
+    ]
+
+
+def test_options_and_duty_stand_among_the_errors_of_a_case(tmp_path):
+    (tmp_path / "c.yaml").write_text("radial_force: 130\naccuracy: fine\nduty: {hours_per_day: 40}\nhertz: exct\n")
+    told = starts_of(lines(trackroller("solve", "c.yaml", cwd=tmp_path, code=2).stderr))
+    assert [line.split(" = ")[0] for line in told] == [
+        "line 1: radial_force",
+        "line 2: accuracy",
+        "line 3: duty.hours_per_day",
+        "line 3: duty.days_per_year",
+        "line 4: hertz",
+    ]
+
+
+def test_a_file_with_very_many_errors_shows_the_first_and_counts_the_others(tmp_path):
+    (tmp_path / "s.yaml").write_text("name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n")
+    (tmp_path / "t.csv").write_text("axial_force\n" + "".join(f"x{i}\n" for i in range(100)))
+    told = lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr)
+    assert len(told) == MOST_SHOWN + 1 and told[-1] == f"{100 - MOST_SHOWN} further errors are not shown."
 
 
 def test_keys_that_do_not_fit_together_are_named_together(tmp_path):

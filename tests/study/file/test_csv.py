@@ -3,27 +3,28 @@
 import pytest
 
 import trackroller as tr
+from trackroller.errors import Collector
 from trackroller.study.design.draws import table
-from trackroller.study.file.csv import csv_lines
+from trackroller.study.file.csv import read_rows
 
 
-def test_cells_stand_by_the_number_of_their_line():
+def test_cells_stand_by_the_number_of_their_line(tmp_path):
     """Empty lines, lines of empty cells, and a cell over two lines count as an editor counts them."""
-    text = '\n# a , b\n\n 1 , 2\n,\n"3\n3",4\n'
-    names, lines = csv_lines(text, "t.csv", "table", "case")
-    assert names == ["# a", "b"] and lines == {4: ["1", "2"], 7: ["3\n3", "4"]}
+    (tmp_path / "t.csv").write_text('\n# a , b\n\n 1 , 2\n,\n"3\n3",4\n')
+    names, head, lines = read_rows(tmp_path / "t.csv", "table", "case", Collector())
+    assert names == ["# a", "b"] and head == 2 and lines == {4: ["1", "2"], 7: ["3\n3", "4"]}
 
 
 @pytest.mark.parametrize(
     ("text", "line", "why"),
     [
         ("a,b\n\n\n1,2\n\n3\n", 6, "2 cells; there are 1"),
-        ("axial_force,velocity\n\n10,20\n\n30,\n", 5, "2 values, none of them empty"),
+        ("axial_force,velocity\n\n10,20\n\n30,\n", 5, "the cell is empty"),
     ],
 )
 def test_a_message_names_the_line_of_the_file(text, line, why, tmp_path):
     (tmp_path / "t.csv").write_text(text)
-    with pytest.raises(tr.InputError, match=f"t.csv, line {line}'.*{why}"):
+    with pytest.raises(tr.InputError, match=f"t.csv, line {line}: .*{why}"):
         table(tmp_path / "t.csv")
 
 

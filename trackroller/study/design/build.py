@@ -12,13 +12,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.errors import InputError
 from trackroller.materials.database import FRICTION
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, expressions
+from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.parameters.example import EXAMPLE
-from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.roller.fields import own_frictions
-from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.factors import readable
 from trackroller.study.design.sampling import SampledDesign, sample
 from trackroller.study.design.stored import stored
@@ -69,25 +67,9 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
         options["groups"] = config.analysis.groups
     base = {k: v for k, v in config.values.items() if isinstance(v, float)}
     design = sample(factors, config.design, config.samples, config.seed, base=base, **options)
-    if config.design == "table":
-        _check_columns(factors, design)
     if design.size > MAX_CASES:
         raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
     return design
-
-
-def _check_columns(factors: Mapping[str, Any], design: SampledDesign) -> None:
-    """Refuse further columns of a table that look like a misspelt name, and a table with further columns only."""
-    known = [*PARAMETERS, *MATERIAL_FIELDS, "material_pair", *OPTION_FACTORS]
-    used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
-    own = [name for name in design.columns if name not in known and name not in used]
-    for name in own:
-        check_own_name(name, f"table column {name}")
-        if name in RADII:
-            remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
-            raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
-        if nearest(name, known) or len(own) == len(design.columns):
-            raise unknown_name("table column", name, known)
 
 
 def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase) -> xr.Dataset:
@@ -139,8 +121,6 @@ def _columns(
     columns |= design.columns
     if "material_pair" in columns:
         pairs = columns.pop("material_pair")
-        if any(isinstance(p, str) for p in pairs):  # a table's cell: "roller / guide"
-            pairs = np.array([None, *map(_split_pair, pairs)], dtype=object)[1:]
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
     if "friction_coefficient" not in {*config.values, *design.columns}:
@@ -162,13 +142,6 @@ def _mapped(function: Callable[..., Any], dtype: type, *columns: np.ndarray) -> 
 
 def _number(value: Any) -> float:
     return math.nan if value is None else float(value)
-
-
-def _split_pair(text: str) -> tuple[str, str]:
-    parts = [part.strip() for part in str(text).split("/")]
-    if len(parts) != 2 or not all(parts):
-        raise InputError("material_pair", text, "a pair written 'roller material / guide material'")
-    return parts[0], parts[1]
 
 
 def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tuple[np.ndarray, dict[str, str]]:

@@ -9,22 +9,23 @@ from __future__ import annotations
 import itertools
 import math
 import warnings
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names
-from trackroller.files import read_text
-from trackroller.numerics.numbers import number_or_nan, read_number
-from trackroller.numerics.units import split_quantity
+from trackroller.errors import Collector, InputError, check_names, nearest, unknown_name
+from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
+from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design import correlation, saltelli
+from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.saltelli import all_groups
-from trackroller.study.file.csv import csv_lines
+from trackroller.study.file.csv import read_rows
 
 MAX_ROWS = 50_000_000  # a larger number is a typing error
 Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]
@@ -179,12 +180,15 @@ DRAW: dict[str, Callable[..., Drawn]] = {
 }
 
 
-def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarray, dict[str, Any]]:
+def table(
+    path: Any, used: Collection[str] = ()
+) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarray, dict[str, Any]]:
     """Read the user's own cases from a CSV file.
 
     Parameters
     ----------
-    path : CSV with one named column a factor
+    path : CSV or workbook with one named column a factor
+    used : names that expressions use
 
     Returns
     -------
@@ -194,31 +198,63 @@ def table(path: Any) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarr
     ------
     InputError : no such file, a line of another length, an empty cell, or a text where a number is wanted
     """
-    names, lines = csv_lines(read_text(path, "table", most=math.inf), path, "table", "case")
-    for number, line in lines.items():
-        if not all(line):
-            raise InputError("table", f"{path}, line {number}", f"{len(names)} values, none of them empty")
-    columns: dict[str, np.ndarray] = {}
+    wrong = Collector()
+    names, head, lines = read_rows(Path(path), "table", "case", wrong, most=math.inf)
+    with wrong.part():
+        _check_names(names, used, path, head)
+    columns = {}
     for j, name in enumerate(names):
-        cells = [line[j] for line in lines.values()]
-        try:
-            columns[name] = column([_table_number(name, cell) for cell in cells], numeric=True)
-        except InputError:
-            raise
-        except ValueError as exc:
-            if name in PARAMETERS:
-                raise InputError("table", f"column {name} ({exc})", PARAMETERS[name].allowed()) from None
-            columns[name] = column(cells, numeric=False)
-        if columns[name].dtype == float and np.isnan(columns[name]).any():
-            raise InputError("table", f"column {name}: nan", "a number in each cell")
+        cells = {number: line[j] for number, line in lines.items()}
+        numbers = _numbers_of(name, cells)
+        columns[name] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
+    wrong.check()
     return columns, *of_columns(columns), {}
 
 
-def _table_number(name: str, cell: str) -> float:
-    """Return the number of a cell; raise `ValueError` if it is none, `InputError` for a wrong unit."""
-    if name in PARAMETERS and split_quantity(cell):
-        return number_or_nan(cell, PARAMETERS[name].unit, f"table column {name}")
-    return read_number(cell)
+def table_lines(path: Path) -> list[int]:
+    """Return the number of the line of each case of a table."""
+    return list(read_rows(path, "table", "case", Collector(), most=math.inf).lines)
+
+
+def _check_names(names: list[str], used: Collection[str], path: Any, head: int) -> None:
+    """Refuse further columns of a table that look like a misspelt name, and a table with further columns only."""
+    own, wrong = [name for name in names if name not in FACTOR_NAMES and name not in used], Collector()
+    for name in own:
+        with wrong.part():
+            check_own_name(name, "table column")
+            if name in RADII:
+                remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
+                raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
+            if nearest(name, FACTOR_NAMES) or len(own) == len(names):
+                raise unknown_name("table column", name, FACTOR_NAMES)
+    for error in wrong.errors:
+        error.at(path, head)
+    wrong.check()
+
+
+def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
+    """Return a column of plain numbers that its parameter allows, None for any other column."""
+    if name in FACTOR_NAMES and name not in PARAMETERS:
+        return None
+    try:
+        numbers = np.array([read_number(cell) for cell in cells.values()], dtype=float)
+    except ValueError:
+        return None
+    return numbers if name not in PARAMETERS or PARAMETERS[name].accepts(numbers).all() else None
+
+
+def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) -> np.ndarray:
+    """Return a column with words, units or wrong cells; each wrong cell adds an error."""
+    values: list[Any] = []
+    for number, cell in cells.items():
+        try:
+            if not cell:
+                raise InputError(name, cell, "a value; the cell is empty", "Fill the cell, or remove the line.")
+            pair = [part.strip() for part in cell.split("/")] if name == "material_pair" else cell
+            values.append(field_value(name, pair, name) if name in FACTOR_NAMES else cell)
+        except InputError as error:
+            wrong.errors += [one.at(path, number) for one in error.errors]
+    return column(values, name in PARAMETERS and not any(isinstance(value, str) for value in values))
 
 
 def of_columns(columns: Mapping[str, np.ndarray]) -> tuple[dict[str, Factor], np.ndarray]:

@@ -89,10 +89,10 @@ def base_value(key: Any, value: Any, section: str = "base") -> Any:
     InputError : unknown field, or a value outside its bounds
     """
     check_names(section, [key], (*CASE_FIELDS, "material_pair"))
-    return _value(key, value, f"{section}.{key}")
+    return field_value(key, value, f"{section}.{key}")
 
 
-def _value(key: str, value: Any, where: str) -> Any:
+def field_value(key: str, value: Any, where: str) -> Any:
     """Return the value of a case field or of an option in the type of its field."""
     if key == "material_pair":
         if not isinstance(value, (list, tuple)) or len(value) != 2:
@@ -192,7 +192,7 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
     if not isinstance(value, list):
         return value
     if kind == "values":
-        return value if key not in FACTOR_NAMES else [_value(key, entry, where) for entry in value]
+        return value if key not in FACTOR_NAMES else [field_value(key, entry, where) for entry in value]
     unit = PARAMETERS[key].unit if key in PARAMETERS else None
     spread = 1 if kind in ("normal", "truncnormal") else None
     numbers = [_to_float(entry, unit, where, place == spread) for place, entry in enumerate(value)]

@@ -138,7 +138,8 @@ def sample(
     """
     settings = _settings(method, options)
     if method == "table":
-        columns, free, unit, meta = table(settings["table"])
+        used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
+        columns, free, unit, meta = table(settings["table"], used)
         parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
         for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
             allowed = "a table has its factors as columns"

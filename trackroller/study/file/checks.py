@@ -11,11 +11,11 @@ import numpy as np
 
 from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.geometry import geometry_problem
+from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.correlation import check_design, copula
-from trackroller.study.design.draws import check_listed
+from trackroller.study.design.draws import check_listed, table_lines
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.roles import check_roles
 from trackroller.study.design.saltelli import serves
@@ -177,6 +177,21 @@ def _check_materials(study: Study) -> None:
     check_scatter(study.config, used)
 
 
+def check_cells(study: Study) -> None:
+    """Check the names and cells of a table of cases; raise the errors of all its lines together."""
+    columns, wrong = study.drawn.columns, Collector()
+    for name in (name for name in (*MATERIAL_FIELDS, "material_pair") if name in columns):
+        cells = dict(zip(table_lines(study.table_path), columns[name].tolist(), strict=True))
+        for value, line in {value: line for line, value in reversed(cells.items())}.items():  # its first line
+            for material in value if isinstance(value, tuple) else (value,):
+                try:
+                    study.materials.material(material)
+                except InputError as error:
+                    named = InputError(name, error.value, error.allowed, error.remedy)
+                    wrong.errors.append(named.at(study.table_path, line))
+    wrong.check()
+
+
 def check_geometry(study: Study) -> None:
     """Check that no combination of the geometry's levels or ends of ranges conforms or interlocks.
 
@@ -196,7 +211,13 @@ def check_geometry(study: Study) -> None:
     config = study.config
     if config.design == "table" or any(factor.kind == "expression" for factor in study.parsed.values()):
         design = study.design()
-        problem = geometry_problem({name: design[name].values for name in _GEOMETRY})
+        problems = list(geometry_problems({name: design[name].values for name in _GEOMETRY}))
+        if problems and config.design == "table":
+            lines = table_lines(study.table_path)
+            wrong = Collector()
+            wrong.errors = [problem.at(study.table_path, lines[row]) for row, problem in problems]
+            wrong.check()
+        problem = problems[0][1] if problems else None
     else:
         levels = [_ends(study, name) for name in _GEOMETRY]
         if math.prod(map(len, levels)) > MAX_CASES:

@@ -70,7 +70,9 @@ class _Design(BaseModel):
     design: str = Field("grid", description="how the factors are combined")
     samples: int = Field(1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples")
     seed: int = Field(1, ge=0, le=2**32 - 2, description="the same seed gives the same design")
-    table: str | None = Field(None, description="for design table: CSV file of cases beside the study file")
+    table: str | None = Field(
+        None, description="for design table: CSV file or workbook (.xlsx) of cases beside the study file"
+    )
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
     exchange: Literal["factors", "groups"] | None = Field(
         None, description="saltelli: columns are exchanged by factor (default) or by group of analysis.groups"

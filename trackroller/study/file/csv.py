@@ -1,79 +1,108 @@
-"""Read the CSV files of users: a line of names, then lines with one cell for each name.
+"""Read the tables of users, CSV files and workbooks: a line of names, then lines with one cell for each name.
 
-Columns are separated by commas, or by semicolons or tabs, between which decimal commas are allowed. A name may have a
-unit in brackets, such as `axial_force [kN]`, which then stands behind each cell of the column.
+The columns of a CSV file are separated by commas, or by semicolons or tabs, between which decimal commas are allowed. A
+name may have a unit in brackets, such as `axial_force [kN]`, which then stands behind each cell of the column.
 """
 
 from __future__ import annotations
 
 import csv
 import io
+import math
 import re
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NamedTuple
 
-from trackroller.errors import InputError
+from trackroller.errors import Collector, InputError
+from trackroller.files import MAX_BYTES, read_bytes, read_text
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import ALIASES
+from trackroller.study.file.workbook import is_workbook, workbook_lines
 
 _DECIMAL_COMMA = re.compile(r"([-+]?\d*),(\d+(?:[eE][-+]?\d+)?)")
 _HEAD = re.compile(r"([^\[\]]*?)\s*\[([^\[\]]*)\]")
 WITH_UNIT = (*PARAMETERS, "distance")  # columns whose numbers have units
 
 
-def separator(text: str) -> str:
-    """Return the character between the columns: a semicolon or tab if the first line has one, otherwise a comma."""
-    head = next((line for line in text.splitlines() if line.strip()), "")
-    return next((sign for sign in ";\t" if sign in head), ",")
+class Rows(NamedTuple):
+    """A table of a user: names of the columns, number of their line, and the cells of each further line by number."""
+
+    names: list[str]
+    head: int
+    lines: dict[int, list[str]]
 
 
-def csv_names(text: str, path: Path | str, field: str) -> list[str]:
-    """Return the names of the columns; see `csv_lines`."""
-    head = next((line for line in text.splitlines() if line.strip(" ,;\t")), "")
-    return csv_lines(f"{head}\n{head}", path, field, "line")[0]
+def read_rows(path: Path, field: str, what: str, wrong: Collector, most: float = MAX_BYTES) -> Rows:
+    """Read a CSV file, or the sheet of a workbook whose name ends in .xlsx.
 
-
-def csv_lines(text: str, path: Path | str, field: str, what: str) -> tuple[list[str], dict[int, list[str]]]:
-    """Return the names of the columns, and the cells of each line by its number in the file, the first line being 1.
-
-    Spaces around a cell and empty lines are left out.
+    Lines have their number in the file, the first line being 1. Spaces around a cell and empty lines are left out.
 
     Parameters
     ----------
-    text : str
-        Content of the file.
-    path : Path or str
-        Its path, for messages.
+    path : Path
+        The file.
     field : str
         Key of the study or spectrum that names the file, for messages.
     what : str
         What a line describes, such as 'case'.
+    wrong : Collector
+        Receives the errors of lines of another length, which are left out.
+    most : float
+        Largest size of the file [bytes].
 
     Raises
     ------
     InputError
-        If the file is not readable as CSV, has only one line, repeats a name, or has a line of another length.
+        If the file is not readable, has only one line, or repeats a name.
     """
-    sign = separator(text)
+    lines, sign = _cells(path, field, what, most)
+    found = dict(lines)
+    if len(found) < 2:
+        raise InputError(field, str(path), f"a table with a line of names and at least one {what}")
+    head = next(iter(found))
+    names, units = _heads(found.pop(head))
+    if len(set(names)) < len(names) or not all(names):
+        error = InputError(field, ", ".join(names), "a different name for each column", "Correct the names.")
+        raise error.at(path, head)
+    for number in [number for number, line in found.items() if len(line) != len(names)]:
+        line = found.pop(number)
+        hint = "Separate the columns by semicolons if the numbers have decimal commas." if sign == "," else ""
+        allowed = f"{len(names)} cells; there are {len(line)}"
+        wrong.errors.append(InputError(field, ", ".join(line), allowed, hint).at(path, number))
+    if sign != "," or any(units):
+        for line in found.values():
+            line[:] = [_cell(cell, unit, sign) for cell, unit in zip(line, units, strict=True)]
+    return Rows(names, head, found)
+
+
+def column_names(path: Path, field: str) -> list[str]:
+    """Return the names of the columns of a table; [] for an empty one."""
+    lines, _ = _cells(path, field, "case", math.inf)
+    return next((_heads(line)[0] for _, line in lines), [])
+
+
+def _cells(path: Path, field: str, what: str, most: float) -> tuple[Iterator[tuple[int, list[str]]], str]:
+    """Return the lines that are not empty with their numbers, and the character between the columns."""
+    if is_workbook(path):
+        lines = workbook_lines(read_bytes(path, field, most), path, field, what)
+        return ((number, line) for number, line in lines if any(line)), ";"
+    text = read_text(path, field, most)
+    head = next((line for line in text.splitlines() if line.strip()), "")
+    sign = next((sign for sign in ";\t" if sign in head), ",")
+    return _csv_lines(text, path, field, sign), sign
+
+
+def _csv_lines(text: str, path: Path, field: str, sign: str) -> Iterator[tuple[int, list[str]]]:
     try:
         reader = csv.reader(io.StringIO(text, newline=""), delimiter=sign)
-        cells = ((reader.line_num, [cell.strip() for cell in row]) for row in reader)
-        lines = {number: line for number, line in cells if any(line)}
+        for row in reader:
+            cells = [cell.strip() for cell in row]
+            if any(cells):
+                yield reader.line_num, cells
     except csv.Error as exc:
         raise InputError(field, str(path), f"a readable CSV file ({exc})", "Shorten its cells.") from None
-    if len(lines) < 2:
-        raise InputError(field, str(path), f"a CSV with a line of names and at least one {what}")
-    names, units = _heads(lines.pop(next(iter(lines))))
-    if len(set(names)) < len(names) or not all(names):
-        remedy = f"Correct the first line of {path}."
-        raise InputError(field, ", ".join(names), "a different name for each column", remedy)
-    for number, line in lines.items():
-        if len(line) != len(names):
-            hint = "Separate the columns by semicolons if the numbers have decimal commas." if sign == "," else ""
-            raise InputError(field, f"{path}, line {number}", f"{len(names)} cells; there are {len(line)}", hint)
-    if sign != "," or any(units):
-        for line in lines.values():
-            line[:] = [_cell(cell, unit, sign) for cell, unit in zip(line, units, strict=True)]
-    return names, lines
 
 
 def _heads(cells: list[str]) -> tuple[list[str], list[str]]:
@@ -86,7 +115,7 @@ def _heads(cells: list[str]) -> tuple[list[str], list[str]]:
 
 
 def _cell(cell: str, unit: str, sign: str) -> str:
-    """Return a cell with a decimal point, and with the unit of its column."""
+    """Return a cell with a decimal point, and with the unit of its column if it has none of its own."""
     if sign != "," and (parts := _DECIMAL_COMMA.fullmatch(cell)):
         cell = f"{parts[1]}.{parts[2]}"
-    return f"{cell} {unit}" if unit and cell else cell
+    return f"{cell} {unit}" if unit and cell and not split_quantity(cell) else cell

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -15,9 +14,9 @@ from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import study_with_radii
-from trackroller.study.file.checks import check_geometry, cross_check
+from trackroller.study.file.checks import check_cells, check_geometry, cross_check
 from trackroller.study.file.config import StudyFile
-from trackroller.study.file.csv import csv_names
+from trackroller.study.file.csv import column_names
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
 from trackroller.yaml_file import errors_by_line, parse_mapping
@@ -61,7 +60,7 @@ def complete(study: Study) -> Study:
     config = study.config
     names = {*config.base, *study.factors}
     if config.design == "table" and config.table is not None:
-        names.update(csv_names(read_text(study.table_path, "table", most=math.inf), study.table_path, "table"))
+        names.update(column_names(study.table_path, "table"))
     laws = study.factors.get("friction_law", {}).get("values", [config.base.get("friction_law")])
     if any(at_rest(law) is not None for law in laws if law):
         names.add("friction_coefficient")  # the first value of the table
@@ -74,8 +73,13 @@ def parse_study(
 ) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     with noted_reads() as inputs:
-        study = complete(Study(checked_keys(data), path, database, inputs))
-        cross_check(study)
+        study, wrong = complete(Study(checked_keys(data), path, database, inputs)), Collector()
+        with wrong.part():
+            cross_check(study)
+        with wrong.part():
+            if study.config.design == "table" and not planned:
+                check_cells(study)
+        wrong.check()
         if not planned:
             check_geometry(study)
     return study

@@ -9,8 +9,8 @@ A spectrum file describes the roller once (`base`), and then its loads in blocks
       - {name: empty, distance: 4000, radial_force: -80, guide_overrollings: 900}
     life_rule: haibach
 
-`blocks` may also be the name of a CSV file in the same folder, with one column for each field and one line for each
-block.
+`blocks` may also be the name of a CSV file or workbook in the same folder, with one column for each field and one line
+for each block.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.sn_curve import PROBABILITIES
-from trackroller.errors import InputError, check_names
+from trackroller.errors import Collector, InputError, check_names, nearest
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
@@ -34,8 +34,8 @@ from trackroller.roller.aliases import renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
-from trackroller.study.file.csv import csv_lines
-from trackroller.yaml_file import parse_mapping
+from trackroller.study.file.csv import read_rows
+from trackroller.yaml_file import errors_by_line, parse_mapping
 
 LOAD_FIELDS = (
     "radial_force",
@@ -122,39 +122,21 @@ class Spectrum:
         InputError
             If an entry is wrong; the error names block, field and value.
         """
-        check_names("spectrum: key", values, FILE_FIELDS)
-        blocks = values.get("blocks")
-        if isinstance(blocks, str):
-            blocks = _table(find_beside(blocks, "blocks"))
-        if not isinstance(blocks, list) or not blocks:
-            raise InputError(
-                "blocks",
-                blocks,
-                "a list of blocks that is not empty, or the name of a CSV",
-                "Write - {name: loaded, distance: 4000, radial_force: -300}.",
-            )
-        base = values.get("base") or {}
-        if not isinstance(base, Mapping):
-            raise InputError("base", base, "a mapping of case fields to values")
-        base = renamed(base)
-        made = tuple(_block(block, base, i) for i, block in enumerate(blocks, start=1))
-        if len({block.name for block in made}) < len(made):
-            twice = Counter(block.name for block in made).most_common(1)[0][0]
-            raise InputError("blocks", twice, "a name of its own for each block", "Rename one of the blocks.")
-        if not sum(block.distance for block in made) > 0:
-            raise InputError(
-                "distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m."
-            )
-        options = {key: values[key] for key in OPTIONS if key in values}
-        Options(**options)  # checked before any case is solved
-        return cls(
-            name=str(values.get("name", "spectrum")),
-            blocks=made,
-            description=str(values.get("description", "")),
-            critical_damage=_number("critical_damage", values.get("critical_damage", 1.0), open_lower=True),
-            failure_probabilities=_probabilities(values.get("failure_probabilities", PROBABILITIES)),
-            options=options,
-        )
+        wrong = Collector()
+        found: dict[str, Any] = {}
+        with wrong.part():
+            check_names("spectrum: key", values, FILE_FIELDS)
+        with wrong.part():
+            found["blocks"] = _blocks(values.get("blocks"), values.get("base") or {})
+        with wrong.part():
+            found["critical_damage"] = _number("critical_damage", values.get("critical_damage", 1.0), open_lower=True)
+        with wrong.part():
+            found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
+        with wrong.part():
+            found["options"] = {key: values[key] for key in OPTIONS if key in values}
+            Options(**found["options"])  # checked before any case is solved
+        wrong.check()
+        return cls(name=str(values.get("name", "spectrum")), description=str(values.get("description", "")), **found)
 
 
 def load_spectrum(path: Path | str) -> Spectrum:
@@ -176,9 +158,45 @@ def load_spectrum(path: Path | str) -> Spectrum:
         If an entry is wrong; the error names file, block, field and value.
     """
     path = Path(path)
-    values = parse_mapping(read_text(path, "load spectrum"), str(path))
-    with files_beside(path):
+    text = read_text(path, "load spectrum")
+    values = parse_mapping(text, str(path))
+    with errors_by_line(text), files_beside(path):
         return Spectrum.from_dict({"name": path.stem} | values)
+
+
+def _blocks(given: Any, base: Any) -> tuple[Block, ...]:
+    """Return the checked blocks; raise the errors of all of them, and of `base`, together."""
+    wrong = Collector()
+    table = find_beside(given, "blocks") if isinstance(given, str) else None
+    rows = None if table is None else read_rows(table, "blocks", "block", wrong)
+    blocks = given
+    if rows is not None:  # empty cells are left out
+        blocks = [{n: c for n, c in zip(rows.names, line, strict=True) if c} for line in rows.lines.values()]
+    if not isinstance(blocks, list) or not blocks:
+        example = "Write - {name: loaded, distance: 4000, radial_force: -300}."
+        raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a table", example)
+    if not isinstance(base, Mapping):
+        raise InputError("base", base, "a mapping of case fields to values")
+    base, made = renamed(base), []
+    try:
+        Case.from_dict(base)
+    except InputError as error:
+        wrong.errors += _named(error, "base")
+        base = {}  # the loads of the blocks are checked on their own
+    for i, entry in enumerate(blocks):
+        try:
+            made.append(_block(entry, base, i + 1))
+        except InputError as error:
+            for one in error.errors:
+                one.path = ("blocks", str(i))
+                wrong.errors.append(one if rows is None else one.at(table, list(rows.lines)[i]))
+    wrong.check()
+    names = Counter(block.name for block in made).most_common(1)
+    if names[0][1] > 1:
+        raise InputError("blocks", names[0][0], "a name of its own for each block", "Rename one of the blocks.")
+    if not sum(block.distance for block in made) > 0:
+        raise InputError("distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m.")
+    return tuple(made)
 
 
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
@@ -186,26 +204,34 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     entry = renamed(entry)
     name = str(entry.get("name") or f"block {number}")
-    where = f"block '{name}'"
-    for key in (key for key in entry if key in FIELDS and key not in BLOCK_FIELDS):
+    where, wrong = f"block '{name}'", Collector()
+    of_roller = [key for key in entry if key in FIELDS and key not in BLOCK_FIELDS]
+    for key in of_roller:
         allowed = "a load, because the roller is the same in all blocks of a spectrum"
-        raise InputError(f"{where}.{key}", entry[key], allowed, "Give this field under `base`.")
-    check_names(f"{where}: field", entry, BLOCK_FIELDS)
-    if "distance" not in entry:
-        raise InputError(f"{where}.distance", None, "the distance travelled per shift in m", "Add it to the block.")
-    overrollings = entry.get("guide_overrollings")
-    loads = {key: entry[key] for key in LOAD_FIELDS if key in entry}
+        wrong.errors.append(InputError(f"{where}.{key}", entry[key], allowed, "Give this field under `base`."))
+    with wrong.part():
+        check_names(f"{where}: field", (key for key in entry if key not in of_roller), BLOCK_FIELDS)
+    made: dict[str, Any] = {"name": name}
+    with wrong.part():
+        if "distance" not in entry and not any(nearest(key, BLOCK_FIELDS) == "distance" for key in entry):
+            raise InputError(f"{where}.distance", None, "the distance travelled per shift in m", "Add it to the block.")
+        if "distance" in entry:
+            made["distance"] = _number(f"{where}.distance", entry["distance"], unit="m")
+    with wrong.part():
+        if entry.get("guide_overrollings") is not None:
+            made["guide_overrollings"] = _number(f"{where}.guide_overrollings", entry["guide_overrollings"])
     try:
-        case = Case.from_dict({**base, **loads})
+        made["case"] = Case.from_dict({**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}})
     except InputError as error:
-        at = where if error.field in loads else "base"
-        raise InputError(f"{at}.{error.field}", error.value, error.allowed, error.remedy) from None
-    return Block(
-        name,
-        case,
-        _number(f"{where}.distance", entry["distance"], unit="m"),
-        None if overrollings is None else _number(f"{where}.guide_overrollings", overrollings),
-    )
+        wrong.errors += _named(error, where)
+    wrong.check()
+    return Block(**made)
+
+
+def _named(error: InputError, where: str) -> list[InputError]:
+    """Return the errors of a case with the place of the case before their fields."""
+    named = [f"{where}{'.' if one.field in FIELDS else ': '}{one.field}" for one in error.errors]
+    return [InputError(name, one.value, one.allowed, one.remedy) for name, one in zip(named, error.errors, strict=True)]
 
 
 def _number(name: str, value: Any, open_lower: bool = False, unit: str = "-") -> float:
@@ -221,12 +247,6 @@ def _probabilities(values: Any) -> tuple[float, ...]:
         if number >= 1:
             raise InputError("failure_probabilities", number, "numbers between 0 and 1", "Give 0.1 for 10 %.")
     return tuple(sorted(set(numbers)))
-
-
-def _table(path: Path) -> list[dict[str, Any]]:
-    """Return the blocks of a CSV file, one from each line; empty cells are left out."""
-    names, lines = csv_lines(read_text(path, "blocks"), path, "blocks", "block")
-    return [{n: cell for n, cell in zip(names, line, strict=True) if cell} for line in lines.values()]
 
 
 def overrollings_per_shift(spectrum: Spectrum) -> np.ndarray:
