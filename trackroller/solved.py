@@ -131,7 +131,7 @@ class Solved(StudyResults):
         if designs is not None and not designs.comparable:
             remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
             raise InputError("design", self.design.method, "designs that share their conditions", remedy)
-        return pd.DataFrame() if designs is None else designs.table.head(count)
+        return pd.DataFrame() if designs is None else designs.table.head(count).copy()
 
     def to_table(self) -> pd.DataFrame:
         """Return one row a case: factors, other inputs that vary, and results by contact and body."""

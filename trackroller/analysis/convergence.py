@@ -81,11 +81,3 @@ def take_times(low: np.ndarray, high: np.ndarray, target: float) -> float:
     if math.isnan(times):
         return math.nan
     return 1.0 if times <= 1.0 else float(2 ** math.ceil(math.log2(times) - 1e-9))
-
-
-def advice(times: float) -> str:
-    """Return a sentence for the result of `take_times`."""
-    if math.isnan(times):
-        return "There are too few usable samples to judge convergence."
-    more = f"The indices have not converged: take {times:.0f} times as many samples."
-    return "The indices have converged." if times <= 1 else more

@@ -98,6 +98,14 @@ class Designs:
         view : the study
         free : conditions that count as choices here, because a goal names them
         """
+        kept = vars(view).setdefault("designs", {})  # a report asks for them seven times
+        if free not in kept:
+            kept[free] = cls._of(view, free)
+        found: Designs | None = kept[free]
+        return found
+
+    @classmethod
+    def _of(cls, view: StudyView, free: tuple[str, ...]) -> Designs | None:
         goal = view.life or ("peak_stress_roller", "peak stress of the roller", "MPa")
         if not (view.valid & ~np.isnan(view.column(goal[0]))).any():
             return None

@@ -159,9 +159,7 @@ def class_effect(view: StudyView, column: str, factor: str, rows: np.ndarray) ->
     """
     if not view.ordered(factor):
         return None
-    x, values = view.table[factor].to_numpy(dtype=float)[rows], view.table[column].to_numpy(dtype=float)[rows]
-    good = np.isfinite(values) & (values > 0)
-    x, logs = x[good], np.log10(values[good])
+    x, logs = _logarithms(view, column, factor, rows)
     if len(x) < 3 * FEWEST_ROWS:
         return None
     ends = np.sort(x)[[len(x) // 3, len(x) - 1 - len(x) // 3]]
@@ -183,6 +181,13 @@ def comparable(view: StudyView, effect: Effect, column: str, rows: np.ndarray) -
         if (cells[:, enough].sum(axis=1) < COVERED * cells.sum(axis=1)).any():
             return False
     return True
+
+
+def _logarithms(view: StudyView, column: str, factor: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return a factor and the logarithm of an output for the rows whose output is finite and positive, (m,) each."""
+    x, values = (view.table[name].to_numpy(dtype=float)[rows] for name in (factor, column))
+    good = np.isfinite(values) & (values > 0)
+    return x[good], np.log10(values[good])
 
 
 def _between(factor: str, x: np.ndarray, logs: np.ndarray, ends: tuple[float, float], fewest: int) -> Effect | None:
@@ -217,9 +222,8 @@ def strata(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> li
 def _repeated(view: StudyView, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:
     """Return the effect between the same levels or classes for other rows."""
     if np.isfinite(effect.interval[0]):
-        x, values = (view.table[c].to_numpy(dtype=float)[rows] for c in (effect.factor, column))
-        good = np.isfinite(values) & (values > 0)
-        return _between(effect.factor, x[good], np.log10(values[good]), (effect.low, effect.high), FEWEST_STRATUM)
+        x, logs = _logarithms(view, column, effect.factor, rows)
+        return _between(effect.factor, x, logs, (effect.low, effect.high), FEWEST_STRATUM)
     matrix, levels = pair_matrix(view, column, effect.factor, rows)
     if not len(matrix):
         return None

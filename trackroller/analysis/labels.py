@@ -16,29 +16,29 @@ from trackroller.study.outputs import Output
 
 CORRELATED = 0.5  # rank correlation of two columns of a table above which the result warns
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
-_WORDS = {
-    "S1": "first-order Sobol index",
-    "ST": "total Sobol index",
-    "S2": "second-order Sobol index",
+INDEX_WORDS = {  # of the variables of an analysis; figures, tables and sentences take them too
+    "S1": "first-order index",
+    "ST": "total index",
+    "S2": "second-order index",
     "mu": "mean elementary effect",
-    "mu_star": "mean absolute elementary effect",
-    "sigma": "standard deviation of elementary effects",
+    "mu_star": "mean absolute effect",
+    "sigma": "spread of effects σ",
     "effects_used": "elementary effects used",
-    "main_share": "share of variance of main effect",
+    "main_share": "first-order index",
     "interaction_share": "share of variance of interaction",
     "higher_share": "share of variance of interactions of three and more factors",
-    "effect": "change over the factor's range",
-    "curvature": "quadratic coefficient, coded",
+    "effect": "change over the range",
+    "curvature": "curvature of the fit",
     "interaction": "two-factor interaction effect",
     "r_squared": "share of variance fitted",
     "fit_alone": "first-order index by a fitted polynomial",
     "fit_share": "share of variance predicted by the fitted polynomial",
-    "first": "first-order index (share of variance), from given data",
-    "pawn": "PAWN index",
-    "delta": "delta index",
+    "first": "first-order index from given data",
+    "pawn": "PAWN",
+    "delta": "delta",
     "pawn_noise": "PAWN index below which an inert factor stays",
     "delta_noise": "delta index below which an inert factor stays",
-    "prcc": "partial rank correlation coefficient",
+    "prcc": "partial rank correlation",
     "group_S1": "first-order Sobol index of the group, interactions inside the group included",
     "group_ST": "total Sobol index of the group",
     "conditional_S1": "first-order Sobol index, computed from the rows of one level only",
@@ -236,7 +236,7 @@ def stacked(results: list[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
         values = np.stack([r[name] for r in results])
         root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
         axes = ("output", "sample_size", "factor") if "_course" in name else dims[: values.ndim]
-        attrs = {"units": "1", "long_name": _WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
+        attrs = {"units": "1", "long_name": INDEX_WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
         if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
             attrs |= {"units": "", "comment": "in the unit of the output; on the scale log10 in powers of ten"}
         out[name] = (axes, values, attrs)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pandas as pd
+from numpy.typing import ArrayLike
 
 from trackroller.damage.pair import first_failure
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
@@ -23,6 +24,11 @@ LIVES = (
 )
 FIRST_LIMIT = ("pair_life_to_first_limit_hours", "life to the first limit", "h")
 DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
+
+
+def past_data(cycles: ArrayLike, knee: ArrayLike = np.inf) -> np.ndarray:
+    """Return where lives [overrollings] exceed those at the fatigue limit, `knee`, or the end of the S-N data."""
+    return np.asarray(np.asarray(cycles) > np.minimum(knee, DATA_END))
 
 
 def body_lives(goal: str) -> dict[str, str]:
@@ -50,11 +56,9 @@ def beyond_data(view: StudyView, column: str) -> np.ndarray:
     if "first_limit" in column:
         fatigue = view.column(f"limiting_mechanism_{body}") == view.limits.index("fatigue")
         rate = view.column(f"life_cycles_{body}") / view.column(f"{body}_life_hours")  # overrollings an hour
-        return np.asarray((fatigue & beyond_data(view, f"{body}_life_hours")) | (view.column(column) * rate > DATA_END))
+        return np.asarray((fatigue & beyond_data(view, f"{body}_life_hours")) | past_data(view.column(column) * rate))
     names = pd.Series(view.material(body))
     stored = json.loads(str(view.attrs.get("materials", "{}")))
     knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
-    limit = np.minimum(names.map(knees).to_numpy(dtype=float), DATA_END)
     endless = np.isposinf(view.column(f"{body}_life_hours"))
-    beyond: np.ndarray = (view.column(f"life_cycles_{body}") > limit) | endless
-    return beyond
+    return past_data(view.column(f"life_cycles_{body}"), names.map(knees).to_numpy(dtype=float)) | endless

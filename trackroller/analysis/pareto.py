@@ -18,14 +18,13 @@ from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.outputs import regimes
 
 
-def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.ndarray | None = None) -> np.ndarray:
-    """Mark the rows that no allowed row beats in every objective.
+def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray:
+    """Mark the rows that no other row beats in every objective.
 
     Parameters
     ----------
     objectives : shape (n, m); a row with a NaN is not a candidate
     directions : `min` or `max` for each of the m objectives
-    allowed : rows that meet the constraints, shape (n,)
 
     Returns
     -------
@@ -45,10 +44,7 @@ def pareto_mask(objectives: np.ndarray, directions: Iterable[str], allowed: np.n
             raise InputError("objectives", direction, "min or max")
         signs.append(1.0 if direction == "min" else -1.0)
     costs = np.asarray(objectives, dtype=float) * np.array(signs)
-    candidate = ~np.isnan(costs).any(axis=1)
-    if allowed is not None:
-        candidate &= allowed
-    rows = np.flatnonzero(candidate)
+    rows = np.flatnonzero(~np.isnan(costs).any(axis=1))
     # in lexicographic order only an earlier row can beat a row
     rows = rows[np.lexsort(costs[rows].T[::-1])]
     front: list[int] = []
@@ -109,8 +105,8 @@ def pareto(
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
     undefined = np.isnan(np.stack([values[name].astype(float) for name in objectives])).any(axis=0)
     allowed, excluded = _allowed(undefined, values, constraints, own, kept)
-    shown = {n: c for n, c in design.columns.items() if not (model and n == "contact_model")}
-    told = {
+    shown = {n: readable(c)[allowed] for n, c in design.columns.items() if not (model and n == "contact_model")}
+    attrs = {
         "constraints": "; ".join(constraints),
         "factors": ", ".join(n for n in design.factors if n in shown),
         "rows": int(own.sum()),
@@ -119,25 +115,37 @@ def pareto(
         "not_rolling": int((own & (regime != 0)).sum()),
         "study": results.study.merged(),
     }
-    return _front(shown, columns, objectives, allowed, told)
+    kept_columns = {name: (value[allowed], units, words) for name, (value, units, words) in columns.items()}
+    return front_of(shown, kept_columns, objectives, np.flatnonzero(allowed), attrs)
 
 
-def _front(
+def front_of(
     factors: Mapping[str, np.ndarray],
     columns: Mapping[str, Column],
     objectives: Mapping[str, str],
-    allowed: np.ndarray,
-    told: Mapping[str, Any],
+    row: np.ndarray,
+    attrs: Mapping[str, Any],
+    further: Mapping[str, str] | None = None,
 ) -> xr.Dataset:
-    """Return the allowed rows with their factors, goals and `optimal`; see `pareto`."""
-    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in objectives], axis=1)
-    optimal = pareto_mask(goals, objectives.values(), allowed)
-    data: dict[str, Any] = {name: ("row", readable(values)[allowed]) for name, values in factors.items()}
-    for name, (value, units, long_name) in columns.items():
-        data[name] = ("row", value[allowed], {"units": units, "long_name": long_name})
-    data["optimal"] = ("row", optimal[allowed].astype(np.int8), {"long_name": "in the Pareto set"})
-    attrs = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()), **told}
-    return xr.Dataset(data, {"row": np.flatnonzero(allowed)}, attrs)
+    """Return the allowed designs with their factors, goals and `optimal`, see `pareto`.
+
+    Parameters
+    ----------
+    factors, columns : values of the n allowed designs by name; the columns hold the goals
+    objectives : goals, each `min` or `max`
+    row : number of each design, shape (n,)
+    attrs : attributes of the result
+    further : columns that a design must also be beaten in to be left out, each `min` or `max`
+    """
+    wanted = {**objectives, **(further or {})}
+    goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in wanted], axis=1)
+    data: dict[str, Any] = {name: ("row", values) for name, values in factors.items()}
+    for name, (values, units, long_name) in columns.items():
+        data[name] = ("row", values, {"units": units, "long_name": long_name})
+    optimal = pareto_mask(goals, wanted.values()).astype(np.int8)
+    data["optimal"] = ("row", optimal, {"long_name": "in the Pareto set"})
+    told = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()), **attrs}
+    return xr.Dataset(data, {"row": row}, told)
 
 
 def _allowed(
@@ -184,7 +192,7 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
     known = ~np.isnan(np.stack([column[0].astype(float) for column in columns.values()])).any(axis=0)
     outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
     left = int((~known).sum())
-    told = {
+    attrs = {
         "constraints": "",
         "factors": ", ".join(outer),
         "rows": len(known),
@@ -193,7 +201,9 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
         "kind": "design point",
         "study": table.attrs.get("study", ""),
     }
-    return _front({name: table[name].values for name in outer}, columns, objectives, known, told)
+    kept = {name: (values[known], units, words) for name, (values, units, words) in columns.items()}
+    factors = {name: readable(table[name].values)[known] for name in outer}
+    return front_of(factors, kept, objectives, np.flatnonzero(known), attrs)
 
 
 def _of_points(table: xr.Dataset, name: str) -> Column:

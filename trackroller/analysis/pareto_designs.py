@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.limits import column
-from trackroller.analysis.pareto import default_objectives, pareto, pareto_mask, pareto_of_points
+from trackroller.analysis.pareto import default_objectives, front_of, pareto, pareto_of_points
 from trackroller.analysis.table import StudyView
 
 
@@ -70,17 +69,11 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
     held = designs.table["valid"].sort_index().to_numpy()
     kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))
     row = next(iter(worst.values()))[kept]
-    data: dict[str, Any] = {name: ("row", view.table[name].to_numpy()[row]) for name in designs.choices}
-    for name, (values, units, long_name) in columns.items():
-        data[name] = ("row", values[worst[name][kept]], {"units": units, "long_name": long_name})
-    data["valid_in"] = ("row", held[kept].astype(float), {"units": "1", "long_name": "conditions in which it is valid"})
-    goals = np.stack([np.asarray(data[name][1], dtype=float) for name in (*objectives, "valid_in")], axis=1)
-    optimal = pareto_mask(goals, [*objectives.values(), "max"])
-    data["optimal"] = ("row", optimal.astype(np.int8), {"long_name": "in the Pareto set"})
-    data |= _beyond(view, {name: cases[kept] for name, cases in worst.items()})
+    factors = {name: view.table[name].to_numpy()[row] for name in designs.choices}
+    goals = {name: (values[worst[name][kept]], units, words) for name, (values, units, words) in columns.items()}
+    goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
     left = len(held) - len(kept)
     attrs = {
-        "objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()),
         "constraints": "; ".join(view.study.get("constraints") or ()),
         "factors": ", ".join(designs.choices),
         "rows": len(held),
@@ -89,7 +82,8 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": view.attrs.get("study", ""),
     }
-    return xr.Dataset(data, {"row": row}, attrs)
+    front = front_of(factors, goals, objectives, row, attrs, {"valid_in": "max"})
+    return front.assign(_beyond(view, {name: cases[kept] for name, cases in worst.items()}))
 
 
 def _beyond(view: StudyView, cases: Mapping[str, np.ndarray]) -> dict[str, tuple[str, np.ndarray]]:

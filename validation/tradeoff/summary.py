@@ -147,8 +147,7 @@ def ladder(records: list[Record], stage: str, model: str) -> list[Record]:
         return []
     judged = [[r["cost"], *(max(levels(r, q)[3] for q in group) for group in _JUDGED_BY[name])] for r in found]
     table = np.array(judged, float)
-    usable = np.isfinite(table).all(axis=1)
-    keep = pareto_mask(np.where(np.isfinite(table), table, 1e9), ("min",) * table.shape[1], usable)
+    keep = pareto_mask(np.where(np.isfinite(table), table, np.nan), ("min",) * table.shape[1])
     rows = sorted(np.flatnonzero(keep), key=lambda i: table[i, 0])
     return [
         {

@@ -1,4 +1,4 @@
-"""Figures of sensitivities: ranked indices, overview, convergence, Morris plane, interactions.
+"""Figures of sensitivities: ranked indices, convergence, Morris plane, interactions.
 
 Every function takes the dataset of `trackroller.analysis.sensitivity.analyse` and returns a figure with its
 caption and sentence, or None where the design does not support it.
@@ -78,29 +78,6 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:
     text = indices.INDEX_WORDS[index]
     return with_unit(text, indices.effect_unit(sens, output)) if index in SIZED else f"{text}: share of variance [–]"
-
-
-def overview(sens: xr.Dataset) -> style.Drawn:
-    """Draw all outputs at once: the headline index of each factor, relative to the largest where it has units.
-
-    It answers: which other result moves when a factor is changed for the sake of the life?
-    """
-    index = headline(sens)
-    table = sens[index].transpose("factor", "output").values
-    table = np.abs(table) if index in SIGNED else np.where(np.isnan(table), np.nan, np.maximum(table, 0.0))
-    keep = np.isfinite(table).any(axis=0)
-    if keep.sum() < 2:
-        return None
-    table, sized = table[:, keep], index in SIZED
-    if sized:
-        table = table / np.nanmax(table, axis=0)
-    rank = np.argsort(-np.nan_to_num(table).mean(axis=1))
-    names = [capital(str(n)) for n in sens["factor_name"].values[rank]]
-    outputs = [capital(str(n)) for n in sens["output_name"].values[keep]]
-    label = f"{indices.INDEX_WORDS[index]}: {'relative to the largest' if sized else 'share of variance'} [–]"
-    figure = _heat(table[rank].T, outputs, names, label, "Influence on every output")
-    caption = f"{capital(indices.INDEX_WORDS[index])} of every factor (columns) on every output (rows)."
-    return figure, style.FigureInfo("influence-overview", caption, indices.overview(sens).text)
 
 
 def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, head: str) -> Figure:

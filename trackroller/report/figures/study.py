@@ -24,7 +24,6 @@ from trackroller.report.figures.sensitivity import (
     interactions,
     main_outputs,
     morris_plane,
-    overview,
     tornado,
 )
 from trackroller.report.figures.sn_diagram import sn_diagram
@@ -80,4 +79,4 @@ def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
         return [], []
     parts: list[list[Draw]] = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
     first, *others = parts
-    return first, [partial(overview, sens), *(draw for part in others for draw in part)]
+    return first, [draw for part in others for draw in part]

@@ -5,12 +5,16 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.labels import INDEX_WORDS
 from trackroller.analysis.ranking import headline, order
 from trackroller.report.numbers import capital, count, level_text
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
-from trackroller.report.words.indices import HALF, INDEX_WORDS, category, index_text, of_output
+from trackroller.report.words.indices import HALF, category, index_text, of_output
 from trackroller.report.words.sentence import Sentence
+
+# the measures of a factor, in the order of the table of all measures
+MEASURES = "S1 ST main_share mu_star sigma effect curvature first fit_alone delta pawn prcc".split()
 
 
 def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
@@ -33,7 +37,7 @@ def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:
 def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Table:
     """List every index of every factor on one output; an index that chance alone reaches stands in brackets."""
     part = sens.sel(output=output)
-    known = [key for key in INDEX_WORDS if key in part and np.isfinite(part[key]).any()]
+    known = [key for key in MEASURES if key in part and np.isfinite(part[key]).any()]
     rows = []
     for rank in order(sens, output):
         one, cells = part.sel(factor=rank.factor), []

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from trackroller.analysis.lives import DATA_END
+from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
@@ -153,7 +153,7 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str,
             bound = rounded(value / used if used > 0 else math.nan)
             texts = f"{rounded(value)} {unit}".strip(), f"{bound} {unit}".strip() + words
             cycles = hours * overrollings(inputs, body)
-            beyond = limit.distribution == SN_SCATTER and (used < 1.0 or cycles > DATA_END)
+            beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
             timed = bool(life.notnull().any()) and not lifeless[body]
             guessed = any(note.startswith(name + GUESSES) for note in _notes(ds))
             out.append(Margin(limit.title, body, *texts, used, hours, limit.ends_at_once, timed, beyond, guessed))

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.analysis.lives import DATA_END
+from trackroller.analysis.lives import past_data
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
@@ -80,7 +80,7 @@ def _life(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Materi
     stress = ds["fatigue_stress" if "fatigue_stress" in ds else "peak_stress"]
     cycles = float(np.min(curve.life_cycles(stress.sel(body=body).values)))
     hours = cycles / overrollings(inputs, body)
-    beyond = cycles > min(material.cycles_at_fatigue_limit, DATA_END)
+    beyond = bool(past_data(cycles, material.cycles_at_fatigue_limit))
     return _text(hours, inputs, beyond, f"{rounded(cycles)} {'turns' if body == 'roller' else 'overrollings'}")
 
 
@@ -106,7 +106,7 @@ def _of_pair(
         return Row("pair, median life", UNKNOWN["roller"])
     body = "guide" if first == "guide" else "roller"
     cycles = float(ds["life_cycles"].sel(body=body).min())
-    told = _text(hours, inputs, cycles > min(materials[body].cycles_at_fatigue_limit, DATA_END))
+    told = _text(hours, inputs, bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
     if first == "unknown":
         return Row("pair, median life of the roller alone (the guide's hours are unknown)", told)
     return Row("pair, median life" + (f" (the {first} fails first)" if first != "none" else ""), told)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.convergence import advice
-from trackroller.analysis.labels import RELIABLE, factor_name
-from trackroller.analysis.ranking import SIGNED, USABLE, Rank, decisive, estimate, headline, order, used_share
+from trackroller.analysis.labels import INDEX_WORDS, RELIABLE, factor_name
+from trackroller.analysis.ranking import SIGNED, USABLE, Rank, estimate, headline, order, used_share
 from trackroller.report.numbers import (
     capital,
     count,
@@ -25,20 +25,6 @@ from trackroller.report.words.sentence import Sentence
 
 HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible
-INDEX_WORDS = {  # in the order of the table of all measures
-    "S1": "first-order index",
-    "ST": "total index",
-    "main_share": "first-order index",
-    "mu_star": "mean absolute effect",
-    "sigma": "spread of effects σ",
-    "effect": "change over the range",
-    "curvature": "curvature of the fit",
-    "first": "first-order index from given data",
-    "fit_alone": "first-order index by a fitted polynomial",
-    "delta": "delta",
-    "pawn": "PAWN",
-    "prcc": "partial rank correlation",
-}
 
 
 def index_text(part: xr.Dataset, name: str) -> str:
@@ -78,6 +64,14 @@ def caveat(sens: xr.Dataset, output: str) -> str:
     if np.isfinite(more):
         said.append(advice(more))
     return " ".join(said)
+
+
+def advice(times: float) -> str:
+    """Return a sentence for the result of `take_times`."""
+    if math.isnan(times):
+        return "There are too few usable samples to judge convergence."
+    more = f"The indices have not converged: take {times:.0f} times as many samples."
+    return "The indices have converged." if times <= 1 else more
 
 
 def tornado(sens: xr.Dataset, output: str) -> Sentence:
@@ -193,21 +187,6 @@ def interactions(sens: xr.Dataset, output: str) -> Sentence:
     if "higher_share" in part:
         text += f"; interactions of three and more factors make {percent(float(part['higher_share']))}"
     return Sentence("interaction", text + ".", values)
-
-
-def overview(sens: xr.Dataset) -> Sentence:
-    """Name the factor with the largest index for each output."""
-    lead: dict[str, list[str]] = {}
-    first = {}
-    for output in map(str, sens["output"].values):
-        if decisive(sens, output):
-            ranks = order(sens, output)
-            first[output] = ranks[0].factor
-            lead.setdefault(ranks[0].name, []).append(str(sens.sel(output=output)["output_name"].item()))
-    if not lead:
-        return Sentence("no_index", "No index can be given for any output.")
-    text = capital("; ".join(f"{name} decides {listing(what)}" for name, what in lead.items()))
-    return Sentence("leads", f"{text} ({INDEX_WORDS[headline(sens)]}).", {"first": first})
 
 
 def part_sentences(sens: xr.Dataset, output: str) -> list[Sentence]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.analysis.lives import DATA_END
+from trackroller.analysis.lives import past_data
 from trackroller.parameters import BODIES, REGIME_LABELS
 from trackroller.report.numbers import BEYOND, chance, life, listing
 from trackroller.report.words.sentence import Sentence
@@ -57,8 +57,8 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
 def _beyond(ds: xr.Dataset, body: str, shifts: float) -> bool:
     """Say whether a body lasts more overrollings than its fatigue limit or the S-N data reach."""
     material = json.loads(str(ds.attrs.get("materials", "{}"))).get(f"{body}_material", {})
-    most = min(float(material.get("cycles_at_fatigue_limit", np.inf)), DATA_END)
-    return shifts * float(ds["overrollings"].sel(body=body).sum()) > most
+    cycles = shifts * float(ds["overrollings"].sel(body=body).sum())
+    return bool(past_data(cycles, float(material.get("cycles_at_fatigue_limit", np.inf))))
 
 
 def _at_most(ds: xr.Dataset, body: str) -> str:
