@@ -10,6 +10,7 @@ ASSUME: friction, stresses and material values do not depend on temperature, and
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 
@@ -17,7 +18,8 @@ from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
 from trackroller.parameters import Parameter
 
-STEP, REACH = 0.01, 1e4  # step of the logarithm of the diffusion length, and its ends over the sides of grid and cell
+STEP, REACH = 0.3, 1e4  # step of the logarithm of the diffusion length, and its end over the sides of the grid
+SPREAD = 5.0  # diffusion lengths beyond which no heat arrives
 
 
 def cell_temperature(steps: tuple[float, float], nodes: tuple[int, int], decay: float) -> np.ndarray:
@@ -46,12 +48,20 @@ def cell_temperature(steps: tuple[float, float], nodes: tuple[int, int], decay: 
     from scipy.special import erf  # heavy, and planning reads only the declaration below
 
     (hx, hy), (nx, ny) = steps, nodes
-    low, high = math.log(min(hx, hy) / REACH), math.log(REACH * max(nx * hx, ny * hy))
-    w = np.exp(np.arange(low, high, STEP))[:, None]
-    x, y = hx * np.arange(nx), hy * np.arange(1 - ny, ny) + decay * w**2
-    across = erf((x + 0.5 * hx) / w) - erf((x - 0.5 * hx) / w)
-    along = erf((y + 0.5 * hy) / w) - erf((y - 0.5 * hy) / w)
-    half = (along * w).T @ across * (0.25 * STEP / math.sqrt(math.pi))
+    small, long = min(hx, hy), ny * hy
+    # Below the first w all heat is still in its cell, and above the last it has spread or moved beyond the grid.
+    low = min(small / 8.0, math.sqrt(0.1 * small / decay) if decay > 0 else math.inf)
+    high = REACH * max(nx * hx, long)
+    if decay > 0:
+        high = min(high, (SPREAD + math.sqrt(SPREAD**2 + 4.0 * decay * (long + hy))) / (2.0 * decay))
+    # heat that moves fast passes a cell in a short part of the logarithm of w
+    step = STEP / max(1.0, math.sqrt(decay * long))
+    w = np.exp(np.arange(math.log(low), math.log(max(high, 2.0 * low)) + step, step))[:, None]
+    across = np.diff(erf(hx * (np.arange(nx + 1) - 0.5) / w))
+    along = np.diff(erf((hy * (np.arange(1 - ny, ny + 1) - 0.5) + decay * w**2) / w))
+    half = (along * w).T @ across
+    half[ny - 1, 0] += 4.0 * w[0, 0] / math.expm1(step)  # the sum over all smaller w
+    half *= 0.25 * step / math.sqrt(math.pi)
     return np.concatenate([half[:, :0:-1], half], axis=1)
 
 
@@ -80,7 +90,7 @@ def flash(
     numpy.ndarray
         Rise, (n, contact, body) [K].
     """
-    from scipy.signal import fftconvolve  # heavy, and planning reads only the declaration below
+    from scipy import fft  # heavy, and planning reads only the declaration below
 
     out = np.full((*t.x.shape[:2], 2), np.nan)
     for case, contact in t.patches():
@@ -88,19 +98,19 @@ def flash(
         if not np.isfinite(heat[at]).all() or not np.isfinite(diffusivity[case]).all():
             continue
         steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
-        kernels = {}
-        for body, kappa in enumerate(diffusivity[case].tolist()):
-            if kappa not in kernels:
-                kernel = cell_temperature((steps[0], steps[1]), heat[at].shape[::-1], speed[case] / (4.0 * kappa))
-                kernels[kappa] = float(np.max(fftconvolve(heat[at], kernel)[_middle(heat)].clip(0.0)))
-            out[case, contact, body] = kernels[kappa] / conductivity[case, body]
+        nodes, decays = heat[at].shape[::-1], (speed[case] / (4.0 * diffusivity[case])).tolist()
+        kernels = {decay: cell_temperature((steps[0], steps[1]), nodes, decay) for decay in dict.fromkeys(decays)}
+        lengths = [fft.next_fast_len(2 * n - 1, real=True) for n in heat[at].shape]
+        spectra = fft.rfft2(heat[at], lengths) * fft.rfft2(np.stack(list(kernels.values())), lengths)
+        rises = fft.irfft2(spectra, lengths)[_middle(heat)].max(axis=(1, 2), initial=0.0)
+        out[at] = [rises[list(kernels).index(decay)] for decay in decays] / conductivity[case]
     return t.spread(out)
 
 
-def _middle(heat: np.ndarray) -> tuple[slice, slice]:
-    """Return the part of a complete convolution with a kernel of all offsets that lies on the patch."""
+def _middle(heat: np.ndarray) -> tuple[Any, slice, slice]:
+    """Return the part of a convolution with a kernel of all offsets that lies on the patch; nothing wraps onto it."""
     ny, nx = heat.shape[2:]
-    return slice(ny - 1, 2 * ny - 1), slice(nx - 1, 2 * nx - 1)
+    return ..., slice(ny - 1, 2 * ny - 1), slice(nx - 1, 2 * nx - 1)
 
 
 def hysteresis_moments(force: np.ndarray, length: np.ndarray, loss: np.ndarray, compliance: np.ndarray) -> np.ndarray:

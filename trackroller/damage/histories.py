@@ -5,19 +5,17 @@ A point moves through the stress field along y at fixed x and z, so a line of a 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 
-PADDING = 0.25  # nodes beyond the patch along y over those of the patch, on each side
-# over the smaller semi-axis; the stresses that decide lie at 0.3 to 0.8, or under high friction at the surface
-DEPTHS = np.array([0.0, 0.05, 0.1, 0.2, 0.3, 0.38, 0.45, 0.52, 0.6, 0.7, 0.85, 1.05, 1.3])
-
-# Parities of the stresses of loads q_x, q_y, p along x and y, in the order of `halfspace.stress.COMPONENTS`.
-_ODD_X = np.array([[-1, -1, -1, 1, -1, 1], [1, 1, 1, -1, 1, -1], [1, 1, 1, -1, 1, -1]])[:, :, None, None]
-_ODD_Y = np.array([[1, 1, 1, -1, -1, 1], [-1, -1, -1, 1, 1, -1], [1, 1, 1, -1, -1, 1]])[:, :, None, None]
+PADDING = 0.18  # nodes beyond the patch along y over those of the patch, on each side
+# over the smaller half side of the patch; the stresses that decide lie at 0.3 to 0.8, or under high friction higher
+DEPTHS = np.array([0.05, 0.1, 0.17, 0.26, 0.37, 0.5, 0.66, 0.9])
+RUNG = 0.07  # step of the logarithm of the ratio of sides
 
 
 @dataclass(frozen=True)
@@ -56,67 +54,117 @@ class Tractions:
         values[self.mirrored, 1] = values[self.mirrored, 0]
         return values
 
+    def loads(self, case: int, contact: int) -> Loads:
+        """Return the loads of one patch."""
+        at = case, contact
+        step_x, step_y = ((axis[-1] - axis[0]) / (axis.size - 1) for axis in (self.x[at], self.y[at]))
+        return Loads(np.stack([self.shear_lateral[at], self.shear_rolling[at], self.pressure[at]]), step_x, step_y)
 
-def _grown(quarter: np.ndarray) -> np.ndarray:
-    """Return kernels at all offsets from those at offsets >= 0, (load, component, y, x), by their parities."""
-    left = np.concatenate([(_ODD_X * quarter)[..., :0:-1], quarter], axis=-1)
-    return np.concatenate([(_ODD_Y * left)[..., :0:-1, :], left], axis=-2)
+
+@dataclass(frozen=True)
+class Loads:
+    """Loads q_x, q_y, p of one patch as hats around nodes, (3, ny, nx) [MPa], and the spacings of the nodes [mm]."""
+
+    tractions: np.ndarray
+    step_x: float
+    step_y: float
+
+    @property
+    def half_sides(self) -> tuple[float, float]:
+        """Return half the sides of the grid along x and y [mm]."""
+        _, ny, nx = self.tractions.shape
+        return 0.5 * nx * self.step_x, 0.5 * ny * self.step_y
+
+    def on_ladder(self) -> Loads:
+        """Return loads on half as many nodes, in a larger box whose sides have a ratio of the ladder.
+
+        Quadratic B-splines carry each load to three nodes along each axis. The resultants and first moments stay, and
+        the second moments grow by a quarter of the squared spacing, which the kernels take back. The outermost nodes
+        lie outside the box.
+        """
+        _, ny, nx = self.tractions.shape
+        wide, long = self.half_sides
+        ratio = math.exp(RUNG * round(math.log(wide / long) / RUNG))
+        nodes = (nx + 1) // 2, (ny + 1) // 2
+        step_x, step_y = 2.0 * max(wide, ratio * long) / nodes[0], 2.0 * max(long, wide / ratio) / nodes[1]
+        across, along = _spread(nx, self.step_x, nodes[0], step_x), _spread(ny, self.step_y, nodes[1], step_y)
+        return Loads(along @ self.tractions @ across.T, step_x, step_y)
 
 
-@lru_cache(maxsize=4)
-def _spectra(sides: tuple[float, float], nodes: tuple[int, int], poisson_ratio: float) -> np.ndarray:
-    """Return the Fourier transforms of the stresses of hat loads on the planes `DEPTHS`.
+def _spread(points: int, spacing: float, nodes: int, step: float) -> np.ndarray:
+    """Return the shares (nodes + 2, points) of loads at points that quadratic B-splines carry to nodes."""
+    places, at = (np.arange(n) - 0.5 * (n - 1) for n in (nodes + 2, points))
+    u = np.abs(spacing / step * at - places[:, None])
+    return spacing / step * np.where(u < 0.5, 0.75 - u**2, 0.5 * np.maximum(1.5 - u, 0.0) ** 2)
 
-    Patches of equal shape share them: they depend on ratios of lengths alone.
+
+def _lengths(nodes: tuple[int, int]) -> tuple[int, int]:
+    """Return lengths along y and x of a circular convolution whose wrapped parts fall on no wanted place."""
+    from scipy import fft  # heavy, as is the compiled room below: planning reads only the declarations of the limits
+
+    (nx, ny), beside = nodes, 2  # nodes that the correction of B-splines reaches
+    return fft.next_fast_len(2 * (ny + beside) - 1), fft.next_fast_len(2 * (nx + beside) - 1, real=True)
+
+
+def _kernels(sides: tuple[float, float], nodes: tuple[int, int], depths: tuple[float, ...]) -> np.ndarray:
+    """Return the Fourier transforms of the stresses of hat loads, (depth, load, 9, y, x); see `hat_kernels`.
 
     Parameters
     ----------
     sides : tuple of float
         Grid spacings along x and y over the larger of the two [1].
     nodes : tuple of int
-        Loaded nodes along x and y.
-    poisson_ratio : float
-        nu [1].
-
-    Returns
-    -------
-    numpy.ndarray
-        (depth, load, component, y, x), complex in single precision.
+        Nodes along x and y.
+    depths : tuple of float
+        Depths over the larger spacing [1].
     """
-    from scipy import fft  # heavy, as is the compiled room below: planning reads only the declarations of the limits
+    from scipy import fft  # heavy, see _lengths
 
-    from trackroller.halfspace import influence
+    from trackroller.halfspace.hats import hat_kernels
 
-    (gx, gy), (nx, ny) = sides, nodes
-    size = nx, ny + int(PADDING * ny)
-    small = 0.5 * min(nx * gx, ny * gy)
-    at_x, at_y = (side * np.arange(-1, n + 1) for side, n in zip(sides, size, strict=True))
-    out = []
-    for depth in DEPTHS * small:
-        table = influence.corner_table(at_x, at_y, depth, poisson_ratio).reshape(3, 6, at_y.size, at_x.size)
-        kernels = _grown(np.diff(np.diff(table, n=2, axis=2), n=2, axis=3) / (gx * gy))
-        # single precision: its rounding lies 1000 times below the error of the planes, and it takes half the time
-        out.append(fft.rfft2(kernels.astype(np.float32), _lengths(nodes)))
-    return np.array(out)
+    return np.asarray(fft.rfft2(hat_kernels(sides, nodes, np.array(depths), _lengths(nodes)), overwrite_x=True))
 
 
-def _lengths(nodes: tuple[int, int]) -> tuple[int, int]:
-    """Return lengths along y and x for a convolution whose wrapped ends are cut off."""
-    from scipy import fft  # heavy, see _spectra
+@lru_cache(maxsize=64)
+def _smooth_kernels(ratio: float, nodes: tuple[int, int], inner: tuple[int, int]) -> np.ndarray:
+    """Return the kernels of loads on the ladder at `DEPTHS`, without the spread by B-splines and hats.
 
-    nx, ny = nodes
-    return fft.next_fast_len(2 * (ny + int(PADDING * ny)) - 1, real=True), fft.next_fast_len(2 * nx - 1, real=True)
+    Patches whose sides have nearly the same ratio share the kernels, which take most of the time of a plane.
+    """
+    sides = min(ratio, 1.0), min(1.0 / ratio, 1.0)
+    small = 0.5 * min(side * n for side, n in zip(sides, inner, strict=True))
+    kernels = _kernels(sides, nodes, tuple((small * DEPTHS).tolist()))
+    # The transform of B-spline and hat is sinc^5; its inverse up to the sixth power of the wave number.
+    for axis, length in zip((3, 4), _lengths(nodes), strict=True):
+        wave = 2.0 - 2.0 * np.cos(2.0 * np.pi * np.arange(kernels.shape[axis]) / length)
+        inverse = 1.0 + 5.0 / 24.0 * wave + 47.0 / 1152.0 * wave**2
+        kernels *= inverse.reshape((-1, 1) if axis == 3 else -1).astype(np.float32)
+    return kernels
 
 
-def planes(tractions: Tractions, case: int, contact: int, poisson_ratio: np.ndarray) -> np.ndarray:
-    """Return the stresses of both bodies on the planes `DEPTHS` below one patch.
+def _stresses(loads: Loads, kernels: np.ndarray, more: int, poisson_ratio: np.ndarray) -> np.ndarray:
+    """Return the stresses of both bodies, (body, depth, component, y, x), with `more` places on each side along y."""
+    from scipy import fft  # heavy, see _lengths
+
+    from trackroller.halfspace.hats import body_spectra
+    from trackroller.halfspace.stress import FRICTION_SIGNS
+
+    _, ny, nx = loads.tractions.shape
+    lengths = _lengths((nx, ny + more))
+    spectra = fft.rfft2(np.pad(loads.tractions, ((0, 0), (more, 0), (0, 0))).astype(np.float32), lengths)
+    bodies = body_spectra(spectra, kernels, poisson_ratio.astype(np.float32), np.array(FRICTION_SIGNS, np.float32))
+    return np.asarray(fft.irfft2(bodies, lengths, overwrite_x=True)[..., : ny + 2 * more, :nx])
+
+
+def planes(loads: Loads, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:
+    """Return the stresses of both bodies on planes at any depth below one patch.
 
     Parameters
     ----------
-    tractions : Tractions
-        The tractions, bilinear between the nodes.
-    case, contact : int
-        Place of the patch.
+    loads : Loads
+        The loads on the roller, bilinear between the nodes; (-q_x, -q_y, p) act on the guide.
+    depths : numpy.ndarray
+        z >= 0 of the planes, (depth,) [mm].
     poisson_ratio : numpy.ndarray
         nu of roller and guide, (2,) [1].
 
@@ -124,32 +172,42 @@ def planes(tractions: Tractions, case: int, contact: int, poisson_ratio: np.ndar
     -------
     numpy.ndarray
         Stresses (body, depth, component, y, x) in the order of `halfspace.stress.COMPONENTS` [MPa]. Along y the planes
-        have `PADDING` times the nodes of the patch more on each side.
+        have `PADDING` times the nodes more on each side.
 
     Notes
     -----
-    The stresses are those of `halfspace.stress.stress_on_grid`. Patches of equal shape share the kernels, bodies of
-    equal nu the stresses of pressure and shear.
+    The stresses are those of `halfspace.stress.stress_on_grid`, by convolutions in single precision, whose rounding is
+    1000 times smaller than the error of the planes.
     """
-    from scipy import fft  # heavy, as is the compiled room below, see _spectra
+    _, ny, nx = loads.tractions.shape
+    more, unit = math.ceil(PADDING * ny), max(loads.step_x, loads.step_y)
+    sides = loads.step_x / unit, loads.step_y / unit
+    kernels = _kernels(sides, (nx, ny + more), tuple((np.asarray(depths) / unit).tolist()))
+    return _stresses(loads, kernels, more, poisson_ratio)
 
-    from trackroller.halfspace.stress import FRICTION_SIGNS
 
-    t, at = tractions, (case, contact)
-    nodes = t.x.shape[-1], t.y.shape[-1]
-    steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
-    sides = tuple(float(round(step / max(steps), 12)) for step in steps)
-    lengths, more = _lengths(nodes), int(PADDING * nodes[1])
-    fields = np.stack([t.shear_lateral[at], t.shear_rolling[at], t.pressure[at]])
-    loads = fft.rfft2(fields.astype(np.float32), lengths)
-    rows, columns = slice(nodes[1] - 1, 2 * (nodes[1] + more) - 1), slice(nodes[0] - 1, 2 * nodes[0] - 1)
-    bodies: list[np.ndarray] = []
-    known: dict[float, tuple[np.ndarray, ...]] = {}
-    for sign, nu in zip(FRICTION_SIGNS, map(float, poisson_ratio), strict=True):
-        if nu not in known:
-            spectra = _spectra((sides[0], sides[1]), nodes, nu)
-            sheared = np.einsum("lyx,dlcyx->dcyx", loads[:2], spectra[:, :2])
-            pressed = loads[2] * spectra[:, 2]
-            known[nu] = tuple(fft.irfft2(part, lengths)[..., rows, columns] for part in (sheared, pressed))
-        bodies.append(known[nu][1] + sign * known[nu][0])
-    return np.stack(bodies).astype(float)
+def deep_planes(loads: Loads, poisson_ratio: np.ndarray) -> np.ndarray:
+    """Return the stresses of both bodies on the planes `DEPTHS` below one patch, on half as many nodes.
+
+    Parameters
+    ----------
+    loads : Loads
+        The loads on the roller.
+    poisson_ratio : numpy.ndarray
+        nu of roller and guide, (2,) [1].
+
+    Returns
+    -------
+    numpy.ndarray
+        Stresses (body, depth, component, y, x) as of `planes` [MPa].
+
+    Notes
+    -----
+    Stresses at a depth are smooth: half the nodes give them with errors of the fourth order of the spacing.
+    """
+    ladder = loads.on_ladder()
+    _, ny, nx = ladder.tractions.shape
+    more = math.ceil(PADDING * ny)
+    ratio = math.exp(RUNG * round(math.log(ladder.step_x / ladder.step_y * (nx - 2) / (ny - 2)) / RUNG))
+    kernels = _smooth_kernels(ratio * (ny - 2) / (nx - 2), (nx, ny + more), (nx - 2, ny - 2))
+    return _stresses(ladder, kernels, more, poisson_ratio)[..., 1:-1]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.histories import Tractions, planes
+from trackroller.damage.histories import Tractions, deep_planes, planes
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, optional, variables
 
 
@@ -31,40 +31,56 @@ def dang_van_constants(bending: np.ndarray, torsion: np.ndarray) -> tuple[np.nda
     return 3.0 * (torsion / bending - 0.5), torsion
 
 
-def stresses(t: Tractions, case: int, contact: int, constants: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:
-    """Return amplitude, Findley's and Dang Van's stress of both bodies below one patch.
+def _twice(values: np.ndarray) -> np.ndarray:
+    """Return values with values between those along the last axis, by cubic interpolation."""
+    out = np.empty((*values.shape[:-1], 2 * values.shape[-1] - 1), values.dtype)
+    out[..., ::2] = values
+    out[..., 1::2] = 0.5 * (values[..., 1:] + values[..., :-1])
+    out[..., 3:-3:2] = 1.125 * out[..., 3:-3:2] - 0.0625 * (values[..., 3:] + values[..., :-3])
+    return out
+
+
+def stress_paths(t: Tractions, case: int, contact: int, poisson_ratio: np.ndarray) -> np.ndarray:
+    """Return the stress paths of points at the surface and below one patch.
 
     Parameters
     ----------
-    t, case, contact : the tractions and the place of the patch
-    constants : k_F and a_D of both bodies, (body, 2) [1]; NaN where they are not known
-    poisson_ratio : of both bodies, (2,) [1]
+    t : Tractions
+        The patches.
+    case, contact : int
+        Place of the patch.
+    poisson_ratio : numpy.ndarray
+        nu of both bodies, (2,) [1].
 
     Returns
     -------
     numpy.ndarray
-        Amplitude, Findley, Dang Van, Dang Van without credit of pressure, (body, 4) [MPa].
+        Stresses, (body, path, time, 6) [MPa]. Each path ends with the unloaded state.
     """
-    from trackroller.damage.paths import governing  # numba compiles on import, and planning reads only the declaration
-
-    out = np.empty((2, 4))
-    for body, planar in enumerate(planes(t, case, contact, poisson_ratio)):
-        lines = planar.transpose(0, 3, 2, 1).reshape(-1, planar.shape[2], 6)
-        out[body] = governing(np.append(lines, np.zeros((len(lines), 1, 6)), axis=1), *constants[body])
-    out[:, 0] *= np.sqrt(3.0)  # from the coordinates of the deviator to a von Mises stress
+    loads = t.loads(case, contact)
+    surface, below = planes(loads, np.zeros(1), poisson_ratio), deep_planes(loads, poisson_ratio)
+    parts = surface.swapaxes(3, 4), _twice(_twice(below).swapaxes(3, 4))
+    lines = [part.transpose(0, 1, 3, 4, 2).reshape(2, -1, part.shape[4], 6) for part in parts]
+    out = np.zeros((2, sum(part.shape[1] for part in lines), max(part.shape[2] for part in lines) + 1, 6))
+    out[:, : lines[0].shape[1], : lines[0].shape[2]] = lines[0]
+    out[:, lines[0].shape[1] :, : lines[1].shape[2]] = lines[1]
     return out
 
 
 def evaluate(solved: SolvedRollers) -> Results:
     """Return stresses [MPa] and utilisations [1] of the criteria, (n, contact, body)."""
+    from trackroller.damage.paths import governing  # numba compiles on import, and planning reads only the declaration
+
     m, t = solved.materials, solved.tractions()
     limits = m["fatigue_limit"], m["fatigue_limit_torsion"]
     (k, findley_limit), (a, dang_van_limit) = findley_constants(*limits), dang_van_constants(*limits)
     criteria = np.full((*t.x.shape[:2], 2, 4), np.nan)
     for case, contact in t.patches():
         constants = np.stack([k[case], a[case]], axis=1)
-        criteria[case, contact] = stresses(t, case, contact, constants, m["poisson_ratio"][case])
+        for body, own in enumerate(stress_paths(t, case, contact, m["poisson_ratio"][case])):
+            criteria[case, contact, body] = governing(own, *constants[body])
     criteria = t.spread(criteria)
+    criteria[..., 0] *= np.sqrt(3.0)  # from the coordinates of the deviator to a von Mises stress
     return {
         "von_mises_amplitude": criteria[..., 0],
         "findley_stress": criteria[..., 1],

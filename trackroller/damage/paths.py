@@ -1,4 +1,4 @@
-"""Compiled search for the stress paths that govern the multiaxial criteria, and for smallest balls.
+"""Compiled search for the stress paths that govern the multiaxial criteria.
 
 A path is the stress history of one point, (t, 6) in the order of `halfspace.stress.COMPONENTS`. Each search holds an
 upper bound for every path and sharpens the largest one until it belongs to a path whose value is known. Paths that
@@ -11,93 +11,10 @@ import math
 
 import numpy as np
 
+from trackroller.damage.ball import FINE, smallest_ball, squared
 from trackroller.numerics.compiled import compiled
 
-GAP, FINE = 1e-4, 1e-7  # relative gaps of a squared radius: for the radius, and for the centre, whose error is its root
-MOST_MOVES, MOST_POINTS = 2_000, 60  # where the search of a ball gives up; its radius is an upper bound
 COARSE, KEPT, ROUNDS = 95, 3, 7  # planes searched first, those refined, and how often the step is halved
-
-
-@compiled
-def _squared(u):  # pragma: no cover (compiled)
-    total = 0.0
-    for value in u:
-        total += value * value
-    return total
-
-
-@compiled
-def _slope(point, base, centre):  # pragma: no cover (compiled)
-    """Return |u - c|^2 + h - |c|^2 of a point u (d,) with its base |u|^2 + h."""
-    for j in range(len(centre)):
-        base -= 2.0 * centre[j] * point[j]
-    return base
-
-
-@compiled
-def _balanced(points, base, weight, centre, gap):  # pragma: no cover (compiled)
-    """Write the weights and the centre of the smallest ball around a few points.
-
-    Weight moves from the nearest point that has some to the farthest one, as far as the concave dual value rises.
-    """
-    for _ in range(MOST_MOVES):
-        far, near, low, high, dual = 0, 0, np.inf, -np.inf, 0.0
-        for i in range(len(points)):
-            slope = _slope(points[i], base[i], centre)
-            dual += weight[i] * base[i]
-            far, high = (i, slope) if slope > high else (far, high)
-            near, low = (i, slope) if weight[i] > 0.0 and slope < low else (near, low)
-        own = _squared(centre)
-        if far == near or high + own <= (1.0 + gap) * (dual - own):
-            break
-        way = points[far] - points[near]
-        move = min(weight[near], (high - low) / (2.0 * _squared(way)))
-        weight[far] += move
-        weight[near] -= move
-        centre += move * way
-
-
-@compiled
-def smallest_ball(points, height, gap):  # pragma: no cover (compiled)
-    """Return the smallest possible largest |u - c|^2 + h over the centres c, and the centre.
-
-    Parameters
-    ----------
-    points : numpy.ndarray
-        u, (p, d).
-    height : numpy.ndarray
-        h >= 0, (p,).
-    gap : float
-        Relative gap at which the search ends [1].
-
-    Returns
-    -------
-    tuple of float and numpy.ndarray
-        The smallest maximum, at most `gap` above the exact one, and c, (d,).
-
-    Notes
-    -----
-    The centre is a weighted mean of a few points (pairwise Frank-Wolfe). The farthest of all points joins them until
-    the ball holds all.
-    """
-    base = height.copy()
-    for i in range(len(points)):
-        base[i] += _squared(points[i])
-    first = np.argmax(base)
-    few, few_base, weight = points[first : first + 1].copy(), base[first : first + 1].copy(), np.ones(1)
-    centre = few[0].copy()
-    while True:
-        far, high = 0, -np.inf
-        for i in range(len(points)):
-            slope = _slope(points[i], base[i], centre)
-            far, high = (i, slope) if slope > high else (far, high)
-        own = _squared(centre)
-        if high + own <= (1.0 + gap) * (np.sum(weight * few_base) - own) or len(few) > MOST_POINTS:
-            return high + own, centre
-        kept = weight > 0.0
-        few = np.concatenate((few[kept], points[far : far + 1]))
-        few_base, weight = np.append(few_base[kept], base[far]), np.append(weight[kept], 0.0)
-        _balanced(few, few_base, weight, centre, 0.1 * gap)
 
 
 @compiled
@@ -111,7 +28,7 @@ def deviator(s, u):  # pragma: no cover (compiled)
 @compiled
 def principal_deviators(u):  # pragma: no cover (compiled)
     """Return the largest and the smallest principal stress of a deviator, from its coordinates u (5,)."""
-    square = _squared(u)
+    square = squared(u)
     if square == 0.0:
         return 0.0, 0.0
     third, size = u[1] / math.sqrt(3.0), math.sqrt(square / 3.0)
@@ -219,7 +136,7 @@ def dang_van(path, a):  # pragma: no cover (compiled)
     u, mean = np.empty((len(path), 5)), np.empty(len(path))
     for i in range(len(path)):
         mean[i] = deviator(path[i], u[i])
-    centre = smallest_ball(u, np.zeros(len(path)), FINE)[1]
+    _, centre, _, _ = smallest_ball(u, np.zeros(len(path)), FINE)
     with_credit, without = -np.inf, -np.inf
     for i in range(len(path)):
         high, low = principal_deviators(u[i] - centre)

@@ -13,60 +13,33 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.histories import Tractions, planes
+from trackroller.damage.histories import DEPTHS, Tractions, deep_planes
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, variables, worst
 
 
-def relieved(stress: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the parts of J2 that a residual stress can and cannot relieve.
+def shears(t: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
+    """Return the shear yield stress k at which the stresses below each patch just shake down.
 
     Parameters
     ----------
-    stress : numpy.ndarray
-        Stresses in the order of `halfspace.stress.COMPONENTS`, (6, ...) [MPa].
+    t : Tractions
+        The patches.
+    poisson_ratio : numpy.ndarray
+        nu of the bodies, (n, 2) [1].
 
     Returns
     -------
-    tuple of numpy.ndarray
-        Coordinates u, (..., 3), and h, (...), with J2 = |u|^2 + h; a residual stress shifts u by any vector.
+    numpy.ndarray
+        k, (n, contact, body) [MPa].
     """
-    x, y, z, xy, yz, zx = stress
-    return np.stack([(x - y) / 2.0, (2.0 * z - x - y) / np.sqrt(12.0), xy], axis=-1), yz**2 + zx**2
+    from trackroller.damage.ball import shakedown_shears  # numba compiles on import, and planning needs none of it
 
-
-def shakedown_shear(stress: np.ndarray) -> float:
-    """Return the shear yield stress k at which the stresses of one body below one patch just shake down.
-
-    Parameters
-    ----------
-    stress : numpy.ndarray
-        Stresses on planes of constant depth, the surface first, (depth, 6, y, x) [MPa].
-
-    Returns
-    -------
-    float
-        k [MPa]; the unloaded state counts as a point of every plane.
-    """
-    from trackroller.damage.paths import GAP, smallest_ball  # numba compiles on import, and planning needs none of it
-
-    largest = float(np.max(stress[0, 4] ** 2 + stress[0, 5] ** 2))
-    parts = [relieved(np.append(plane.reshape(6, -1), np.zeros((6, 1)), axis=1)) for plane in stress[1:]]
-    # No ball is larger than the one around the middle of its points, so most planes need no ball.
-    middles = [0.5 * (u.max(axis=0) + u.min(axis=0)) for u, _ in parts]
-    bounds = [float(np.max(np.sum((u - c) ** 2, axis=1) + h)) for (u, h), c in zip(parts, middles, strict=True)]
-    for i in np.argsort(bounds)[::-1]:
-        if bounds[i] > largest:
-            largest = max(largest, smallest_ball(*parts[i], GAP)[0])
-    return float(np.sqrt(largest))
-
-
-def shears(tractions: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
-    """Return `shakedown_shear` below each patch, (n, contact, body) [MPa], for nu of the bodies, (n, 2) [1]."""
-    out = np.full((*tractions.x.shape[:2], 2), np.nan)
-    for case, contact in tractions.patches():
-        stress = planes(tractions, case, contact, poisson_ratio[case])
-        out[case, contact] = [shakedown_shear(own) for own in stress]
-    return tractions.spread(out)
+    out = np.full((*t.x.shape[:2], 2), np.nan)
+    for at in t.patches():
+        surface = np.sqrt(np.max(t.shear_lateral[at] ** 2 + t.shear_rolling[at] ** 2))
+        below = shakedown_shears(deep_planes(t.loads(*at), poisson_ratio[at[0]]), np.log(DEPTHS))
+        out[at] = np.maximum(below, surface)
+    return t.spread(out)
 
 
 def evaluate(solved: SolvedRollers) -> Results:
