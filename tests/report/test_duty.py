@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import json
 import math
 
+import numpy as np
 import pytest
 from command_line import trackroller
 
 import trackroller as tr
-from trackroller.report.numbers import hour_unit, lasting, on_duty, quantity
+from trackroller.report.numbers import hour_unit, lasting, on_duty, quantity, rounded
 from trackroller.roller.duty import checked_duty, years
 
 DUTY = {"hours_per_day": 8, "days_per_year": 220}
@@ -50,3 +52,49 @@ def test_solve_and_plan_take_the_duty(tmp_path):
     assert float(life.split(" h (")[1].split(" years")[0]) == pytest.approx(hours / 1760, rel=0.02)
     study = tr.load_study({"name": "d", "duty": DUTY, "outputs": ["forces"]})
     assert tr.load_study(study.as_dict()).config.duty == {"hours_per_day": 8.0, "days_per_year": 220.0}
+
+
+SPECTRUM = """\
+base: {friction_coefficient: 0.2, guide_overrollings_per_hour: 120, velocity: 0.25}
+blocks: [{distance: 9 km, radial_force: -200, motor_force: 0}, {distance: 2 km, radial_force: -150}]
+contact_model: sliding
+"""
+
+
+def test_a_spectrum_has_years_doubts_and_what_was_not_given_everywhere(tmp_path):
+    (tmp_path / "a.yaml").write_text(SPECTRUM.replace("velocity: 0.25", "velocity: 25"))
+    plain = trackroller("spectrum", "a.yaml", cwd=tmp_path)
+    assert "years" not in plain.stdout and "doubtful" not in plain.stderr
+    assert "motor_force -30 N" in plain.stdout and "Is the roller driven?" in plain.stdout
+    assert "radial_force" not in plain.stdout.split("Not given")[1], "each block names its own"
+    (tmp_path / "b.yaml").write_text(SPECTRUM + "duty: {hours_per_day: 8, days_per_year: 220}\n")
+    told = trackroller("spectrum", "b.yaml", "--report", "b.html", cwd=tmp_path)
+    found = json.loads(trackroller("spectrum", "b.yaml", "--json", cwd=tmp_path).stdout)
+    life = found["roller_life_hours"]
+    assert life["years"] == pytest.approx(life["value"] / 1760)
+    page = (tmp_path / "b.html").read_text(encoding="utf-8")
+    for text in (told.stdout, page):
+        assert f"({rounded(life['years'], 2)} years)" in " ".join(text.split())
+        assert "motor_force -30 N" in " ".join(text.split())
+    (doubt,) = found["doubts"]
+    assert "write '0.25 m/s' or 15" in doubt and doubt in told.stderr and doubt.replace("'", "&#39;") in page
+
+
+def test_a_sheet_and_json_ask_about_doubtful_values(tmp_path):
+    words = ["solve", "--set", "contact_model=sliding", "--set", "accuracy=preview", "--set", "velocity=0.25"]
+    told = trackroller(*words, "--json", cwd=tmp_path)
+    (doubt,) = json.loads(told.stdout)["doubts"]
+    assert doubt in told.stderr and "write '0.25 m/s' or 15" in doubt
+    ds = tr.solve({"velocity": 0.25}, contact_model="sliding", accuracy="preview")
+    page = tr.report(ds, tmp_path / "a.html").read_text(encoding="utf-8")
+    assert "Doubtful values" in page and doubt.replace("'", "&#39;") in page
+    usual = tr.solve({"velocity": 25}, contact_model="sliding", accuracy="preview")
+    assert "Doubtful values" not in tr.report(usual, tmp_path / "b.html").read_text(encoding="utf-8")
+
+
+def test_lives_of_a_case_have_years_in_json(tmp_path):
+    words = ["--set", "contact_model=sliding", "--set", "duty={hours_per_day: 8, days_per_year: 220}", "--json"]
+    found = json.loads(trackroller("solve", *words, cwd=tmp_path).stdout)
+    assert found["roller_life_hours"]["years"] == pytest.approx(found["roller_life_hours"]["value"] / 1760)
+    assert np.array(found["life_hours"]["years"], dtype=float).shape == (2, 2)
+    assert "years" not in found["life_cycles"]

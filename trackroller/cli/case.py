@@ -180,9 +180,12 @@ def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) ->
     from trackroller.report.pages.sheet_text import as_json, print_spectrum
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.study.spectrum.file import load_spectrum
-    from trackroller.study.spectrum.solve import solve_spectrum
+    from trackroller.study.spectrum.solve import doubts_of_spectrum, solve_spectrum
 
-    dataset = solve_spectrum(load_spectrum(path))
+    spectrum = load_spectrum(path)
+    for text in doubts_of_spectrum(spectrum, load_database()):
+        print_line(f"doubtful: {text}")
+    dataset = solve_spectrum(spectrum)
     if target is not None:
         write_result(dataset, target)
     if sheet is not None:

@@ -104,12 +104,16 @@ def hour_unit(hours: float) -> str:
     return f"h ({rounded(years(hours, duty), 2)} years)" if duty and math.isfinite(hours) else "h"
 
 
+def life_unit(unit: str, value: float) -> str:
+    """Return the unit behind a life, with its years if it is in hours; see `hour_unit`."""
+    return hour_unit(value) if unit == "h" else unit
+
+
 def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
     """Write a life, with the remark that it lies beyond the S-N data; an unlimited life is no number of hours."""
     if value == math.inf:
         return f"{NO_FAILURE} ({BEYOND})"
-    unit = hour_unit(value) if unit == "h" else unit
-    return f"{rounded(value)} {unit}".strip() + (f" ({BEYOND})" if beyond else "")
+    return f"{rounded(value)} {life_unit(unit, value)}".strip() + (f" ({BEYOND})" if beyond else "")
 
 
 class Life(float):

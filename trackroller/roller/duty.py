@@ -35,12 +35,12 @@ def checked_duty(value: Any) -> dict[str, float]:
     return duty
 
 
-def years(hours: float, duty: Mapping[str, float]) -> float:
+def years(hours: Any, duty: Mapping[str, float]) -> Any:
     """Return a life in years of a duty.
 
     Parameters
     ----------
-    hours : float
+    hours : float or numpy.ndarray
         Hours of travel [h].
     duty : mapping
         `hours_per_day` and `days_per_year` [1].
@@ -54,10 +54,10 @@ def years(hours: float, duty: Mapping[str, float]) -> float:
 
 
 def with_duty(ds: xr.Dataset, duty: Mapping[str, float] | None) -> xr.Dataset:
-    """Return the result of one case with its duty as attribute; without a duty as it is."""
+    """Return the result of one case or spectrum with its duty as attribute; without a duty as it is."""
     return ds if duty is None else ds.assign_attrs({ATTRIBUTE: json.dumps(duty)})
 
 
 def duty_of(ds: xr.Dataset) -> dict[str, float] | None:
-    """Return the duty that the result of one case was solved with, None if it has none."""
+    """Return the duty that the result of one case or spectrum was solved with, None if it has none."""
     return json.loads(ds.attrs[ATTRIBUTE]) if ATTRIBUTE in ds.attrs else None

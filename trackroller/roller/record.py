@@ -15,6 +15,7 @@ from trackroller.materials import Material, load_database
 from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.case import Case
+from trackroller.roller.doubts import doubts_of_case
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 
 CASE, MATERIALS, STUDY = "case", "materials", "study"  # names of attributes: JSON, JSON, YAML
 NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given
+DOUBTS = "doubts"  # attribute: JSON list of sentences on unusual values
 
 
 def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Dataset:
@@ -40,7 +42,7 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     Returns
     -------
     xarray.Dataset
-        The same result with three more attributes.
+        The same result with four more attributes.
     """
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
@@ -48,7 +50,7 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
         values["friction_coefficient"] = record["value"]
         ds.attrs[FRICTION] = json.dumps([record])
     ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
-    ds.attrs[NOT_GIVEN] = json.dumps(case.not_given)
+    ds.attrs |= {NOT_GIVEN: json.dumps(case.not_given), DOUBTS: json.dumps(doubts_of_case(case, database))}
     return ds
 
 
@@ -112,6 +114,11 @@ def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
     """Return the values of a solved case that were not given but taken from the paper's example, by name."""
     values = inputs_of(ds)
     return {name: values[name] for name in json.loads(ds.attrs.get(NOT_GIVEN, "[]"))}
+
+
+def doubts_of(ds: xr.Dataset) -> list[str]:
+    """Return the sentences on unusual values of the result of one case or of a spectrum."""
+    return json.loads(ds.attrs.get(DOUBTS, "[]"))
 
 
 def materials_of(ds: xr.Dataset) -> dict[str, dict[str, Any]]:

@@ -26,7 +26,15 @@ from trackroller.report.words.assumptions import (
 from trackroller.report.words.flags import Flag, flags_of
 from trackroller.roller.dataset import VARIABLES, shown
 from trackroller.roller.limits import limits
-from trackroller.roller.record import case_of_result, inputs_of, is_default, materials_of, not_given_of, solve_command
+from trackroller.roller.record import (
+    case_of_result,
+    doubts_of,
+    inputs_of,
+    is_default,
+    materials_of,
+    not_given_of,
+    solve_command,
+)
 from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
@@ -79,6 +87,7 @@ class Facts:
     reason: str
     inputs: list[Row]
     not_given: str
+    doubts: list[str]
     materials: list[tuple[str, list[Row], str]]
     contacts: list[ContactFacts]
     whole: list[Row]
@@ -126,6 +135,7 @@ def collect(ds: xr.Dataset) -> Facts:
             if is_told(name, value)
         ],
         not_given=not_given_text(given),
+        doubts=doubts_of(ds),
         materials=body_materials(stored),
         contacts=contacts,
         whole=quantity_rows(ds, shown()),

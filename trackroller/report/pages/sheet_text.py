@@ -10,12 +10,13 @@ import numpy as np
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
-from trackroller.report.pages.spectrum import block_table, life_rows, warnings
+from trackroller.report.pages.spectrum import assumed, block_table, life_rows, warnings
 from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.flags import flags_of
 from trackroller.report.words.spectrum import sentences
-from trackroller.roller.record import friction_records, inputs_of, is_default, materials_of
+from trackroller.roller.duty import duty_of, years
+from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
@@ -66,6 +67,7 @@ def print_margins(facts: Facts, probability: float) -> None:
         print_text(sentence)
 
 
+@lives_in_years
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives, sentences on their causes and warnings."""
     told = block_table(ds)
@@ -79,12 +81,18 @@ def print_spectrum(ds: xr.Dataset) -> None:
         print_text(sentence.text)
     for text in warnings(ds):
         print_text(text, "warning")
+    for text in assumed(ds):
+        print_text(text)
+
+
+_RECORDS = ("case", "materials", "friction", "doubts")  # attributes with keys of their own in JSON
 
 
 def as_json(ds: xr.Dataset) -> str:
     """Return a result as JSON: every variable with dims, units and values; NaN is null, infinity a text.
 
-    The result of one case also has its inputs and which of them are defaults, its materials with sources, its flags in
+    Lives in hours also have years where the duty is known, and `doubts` holds a sentence for each unusual value. The
+    result of one case also has its inputs and which of them are defaults, its materials with sources, its flags in
     words, the options and the versions.
     """
     told: dict[str, Any] = {
@@ -102,12 +110,17 @@ def as_json(ds: xr.Dataset) -> str:
     ):
         if name in told:
             told[name]["meaning"] = np.array(words)[ds[name].values].tolist()
+    duty = duty_of(ds)
+    if duty is not None:
+        for name in (n for n, of in told.items() if of["units"] == "h" and "life" in n):
+            told[name]["years"] = _plain(years(ds[name].values, duty).tolist())
+    told["doubts"] = doubts_of(ds)
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
         told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
         told["materials"], told["friction"] = materials_of(ds), friction_records(ds.attrs)
         told["flags"] = [vars(flag) for flag in flags_of(ds)]
-        told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in ("case", "materials", "friction")}
+        told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}
         told["versions"] = versions()
     return json.dumps(told)
 

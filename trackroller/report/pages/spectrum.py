@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import json
+import math
 import shlex
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,14 +13,25 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS
+from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report import html
-from trackroller.report.numbers import capital, chance, listing, long_name, unit_text, with_unit
+from trackroller.report.numbers import (
+    capital,
+    chance,
+    life_unit,
+    listing,
+    lives_in_years,
+    long_name,
+    unit_text,
+    with_unit,
+)
 from trackroller.report.pages.sheet import _pictures
 from trackroller.report.pages.sheet_facts import body_materials, versions_text
 from trackroller.report.tables.inputs import Row, input_row, is_told
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.flags import flags_of
 from trackroller.report.words.spectrum import UNITS, _life, known_damage, sentences
+from trackroller.roller.record import NOT_GIVEN, doubts_of
 from trackroller.study.spectrum.file import LOAD_FIELDS
 
 if TYPE_CHECKING:
@@ -27,14 +40,19 @@ if TYPE_CHECKING:
 
 def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
     """Return the life of a body in shifts, km and hours, and at each failure probability if its material scatters."""
-    rows = [Row(f"life in {name}", _life(float(ds[f"{body}_life_{name}"])), unit) for name, unit in UNITS]
+    lives = [(name, float(ds[f"{body}_life_{name}"]), unit) for name, unit in UNITS]
+    rows = [
+        Row(f"life in {name}", _life(value), "" if math.isnan(value) else life_unit(unit, value))
+        for name, value, unit in lives
+    ]
     if "life_shifts_at_probability" in ds:
-        lives = ds["life_shifts_at_probability"].sel(body=body)
+        at = ds["life_shifts_at_probability"].sel(body=body)
         per_shift = [1.0, float(ds["distance"].sum()) / 1e3, float(ds["duration"].sum())]
-        for p in ds["probability"].values if not bool(lives.isnull().all()) else ():
-            shifts = float(lives.sel(probability=p).min(skipna=False))
-            lives_at = [f"{_life(shifts * scale)} {unit}" for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
-            rows.append(Row(f"until {100 * float(p):g} % have failed", ", ".join(lives_at)))
+        for p in ds["probability"].values if not bool(at.isnull().all()) else ():
+            shifts = float(at.sel(probability=p).min(skipna=False))
+            scaled = [(shifts * scale, unit) for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
+            told = ", ".join(f"{_life(value)} {life_unit(unit, value)}" for value, unit in scaled)
+            rows.append(Row(f"until {100 * float(p):g} % have failed", told))
     return rows
 
 
@@ -75,6 +93,14 @@ def warnings(ds: xr.Dataset) -> list[str]:
     return [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
 
 
+def assumed(ds: xr.Dataset) -> list[str]:
+    """Return what was not given, and a question about a drive that is not given."""
+    given = json.loads(ds.attrs.get(NOT_GIVEN, "{}"))
+    told = [not_given_text(given), drive_question(given, set(PARAMETERS) - set(given))]
+    return [capital(text) for text in told if text]
+
+
+@lives_in_years
 def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml") -> Path:
     """Write the page of a load spectrum as one HTML file that stands alone, or as PDF by the name of the file.
 
@@ -94,7 +120,7 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
     """
     from trackroller.report.figures import spectrum, style  # heavy: matplotlib
 
-    inputs = json.loads(ds.attrs["roller"])
+    inputs, given = json.loads(ds.attrs["roller"]), json.loads(ds.attrs[NOT_GIVEN])
     drawn = _pictures(partial(style.draw_all, [partial(spectrum.damage_by_block, ds)]))
     content = {
         "name": capital(str(ds.attrs["title"])),
@@ -103,7 +129,13 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
         "lives": [(body, life_rows(ds, body)) for body in BODIES],
         "conventions": capital(str(ds.attrs["life_conventions"])),
         "figure": next(iter(drawn.values()), None),
-        "inputs": [input_row(name, value) for name, value in inputs.items() if is_told(name, value)],
+        "inputs": [
+            replace(input_row(name, value), default=name in given)
+            for name, value in inputs.items()
+            if is_told(name, value)
+        ],
+        "assumed": assumed(ds),
+        "doubts": doubts_of(ds),
         "materials": body_materials(json.loads(ds.attrs["materials"])),
         "blocks": block_table(ds),
         "flags": warnings(ds),

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.analysis.lives import past_data
 from trackroller.parameters import BODIES, REGIME_LABELS
-from trackroller.report.numbers import BEYOND, chance, life, listing
+from trackroller.report.numbers import BEYOND, chance, life, life_unit, listing
 from trackroller.report.words.sentence import Sentence
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
     part = damage / damage.sum()
     worst = int(np.argmax(part))
     lives = {name: float(ds[f"{body}_life_{name}"]) for name, _ in UNITS}
-    lengths = listing([f"{_life(lives[name])} {unit}" for name, unit in UNITS[1:]], "or")
+    lengths = listing([f"{_life(lives[name])} {life_unit(unit, lives[name])}" for name, unit in UNITS[1:]], "or")
     lengths += f", {BEYOND}" if _beyond(ds, body, lives["shifts"]) else ""
     text = (
         f"The {body} lasts {_life(lives['shifts'])} shifts ({lengths}); contact {contact} fails first, and "

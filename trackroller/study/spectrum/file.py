@@ -32,6 +32,7 @@ from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.aliases import renamed
 from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.duty import checked_duty
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
 from trackroller.study.file.csv import read_rows
@@ -48,7 +49,7 @@ LOAD_FIELDS = (
 )
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
 OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
-FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", *OPTIONS)
+FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", "duty", *OPTIONS)
 
 
 @dataclass(frozen=True)
@@ -94,6 +95,8 @@ class Spectrum:
         Failure probabilities at which the life is computed [1].
     options : mapping
         Options of the solver.
+    duty : mapping, optional
+        `hours_per_day` and `days_per_year` of travel, for lives in years.
     """
 
     name: str
@@ -102,6 +105,12 @@ class Spectrum:
     critical_damage: float = 1.0
     failure_probabilities: tuple[float, ...] = PROBABILITIES
     options: Mapping[str, Any] = field(default_factory=dict)
+    duty: Mapping[str, float] | None = None
+
+    @property
+    def not_given(self) -> dict[str, Any]:
+        """Return the parameters that neither `base` nor every block names, with the values of the paper's example."""
+        return {name: getattr(block.case, name) for block in self.blocks for name in block.case.not_given}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Spectrum:
@@ -132,6 +141,8 @@ class Spectrum:
             found["critical_damage"] = _number("critical_damage", values.get("critical_damage", 1.0), open_lower=True)
         with wrong.part():
             found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
+        with wrong.part():
+            found["duty"] = checked_duty(values["duty"]) if values.get("duty") is not None else None
         with wrong.part():
             found["options"] = {key: values[key] for key in OPTIONS if key in values}
             Options(**found["options"])  # checked before any case is solved

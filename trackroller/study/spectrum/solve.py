@@ -18,7 +18,9 @@ from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import to_table
-from trackroller.roller.record import material_values, plain_inputs
+from trackroller.roller.doubts import doubts
+from trackroller.roller.duty import with_duty
+from trackroller.roller.record import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
 
 if TYPE_CHECKING:
@@ -138,7 +140,16 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
         variables["life_shifts_at_probability"] = xr.DataArray(lives, known, ("probability", *_CB), attrs=meta)
     found = _labelled(spectrum, variables, solved, rule)
     roller = {name: value for name, value in plain_inputs(case).items() if name not in LOAD_FIELDS}
-    return found.assign_attrs(roller=json.dumps(roller), materials=json.dumps(material_values(case, database)))
+    told = {NOT_GIVEN: json.dumps(spectrum.not_given), DOUBTS: json.dumps(doubts_of_spectrum(spectrum, database))}
+    found = found.assign_attrs(roller=json.dumps(roller), materials=json.dumps(material_values(case, database)), **told)
+    return with_duty(found, spectrum.duty)
+
+
+def doubts_of_spectrum(spectrum: Spectrum, database: MaterialDatabase) -> list[str]:
+    """Return a sentence for each unusual value of the blocks, see `trackroller.roller.doubts`."""
+    cases = [block.case.as_dict() for block in spectrum.blocks]
+    values = cases[0] | {name: [case[name] for case in cases] for name in LOAD_FIELDS}
+    return doubts(values, (database.material(cases[0][f"{body}_material"]) for body in BODIES))
 
 
 def _loads(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, Any]:
