@@ -20,6 +20,7 @@ from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import chunk_name
 from trackroller.study.store.inventory import take_inventory
+from trackroller.study.store.seal import sealing
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
 TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))
@@ -145,6 +146,20 @@ def test_a_part_of_the_report_may_be_deleted_but_not_altered(tmp_path, monkeypat
     assert damaged_files(folder.root) == {}
     build_report(folder)
     assert file.is_file() and damaged_files(folder.root) == {}
+
+
+def test_results_written_just_before_an_interrupt_do_not_look_altered(tmp_path, monkeypatch):
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    monkeypatch.chdir(tmp_path)
+    _grow(7)
+    folder = StudyFolder(Path("results/grown"))
+    build_report(folder)
+    with pytest.raises(KeyboardInterrupt), sealing(folder.gathered):
+        data = xr.load_dataset(folder.gathered)
+        data.assign_attrs(date="later").to_netcdf(folder.gathered)
+        raise KeyboardInterrupt
+    build_report(folder)
+    assert damaged_files(folder.root) == {}
 
 
 def test_three_reports_at_once_lose_nothing(tmp_path, monkeypatch):

@@ -6,6 +6,7 @@ it as a version with another solver, and with an unknown or missing format of th
 
 from __future__ import annotations
 
+import contextlib
 import json
 import shutil
 import warnings
@@ -24,7 +25,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import sources
 from trackroller.study.store.folder import STORE_FORMAT, StudyFolder, _digest
-from trackroller.study.store.seal import sealing
+from trackroller.study.store.seal import METADATA, sealing
 
 STORED = Path(__file__).parents[1] / "data" / "sealed_study.zip"
 STUDY = EDITED.replace("name: edited", "name: sealed")
@@ -44,11 +45,21 @@ def sealed(tmp_path, monkeypatch):
     sources.solver_digest.cache_clear()
 
 
+@contextlib.contextmanager
+def sealed_anew(path: Path):
+    """Write a result with its record, and keep the description of the folder, which `sealing` removes."""
+    kept = {file: file.read_bytes() for file in (path.parent / METADATA, path.parent / "plan" / f"{METADATA}.sha256")}
+    with sealing(path):
+        yield
+    for file, content in kept.items():
+        file.write_bytes(content)
+
+
 def rewrite(root: Path, number: int | None) -> None:
     """Give plan and results another format, sealed as the version that wrote them would have sealed them."""
     record = json.loads((root / "plan.json").read_text())
     record.pop("digest")
-    with sealing(root / "study.nc"):
+    with sealed_anew(root / "study.nc"):
         data = xr.load_dataset(root / "study.nc")
         data.attrs |= {"store_format": number} if number else {}
         data.attrs = {key: value for key, value in data.attrs.items() if number or key != "store_format"}
@@ -106,7 +117,7 @@ def test_rerun_solves_every_case_again_and_compares_what_is_stored(sealed):
 
 
 def test_rerun_names_each_variable_that_differs(sealed):
-    with sealing(sealed / "study.nc"):
+    with sealed_anew(sealed / "study.nc"):
         data = xr.load_dataset(sealed / "study.nc")
         data["normal_force"] = data["normal_force"] * 1.01
         data["slip"][:1] = np.nan

@@ -35,10 +35,13 @@ def files_of(path: Path) -> list[Path]:
 def sealing(path: Path) -> Iterator[None]:
     """Record the digests of a result that is written within this context.
 
-    The earlier record is removed first, so that a process killed in between leaves a result without a record, not one
-    that looks altered.
+    The earlier record is removed first, so that a process stopped in between leaves a result without a record, not one
+    that looks altered. The description of the folder goes with data that it describes: it is written last of all.
     """
     _record(path).unlink(missing_ok=True)
+    if path.suffix == ".nc":
+        for of_crate in (path.parent / METADATA, _record(path.parent / METADATA)):
+            of_crate.unlink(missing_ok=True)
     yield
     lines = [f"{sha256(file)}  ../{file.relative_to(path.parent).as_posix()}\n" for file in files_of(path)]
     write_text(_record(path), "".join(lines))
