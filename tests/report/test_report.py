@@ -233,7 +233,7 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
         "figures.study.drawers",
         "figures.study.study_pareto",
         "figures.factors.coloured",
-        "figures.sensitivity._heat",
+        "figures.sensitivity._axis",
     ],
 )
 def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatch):

@@ -101,8 +101,8 @@ class Designs:
         kept = vars(view).setdefault("designs", {})  # a report asks for them seven times
         if free not in kept:
             kept[free] = cls._of(view, free)
-        found: Designs | None = kept[free]
-        return found
+        designs: Designs | None = kept[free]
+        return designs
 
     @classmethod
     def _of(cls, view: StudyView, free: tuple[str, ...]) -> Designs | None:
@@ -164,29 +164,29 @@ class Designs:
         """
         view, count = self.view, len(self.size)
         members = {name: view.table[name].to_numpy()[self._first] for name in self.choices}
-        found = pd.DataFrame(members, index=range(count))
-        found["cases"] = self.size
+        table = pd.DataFrame(members, index=range(count))
+        table["cases"] = self.size
         for name, rows in (("rolls", view.rolling), ("valid", self.usable)):
-            found[name] = self._count(rows)
-        found = found.assign(**self._spread())
+            table[name] = self._count(rows)
+        table = table.assign(**self._spread())
         first = first_failing(view, self.goal[0])
         for code, word in enumerate(FIRST_TO_FAIL):
-            found[f"first_{word}"] = self._count(self.usable & (first == code))
+            table[f"first_{word}"] = self._count(self.usable & (first == code))
         for body, name in body_lives(self.goal[0]).items():
             case = self._least(view.column(name), self.usable)
-            found[f"worst_{body}"] = np.where(case < 0, np.nan, view.column(name)[case])
-            found[f"worst_{body}_beyond"] = (case >= 0) & view.beyond_data(name)[case]
+            table[f"worst_{body}"] = np.where(case < 0, np.nan, view.column(name)[case])
+            table[f"worst_{body}_beyond"] = (case >= 0) & view.beyond_data(name)[case]
         for name, margin in (("slip_margin", slip_margin(view)), ("lift_off_margin", lift_off_margin(view))):
             case = self._least(margin, view.rolling)
-            found[name] = np.where(case < 0, np.nan, margin[case])
+            table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
-        key = sign * found["worst"]
-        held = found["valid"] / found["cases"]
+        key = sign * table["worst"]
+        held = table["valid"] / table["cases"]
         if self.drawn and self.rising:
-            found = found.assign(**self._quantile())
-            sure = found["b10"] > 0
-            key, held = found["b10"].where(sure, key), held.where(~sure, 2.0)
-        return _ranked(found, held, key, sign * found["median"])
+            table = table.assign(**self._quantile())
+            sure = table["b10"] > 0
+            key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
+        return _ranked(table, held, key, sign * table["median"])
 
     def cases_of(self, design: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
@@ -243,15 +243,15 @@ class Designs:
         start, some = np.cumsum(number) - number, number > 0
         beyond = self.view.beyond_data(self.goal[0])
         ends = {"worst": (0, 0), "median": ((number - 1) // 2, number // 2), "best": (number - 1, number - 1)}
-        found: dict[str, np.ndarray] = {}
+        columns: dict[str, np.ndarray] = {}
         for name, two in ends.items():
             low, high = (order[np.where(some, start + step, 0)] for step in two)
             middle = np.where(low == high, values[low], (values[low] + values[high]) / 2)
-            found[name] = np.where(some, middle, np.nan)
-            found[f"{name}_beyond"] = some & (beyond[low] | beyond[high])
-        found["worst_case"] = np.where(some, order[np.where(some, start, 0)], -1)
-        found["beyond"] = self._count(self.usable & beyond)
-        return found
+            columns[name] = np.where(some, middle, np.nan)
+            columns[f"{name}_beyond"] = some & (beyond[low] | beyond[high])
+        columns["worst_case"] = np.where(some, order[np.where(some, start, 0)], -1)
+        columns["beyond"] = self._count(self.usable & beyond)
+        return columns
 
     def _quantile(self) -> dict[str, np.ndarray]:
         """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond.
@@ -266,10 +266,10 @@ class Designs:
         scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
         cases = [self.cases_of(i) for i in range(len(self.size))]
         ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T
-        found = dict(zip(("b10", "b10_low", "b10_high"), ends, strict=True))
+        columns = dict(zip(("b10", "b10_low", "b10_high"), ends, strict=True))
         rests = np.array([max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)])
         there = self.usable & (lives <= rests[self.place]) & view.beyond_data(self.goal[0])
-        return found | {"b10_beyond": self._count(there) > 0}
+        return columns | {"b10_beyond": self._count(there) > 0}
 
 
 def _codes(table: pd.DataFrame, names: tuple[str, ...]) -> np.ndarray:
@@ -279,10 +279,10 @@ def _codes(table: pd.DataFrame, names: tuple[str, ...]) -> np.ndarray:
     return table.groupby(list(names), sort=False, dropna=False, observed=True).ngroup().to_numpy()
 
 
-def _ranked(found: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series) -> pd.DataFrame:
+def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series) -> pd.DataFrame:
     """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones tie."""
     order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
     shares, keys = held.to_numpy()[order], key.to_numpy()[order]
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
     rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
-    return found.iloc[order].assign(rank=rank)
+    return table.iloc[order].assign(rank=rank)

@@ -40,14 +40,14 @@ def deciding(view: StudyView, names: np.ndarray, most: int = 2) -> list[str]:
     Factors are ranked by the mutual information of their levels and the first limit; those that tell nothing are left
     out, and those with more than `MOST_LEVELS` levels, because the table would not be readable.
     """
-    told: dict[str, float] = {}
+    information: dict[str, float] = {}
     for factor in (f for f in view.factors if len(view.levels(f)) <= MOST_LEVELS):
         counts = pd.crosstab(view.table[factor].to_numpy()[view.valid], names[view.valid]).to_numpy(dtype=float)
         share = counts / max(counts.sum(), 1.0)
         expected = share.sum(axis=1, keepdims=True) * share.sum(axis=0, keepdims=True)
         with np.errstate(divide="ignore", invalid="ignore"):
-            told[factor] = float(np.nansum(share * np.log(share / expected)))
-    return sorted((f for f in told if told[f] > 1e-9), key=lambda f: -told[f])[:most]
+            information[factor] = float(np.nansum(share * np.log(share / expected)))
+    return sorted((f for f in information if information[f] > 1e-9), key=lambda f: -information[f])[:most]
 
 
 @dataclass(frozen=True)

@@ -144,8 +144,8 @@ def front_of(
         data[name] = ("row", values, {"units": units, "long_name": long_name})
     optimal = pareto_mask(goals, wanted.values()).astype(np.int8)
     data["optimal"] = ("row", optimal, {"long_name": "in the Pareto set"})
-    told = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()), **attrs}
-    return xr.Dataset(data, {"row": row}, told)
+    described = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()), **attrs}
+    return xr.Dataset(data, {"row": row}, described)
 
 
 def _allowed(
@@ -168,8 +168,8 @@ def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
     """Return the rows of the most exact of several contact models and its name; without several models, all rows."""
     column = design.columns.get("contact_model")
     named = np.full(design.size, "") if column is None else column.astype(str)
-    found = [m for m in EXACTNESS if (named == m).any()]
-    return (named == found[0], found[0]) if len(found) > 1 else (np.ones(design.size, bool), "")
+    models = [m for m in EXACTNESS if (named == m).any()]
+    return (named == models[0], models[0]) if len(models) > 1 else (np.ones(design.size, bool), "")
 
 
 def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dataset:
@@ -213,20 +213,20 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
         known = PARAMETERS.get(name)
         return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
-        found, told, units = table["probability"].sel(regime=output), REGIME_LABELS[REGIMES.index(output)], "1"
+        estimates, words, units = table["probability"].sel(regime=output), REGIME_LABELS[REGIMES.index(output)], "1"
     elif kind == "probability":
         if output not in table["target"].values:
             raise InputError("pareto", name, f"a target: {', '.join(table['target'].values)}")
         part = table.isel(target=int(np.argmax(table["target"].values == output)))
-        found, units = part["target_probability"], "1"
-        told = f"meeting the target for {part['target_name'].item()}"
+        estimates, units = part["target_probability"], "1"
+        words = f"meeting the target for {part['target_name'].item()}"
     else:
         if output not in table["output"].values or kind not in table:
             raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
         part = table.sel(output=output)
-        found, told, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
+        estimates, words, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
     word = {"b10": "B10", "b10_safe": "B10 with other cases as life 0"}.get(kind, kind.replace("_", " "))
-    return found.values, units, f"{word} of {told}"
+    return estimates.values, units, f"{word} of {words}"
 
 
 def default_objectives(ds: xr.Dataset) -> dict[str, str]:
@@ -240,20 +240,20 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
     -------
     Output -> `max` or `min`; empty if the study lacks one of the two goals.
     """
-    found: dict[str, str] = {}
+    goals: dict[str, str] = {}
     known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
     # of the pair where the guide's hours are known
     lives = ["pair_life_to_first_limit_hours", *["pair_life_hours"] * known, "roller_life_hours"]
     lives = [n for n in lives if n in ds and np.isfinite(ds[n]).any()]
     if lives:
-        found[lives[0]] = "max"
+        goals[lives[0]] = "max"
     elif "life_cycles" in ds:
-        found["roller_life_cycles"] = "max"
+        goals["roller_life_cycles"] = "max"
     for name, variable in (
         ("friction_power", "friction_power"),
         ("friction_energy", "friction_energy_per_distance"),
         ("max_pressure", "max_pressure"),
     ):
-        if variable in ds and len(found) == 1:
-            found[name] = "min"
-    return found if len(found) == 2 else {}
+        if variable in ds and len(goals) == 1:
+            goals[name] = "min"
+    return goals if len(goals) == 2 else {}

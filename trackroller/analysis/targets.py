@@ -122,9 +122,9 @@ def _of_points(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], li
     first = np.arange(points) * inner
     outer = [name for name in design.meta["outer"] if len(design.meta["outer"]) > 1]
     levels = [level for name in outer for level in _levels(design.factors[name], design.columns[name][first])]
-    found = [probabilities(cube[:, level.rows].mean(axis=1), *sample) for level in levels]
+    estimates = [probabilities(cube[:, level.rows].mean(axis=1), *sample) for level in levels]
     p, low, high = (part.reshape(points, -1).T for part in whole)
-    return levels, [(p, low, high), *found]
+    return levels, [(p, low, high), *estimates]
 
 
 def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
@@ -135,11 +135,11 @@ def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list
     levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
     hits = hits[rows]
     strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
-    found = [probabilities(hits, *strata)]
-    found += [probabilities(hits[level.rows]) for level in levels]
+    estimates = [probabilities(hits, *strata)]
+    estimates += [probabilities(hits[level.rows]) for level in levels]
     if design.method in WITHOUT_CHANCE:
-        found = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in found]
-    return levels, found
+        estimates = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in estimates]
+    return levels, estimates
 
 
 def inner_sample(design: SampledDesign) -> tuple[np.ndarray, np.ndarray] | tuple[()]:

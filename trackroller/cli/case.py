@@ -28,15 +28,15 @@ SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 def settings_of(words: list[str]) -> dict[str, Any]:
     """Return the mapping of key=value words; the values are read as YAML."""
-    found: dict[str, Any] = {}
+    settings: dict[str, Any] = {}
     for word in words:
         key, sign, value = word.partition("=")
         if not sign or not key:
             raise InputError("--set", word, "key=value", "For example --set friction_coefficient=0.1")
         if len(word.splitlines()) > 1:
             raise InputError("--set", word, "one key=value on one line", "Give --set once for each key.")
-        found[key.strip()] = parse_yaml(value, f"--set {key}")
-    return found
+        settings[key.strip()] = parse_yaml(value, f"--set {key}")
+    return settings
 
 
 def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:

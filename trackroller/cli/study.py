@@ -202,14 +202,14 @@ def _print_study(path: Path, results: Path) -> None:
     chunk = chunk_size(study, status.missing)
     chunks = -(-status.missing // chunk)
     seconds = status.seconds_left + START
-    told = "measured" if status.measured else "estimated"
+    source = "measured" if status.measured else "estimated"
     print(f"study     {study.name} ({study.config.design})")
     print(f"cases     {status.total}, {status.done} of them solved already")
     if status.unused:
         print(f"unused    {status.unused}")
     print(f"chunks    {chunks} of up to {chunk} cases")
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
-    print(f"time      {times} ({told} cases/s: {status.speed:.3g})")
+    print(f"time      {times} ({source} cases/s: {status.speed:.3g})")
     pages = seconds_of_report(study.config.design, status.total)
     print(f"report    {duration(pages)} more on one core, for analysis, figures and page")
     print(f"disk      about {decimal(status.total * bytes_a_case(study.config.outputs))}")
@@ -229,13 +229,13 @@ def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO
 
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
-    case, told, _ = case_of(path, words)
+    case, options, _ = case_of(path, words)
     tell_doubts(case)
     values = case.as_dict()
     _print_not_given({name: values[name] for name in case.not_given}, values.keys() - set(case.not_given))
     if no_shortcuts:
-        told["shortcuts"] = False
-    _print_stages(to_table(case), Options(**told))
+        options["shortcuts"] = False
+    _print_stages(to_table(case), Options(**options))
 
 
 def _explain_study(path: Path, no_shortcuts: bool) -> None:
@@ -248,13 +248,13 @@ def _explain_study(path: Path, no_shortcuts: bool) -> None:
         table, group = table.take(np.arange(MOST)), group[:MOST]
     for number in np.unique(group):
         rows = np.flatnonzero(group == number)
-        told = dict(options[number])
+        own = dict(options[number])
         if no_shortcuts:
-            told["shortcuts"] = False
+            own["shortcuts"] = False
         if len(options) > 1:
             varied = [name for name in OPTION_FACTORS if name in study.factors]
-            print(", ".join(f"{name.replace('_', ' ')} {told[name]}" for name in varied) + ":")
-        _print_stages(table.take(rows), Options(**told))
+            print(", ".join(f"{name.replace('_', ' ')} {own[name]}" for name in varied) + ":")
+        _print_stages(table.take(rows), Options(**own))
 
 
 def _print_stages(table, options) -> None:

@@ -112,14 +112,14 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], N
 
 def study_inputs(study: Study) -> list[str]:
     """Return the files a study's cases depend on: study file, table of cases, and the user's materials."""
-    found = [str(study.path)] if study.path is not None else []
+    paths = [str(study.path)] if study.path is not None else []
     if study.config.table is not None:
-        found.append(str(study.table_path))
+        paths.append(str(study.table_path))
     user = find_user_file()
-    found += [str(user)] if user is not None else []
-    for path in found:
+    paths += [str(user)] if user is not None else []
+    for path in paths:
         _check_braces("input file", path)
-    return found
+    return paths
 
 
 def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
@@ -134,9 +134,9 @@ def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
     """
     index = folder.root / "figures" / "index.json"
     drawn = json.loads(index.read_text(encoding="utf-8")) if index.is_file() else []
-    told = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
-    told |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
-    return {name: re.sub(r"([*`|_\\])", r"\\\1", text) for name, text in told.items()}
+    texts = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
+    texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
+    return {name: re.sub(r"([*`|_\\])", r"\\\1", text) for name, text in texts.items()}
 
 
 def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:

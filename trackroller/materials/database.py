@@ -152,10 +152,10 @@ class MaterialDatabase:
         Without a level it is the typical coefficient.
         """
         level = level or "typical"
-        found = self.friction(roller, guide, level)
+        friction = self.friction(roller, guide, level)
         pair = " / ".join(self.material(body).name for body in (roller, guide))
-        told = {"value": found.value, "source": found.source, "placeholder": found.placeholder}
-        return {"material_pair": pair, "level": level, **told}
+        values = {"value": friction.value, "source": friction.source, "placeholder": friction.placeholder}
+        return {"material_pair": pair, "level": level, **values}
 
     def _names_of(self, body: str | Material) -> tuple[str, ...]:
         """Return the keys of a body in the friction table: its name first, then its family."""

@@ -183,14 +183,14 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
     """
     tree = _parse(text, field)
     parts = tree.values if isinstance(tree, ast.BoolOp) and isinstance(tree.op, ast.Or) else [tree]
-    found = []
+    compared = []
     for part in parts:
         if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
             allowed = "comparisons (> >= < <= == !=) joined by 'or'"
             raise InputError(field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500.")
         left = _name(part.left) or ast.unparse(part.left)
-        found.append(Comparison(left, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
-    return tuple(found)
+        compared.append(Comparison(left, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
+    return tuple(compared)
 
 
 def _parse(text: str, field: str) -> ast.expr:
@@ -303,10 +303,10 @@ class _Evaluation:
         return np.asarray(_COMPARE[type(op)][1](one, other), dtype=bool)
 
     def truth(self, node: ast.AST) -> np.ndarray:
-        found = np.asarray(self.value(node))
-        if found.dtype != bool:
+        value = np.asarray(self.value(node))
+        if value.dtype != bool:
             raise self.refused(node, "something other than a comparison beside and, or, not")
-        return found
+        return value
 
     def refused(self, node: ast.AST, what: str) -> InputError:
         at = getattr(node, "col_offset", 0) + 1

@@ -284,10 +284,10 @@ def words_of(option: str) -> tuple[str, ...]:
 
 def options_text() -> str:
     """Return the options with their values and defaults, for the help of a command."""
-    told = []
+    entries = []
     for option in OPTIONS.values():
         kinds = {"number": "{:g}..{:g}".format(*option.bounds), "condition": "CONDITION", "switch": "true|false"}
         values = " | ".join(option.values) or kinds[option.kind]
         default = ",".join(option.default) or "none" if isinstance(option.default, tuple) else option.default
-        told.append(f"{option.name}={values} ({default})")
-    return ", ".join(told)
+        entries.append(f"{option.name}={values} ({default})")
+    return ", ".join(entries)

@@ -239,14 +239,14 @@ def outputs(
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
     options = _available(ds, factors, dims)
-    found = []
+    columns = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
         values, units, words, usual = _raw(ds, name, dims, options)
         on = (scale if isinstance(scale, str) else scale.get(name, "")) or usual
         values, why = _countable(values, usable, stopped, unlimited, on)
-        found.append(Output(name, values, units, words, on, lost | why))
+        columns.append(Output(name, values, units, words, on, lost | why))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:
             words = f"occurrence of {REGIME_LABELS[i].replace('failed', 'failure')}"
-            found.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
-    return found
+            columns.append(Output(name, (regime == i).astype(float), "1", words, "natural"))
+    return columns

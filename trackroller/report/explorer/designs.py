@@ -68,10 +68,10 @@ def _designs(designs: Designs, worst: str) -> dict[str, Any]:
         key = tuple(row[n] for n in designs.choices)
         lives = [Life(row[name], row[f"{name}_beyond"]) for name in (["b10", "worst"] if nine else ["worst"])]
         valid = f"{count(int(row['valid']))} of {count(int(row['cases']))}"
-        told = [*map(cell, lives if designs.rising else map(float, lives)), valid]
-        told += [] if alone(designs) else [first_words(row) or "–"]
-        told += cells.get(key, ["–"] * len(heads))
-        rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), *told])
+        further = [*map(cell, lives if designs.rising else map(float, lives)), valid]
+        further += [] if alone(designs) else [first_words(row) or "–"]
+        further += cells.get(key, ["–"] * len(heads))
+        rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), *further])
     first = [] if alone(designs) else ["Fails first"]
     note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(designs) else ""
     heads = [*map(heading, designs.choices), *nine, worst, "Valid in", *first, *heads]
@@ -95,10 +95,10 @@ def _goals(designs: Designs) -> tuple[list[str], dict[tuple[Any, ...], list[str]
     names = [name for name in goals if name not in designs.choices]
     best = np.where(front["optimal"].values == 1, "yes", "no")
     values = zip(*(front[name].values.tolist() for name in names), strict=True)
-    told = [[*map(cell, line), str(mark)] for line, mark in zip(values, best, strict=True)]
+    lines = [[*map(cell, line), str(mark)] for line, mark in zip(values, best, strict=True)]
     keys = zip(*(front[name].values.tolist() for name in designs.choices), strict=True)
     heads = [*(goal_heading(front, name) for name in names), "In the Pareto set"]
-    return heads, dict(zip(keys, told, strict=True)), note
+    return heads, dict(zip(keys, lines, strict=True)), note
 
 
 def _hardest_first(designs: Designs) -> np.ndarray:
@@ -124,11 +124,11 @@ def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: 
     for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
         cases = np.flatnonzero(there & designs.usable)
         ranked = cases[np.argsort(sign * values[cases], kind="stable")]
-        told = [f"{count(len(cases))} of {count(int(there.sum()))}", "–", "–"]
+        cells = [f"{count(len(cases))} of {count(int(there.sum()))}", "–", "–"]
         if cases.size:
             least, most = ranked[0], ranked[-1]
-            told[1:] = [cell(Life(values[least], beyond[least])), count(int(number[most]) + 1)]
+            cells[1:] = [cell(Life(values[least], beyond[least])), count(int(number[most]) + 1)]
         first = view.table.iloc[int(np.argmax(there))]
-        rows.append([*(cell(factor_cell(n, first[n])) for n in designs.conditions), *told])
+        rows.append([*(cell(factor_cell(n, first[n])) for n in designs.conditions), *cells])
     heads = [*map(heading, designs.conditions), "Valid designs", worst, "Best design"]
     return {"factors": designs.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1, "note": ""}

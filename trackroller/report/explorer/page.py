@@ -43,8 +43,8 @@ def explorer(view: StudyView) -> dict[str, Any]:
     ds, columns = view.data, collect(view)
     settings, more = solve_inputs(view, {c.name: c for c in columns})
     columns += more
-    found, lists = design_columns(view)
-    columns += found
+    of_designs, lists = design_columns(view)
+    columns += of_designs
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
     kept = pareto_rows(view, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))

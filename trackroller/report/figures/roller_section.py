@@ -168,7 +168,7 @@ def _forces(
     ds: xr.Dataset, values: dict[str, Any], alpha: float, height: float
 ) -> list[tuple[np.ndarray, str, float, np.ndarray]]:
     """Return the forces on the roller in the section: place [mm], index, size and vector [N]."""
-    found, axle = [], np.array([0.0, height])
+    forces, axle = [], np.array([0.0, height])
     radial, axial = values["radial_force"], values["axial_force"]
     for number, sign in ((1, 1.0), (2, -1.0)):
         own = ds.sel(contact=number)
@@ -176,8 +176,8 @@ def _forces(
         along = np.array([math.cos(alpha), -sign * math.sin(alpha)])
         load, lateral = float(own["normal_force"]), float(own["lateral_force"])
         if math.isfinite(load):
-            found.append((values["guide_profile_radius"] * normal, "N", load, load * normal))
+            forces.append((values["guide_profile_radius"] * normal, "N", load, load * normal))
         if math.isfinite(lateral) and abs(lateral) > 0.02 * abs(radial):
-            found.append((values["guide_profile_radius"] * normal, "T", lateral, lateral * along))
-    found.append((axle, "rad", radial, np.array([0.0, radial])))
-    return found + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])
+            forces.append((values["guide_profile_radius"] * normal, "T", lateral, lateral * along))
+    forces.append((axle, "rad", radial, np.array([0.0, radial])))
+    return forces + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])

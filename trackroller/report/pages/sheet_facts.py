@@ -121,13 +121,13 @@ def collect(ds: xr.Dataset) -> Facts:
     inputs, stored, given = inputs_of(ds), materials_of(ds), not_given_of(ds)
     materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
-    found = limits(case_of_result(ds), str(ds.attrs["contact_model"]))
+    ranges = limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
     lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
-    lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, found, inputs, materials, lifeless)
+    lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
     said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
     return Facts(
-        verdict=_verdict(regime, ds, lives, lifeless, found, inputs, own),
+        verdict=_verdict(regime, ds, lives, lifeless, ranges, inputs, own),
         reason=str(ds["reason"].item()) if "reason" in ds else "",
         inputs=[
             replace(input_row(name, value), default=name in given or (is_default(name, value) and name in OF_LIMITS))
@@ -168,8 +168,8 @@ def versions_text() -> str:
 def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
     """Return head, values and source of each material, once if both bodies are of the same."""
     roller, guide = (materials[f"{body}_material"] for body in BODIES)
-    told = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]
-    return [(head, material_rows(as_material(values)), material_source(values)) for head, values in told]
+    by_body = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]
+    return [(head, material_rows(as_material(values)), material_source(values)) for head, values in by_body]
 
 
 def command_of(ds: xr.Dataset) -> str:
@@ -208,7 +208,7 @@ def _verdict(
     ds: xr.Dataset,
     lives: list[Row],
     lifeless: Mapping[str, str],
-    found: Limits,
+    ranges: Limits,
     inputs: Mapping[str, Any],
     own: list[Margin],
 ) -> str:
@@ -216,7 +216,7 @@ def _verdict(
     if regime == "failed":
         return f"No solution: {ds['reason'].item()}"
     if regime == "lift_off":
-        low, high = found.axial_force
+        low, high = ranges.axial_force
         return (
             f"A contact lifts off. Both contacts carry load for axial forces from {rounded(low)} to {rounded(high)} N."
         )
@@ -231,15 +231,15 @@ def _verdict(
             passed.setdefault(f"{margin.title}{GUESSED * margin.guessed}", []).append(margin.body)
         words = [f"{title} ({listing(bodies)})" for title, bodies in passed.items()]
         parts += [f"Exceeded: {listing(words)}."] if words else []
-    told = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
-    if told and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"])):
-        parts.append(f"The roller lasts {', '.join(map(_hours, told[:2]))}; contact {_weakest(ds)} decides.")
+    of_roller = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
+    if of_roller and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"])):
+        parts.append(f"The roller lasts {', '.join(map(_hours, of_roller[:2]))}; contact {_weakest(ds)} decides.")
         if FIRST_TO_FAIL[int(ds["first_to_fail"])] == "guide":
             parts.append(f"The guide fails first, after {_hours(lives[-1])}.")
     axial = inputs["axial_force"]
-    reserve = min(found.axial_force[1] - axial, axial - found.axial_force[0])
+    reserve = min(ranges.axial_force[1] - axial, axial - ranges.axial_force[0])
     if math.isfinite(reserve):
-        toward = "more" if found.axial_force[1] - axial <= axial - found.axial_force[0] else "less"
+        toward = "more" if ranges.axial_force[1] - axial <= axial - ranges.axial_force[0] else "less"
         parts.append(f"A contact lifts off with {rounded(reserve, 2)} N {toward} axial force.")
     return " ".join(parts)
 

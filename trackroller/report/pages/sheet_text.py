@@ -70,10 +70,10 @@ def print_margins(facts: Facts, probability: float) -> None:
 @lives_in_years
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives, sentences on their causes and warnings."""
-    told = block_table(ds)
+    blocks = block_table(ds)
     title = f"{ds.attrs['title']}: damage per shift"
-    print_table(told.heads, told.rows, range(1, len(told.heads)), title)
-    print_text(told.note)
+    print_table(blocks.heads, blocks.rows, range(1, len(blocks.heads)), title)
+    print_text(blocks.note)
     for body in BODIES:
         lives = "; ".join(f"{row.words}: {row.value} {row.unit}".rstrip() for row in life_rows(ds, body))
         print_text(lives, body)
@@ -95,7 +95,7 @@ def as_json(ds: xr.Dataset) -> str:
     result of one case also has its inputs and which of them are defaults, its materials with sources, its flags in
     words, the options and the versions.
     """
-    told: dict[str, Any] = {
+    content: dict[str, Any] = {
         str(name): {
             "dims": list(variable.dims),
             "units": variable.attrs.get("units", "1"),
@@ -108,21 +108,21 @@ def as_json(ds: xr.Dataset) -> str:
         ("first_to_fail", FIRST_TO_FAIL),
         ("contact_model_used", CONTACT_MODELS),
     ):
-        if name in told:
-            told[name]["meaning"] = np.array(words)[ds[name].values].tolist()
+        if name in content:
+            content[name]["meaning"] = np.array(words)[ds[name].values].tolist()
     duty = duty_of(ds)
     if duty is not None:
-        for name in (n for n, of in told.items() if of["units"] == "h" and "life" in n):
-            told[name]["years"] = _plain(years(ds[name].values, duty).tolist())
-    told["doubts"] = doubts_of(ds)
+        for name in (n for n, of in content.items() if of["units"] == "h" and "life" in n):
+            content[name]["years"] = _plain(years(ds[name].values, duty).tolist())
+    content["doubts"] = doubts_of(ds)
     if "case" in ds.attrs:
         inputs = inputs_of(ds)
-        told["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
-        told["materials"], told["friction"] = materials_of(ds), friction_records(ds.attrs)
-        told["flags"] = [vars(flag) for flag in flags_of(ds)]
-        told["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}
-        told["versions"] = versions()
-    return json.dumps(told)
+        content["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
+        content["materials"], content["friction"] = materials_of(ds), friction_records(ds.attrs)
+        content["flags"] = [vars(flag) for flag in flags_of(ds)]
+        content["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}
+        content["versions"] = versions()
+    return json.dumps(content)
 
 
 def _plain(value: Any) -> Any:

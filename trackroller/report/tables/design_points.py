@@ -68,8 +68,8 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
     rows = []
     for p in map(int, points):
         spread = [float(part["percentile_value"].sel(percentile=q)[p]) for q in shares]
-        told = [float(part["mean"][p]), *spread]
-        rows.append([capital(point_words(table, p)), *([life_at(part, p, v) for v in told] if life else told)])
+        values = [float(part["mean"][p]), *spread]
+        rows.append([capital(point_words(table, p)), *([life_at(part, p, v) for v in values] if life else values)])
     heads = ["Design point", "Mean", *(f"{q:.0f} %" for q in shares)]
     name, unit = capital(str(part["output_name"].item())), unit_text(str(part["output_units"].item()))
     note = "Rolling cases; scatter of the study's factors alone, without that of the material."

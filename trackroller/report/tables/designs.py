@@ -35,9 +35,9 @@ def best_table(view: StudyView) -> Table | None:
         for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")):
             rows.append([words, *(f"{count(int(row[name]))} of {count(int(row['cases']))}" for row in best)])
     if (met := designs.targets_met()) is not None:
-        found = designs.table.index[: len(best)]
+        places = designs.table.index[: len(best)]
         rows.append(
-            ["Meets the targets in", *(f"{count(int(met[i]))} of {count(int(designs.size[i]))}" for i in found)]
+            ["Meets the targets in", *(f"{count(int(met[i]))} of {count(int(designs.size[i]))}" for i in places)]
         )
     marks = {(i, j) for i, row in enumerate(rows) for j in range(2, len(row)) if row[j] != row[1]}
     several = bool(designs.choices)
@@ -81,8 +81,8 @@ def _lives(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
 def first_words(row: pd.Series) -> str:
     """Say which body fails first, and in how many cases if it is not always the same."""
     counts = {word: int(row[f"first_{word}"]) for word in FIRST_TO_FAIL}
-    told = [f"{word} in {count(n)}" for word, n in counts.items() if n]
-    return next(word for word, n in counts.items() if n) if len(told) == 1 else ", ".join(told)
+    parts = [f"{word} in {count(n)}" for word, n in counts.items() if n]
+    return next(word for word, n in counts.items() if n) if len(parts) == 1 else ", ".join(parts)
 
 
 def _stresses(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
@@ -98,15 +98,15 @@ def _note(designs: Designs) -> str:
     """Say how designs are ranked, and what the table's terms mean."""
     view = designs.view
     by = "longer life" if designs.rising else "lower peak stress"
-    told = f"Designs that are valid in more conditions come first, then those with a {by} at their worst condition."
+    note = f"Designs that are valid in more conditions come first, then those with a {by} at their worst condition."
     if designs.drawn and designs.rising:
-        told = (
+        note = (
             "Designs by the life that nine of ten sampled conditions reach; a condition that is not valid counts as 0."
         )
     if not designs.conditions:
-        told = f"Designs by {designs.goal[1]}."
-    told += f" {BEYOND_MEANS}" if designs.rising else ""
-    told += " Margin to slip: share of the transmissible force that the drive leaves. Margin to lift-off: load of the "
-    told += "lighter over that of the heavier contact. Bold: differs from the best."
+        note = f"Designs by {designs.goal[1]}."
+    note += f" {BEYOND_MEANS}" if designs.rising else ""
+    note += " Margin to slip: share of the transmissible force that the drive leaves. Margin to lift-off: load of the "
+    note += "lighter over that of the heavier contact. Bold: differs from the best."
     model = f" Designs solved with {view.held_level('contact_model')}." if "contact_model" in view.factors else ""
-    return told + model
+    return note + model

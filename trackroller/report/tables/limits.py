@@ -99,13 +99,13 @@ class Margin:
             return "after unknown hours"
         if not self.at_once and self.used >= 1.0 and math.isnan(self.hours):
             return f"{self.share} used, and no life is stated"
-        told = f"not reached, {self.share} used" if self.share else "not reached"
-        return f"after {self.life}" if math.isfinite(self.reached) else told
+        otherwise = f"not reached, {self.share} used" if self.share else "not reached"
+        return f"after {self.life}" if math.isfinite(self.reached) else otherwise
 
 
 def margins(
     ds: xr.Dataset,
-    found: Limits,
+    ranges: Limits,
     inputs: Mapping[str, Any],
     materials: Mapping[str, Material],
     lifeless: Mapping[str, str],
@@ -126,7 +126,7 @@ def margins(
         Why a body has no fatigue life; an empty text if it has one.
     """
     out: list[Margin] = []
-    for margin in (*_of_limits(ds, inputs, lifeless), *_of_pressure(ds, materials), *_of_loads(found, inputs)):
+    for margin in (*_of_limits(ds, inputs, lifeless), *_of_pressure(ds, materials), *_of_loads(ranges, inputs)):
         if out and margin == replace(out[-1], body=margin.body):
             out[-1] = replace(margin, body=BOTH)
         else:
@@ -174,12 +174,12 @@ def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Marg
     ]
 
 
-def _of_loads(found: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
+def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     """Return the margins of the pair to lift-off, full slip and self-locking."""
     out = []
     for title, name, (low, high) in (
-        ("lift-off of a contact (axial force)", "axial_force", found.axial_force),
-        ("full slip (motor force)", "motor_force", found.motor_force),
+        ("lift-off of a contact (axial force)", "axial_force", ranges.axial_force),
+        ("full slip (motor force)", "motor_force", ranges.motor_force),
     ):
         if not math.isnan(low + high):
             value = float(inputs[name])
@@ -187,28 +187,28 @@ def _of_loads(found: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
             used = value / bound if bound else math.inf
             span = f"{rounded(low)} to {rounded(high)} N"
             out.append(Margin(title, "pair", f"{number(value)} N", span, used if math.isfinite(bound) else math.nan))
-    now, told = float(inputs["friction_coefficient"]), number(inputs["friction_coefficient"])
+    now, friction = float(inputs["friction_coefficient"]), number(inputs["friction_coefficient"])
     for title, bound in (
-        ("self-locking (friction coefficient)", found.self_locking_friction),
-        ("lift-off of a contact (friction coefficient)", found.lift_off_friction),
+        ("self-locking (friction coefficient)", ranges.self_locking_friction),
+        ("lift-off of a contact (friction coefficient)", ranges.lift_off_friction),
     ):
         if math.isfinite(bound):
-            out.append(Margin(title, "pair", told, f"{rounded(bound)}", now / bound if bound else math.inf))
+            out.append(Margin(title, "pair", friction, f"{rounded(bound)}", now / bound if bound else math.inf))
         elif math.isinf(bound):
-            out.append(Margin(title, "pair", told, "none up to 2"))
+            out.append(Margin(title, "pair", friction, "none up to 2"))
     return out
 
 
-def first_limits(found: list[Margin]) -> list[str]:
+def first_limits(listed: list[Margin]) -> list[str]:
     """Return one sentence for roller, guide and pair each: the limit that comes first, and when."""
     out = []
     for body, further in (("roller", "pair"), ("guide", "")):
-        own = [margin for margin in found if margin.body in (body, further, BOTH)]
+        own = [margin for margin in listed if margin.body in (body, further, BOTH)]
         out += [f"First limit of the {body}: {m.title}{GUESSED * m.guessed}, {m.when}." for m in own[:1]]
-    if found:
-        unknown = any(m.timed and math.isnan(m.hours) and m.body == "guide" for m in found) and found[0].reached > 0
+    if listed:
+        unknown = any(m.timed and math.isnan(m.hours) and m.body == "guide" for m in listed) and listed[0].reached > 0
         remark = "; the guide's hours are not known" if unknown else ""
-        out.append(f"First limit of the pair: {found[0].words}, {found[0].when}{remark}.")
+        out.append(f"First limit of the pair: {listed[0].words}, {listed[0].when}{remark}.")
     return out
 
 

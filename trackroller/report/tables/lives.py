@@ -87,12 +87,12 @@ def _life(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Materi
 def _text(hours: float, inputs: Mapping[str, Any], beyond: bool, further: str = "") -> str:
     if math.isinf(hours):
         return lasting(hours)
-    told = [
+    lengths = [
         f"{rounded(hours)} {hour_unit(hours)}",
         f"{rounded(hours * inputs['velocity'] * 60.0 / 1e3)} km",
         *filter(None, [further]),
     ]
-    return lasting(1.0, beyond=beyond).replace("1", "; ".join(told), 1)
+    return lasting(1.0, beyond=beyond).replace("1", "; ".join(lengths), 1)
 
 
 def _of_pair(
@@ -106,7 +106,7 @@ def _of_pair(
         return Row("pair, median life", UNKNOWN["roller"])
     body = "guide" if first == "guide" else "roller"
     cycles = float(ds["life_cycles"].sel(body=body).min())
-    told = _text(hours, inputs, bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
+    life = _text(hours, inputs, bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
     if first == "unknown":
-        return Row("pair, median life of the roller alone (the guide's hours are unknown)", told)
-    return Row("pair, median life" + (f" (the {first} fails first)" if first != "none" else ""), told)
+        return Row("pair, median life of the roller alone (the guide's hours are unknown)", life)
+    return Row("pair, median life" + (f" (the {first} fails first)" if first != "none" else ""), life)

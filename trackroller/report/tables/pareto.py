@@ -39,8 +39,8 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     if kind != "design point":
         heads = ["Worst case" if front.attrs.get("judged") else "Case", *heads[1:], "Model"]
         rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
-    told = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
-    note = f"{capital('; '.join(told))}."
+    wishes = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
+    note = f"{capital('; '.join(wishes))}."
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
     if len(best) > len(rows):
         note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal, and the"

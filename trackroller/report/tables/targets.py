@@ -44,9 +44,9 @@ def target_tables(table: xr.Dataset, view: StudyView) -> list[Table]:
     said.append(f"Every design point has the same {count(int(table.attrs['inner_samples']))} samples.")
     if len(order) > len(rows):
         said.append(f"{len(order) - len(rows)} more design points are in sensitivity.nc.")
-    found = [Table("targets", "Targets: probability by design point", ["Design point", *heads], rows, " ".join(said))]
+    tables = [Table("targets", "Targets: probability by design point", ["Design point", *heads], rows, " ".join(said))]
     note = "Mean over the design points at each level."
-    return [*found, Table("targets_levels", title, ["Level", *heads], levels, note)] if levels else found
+    return [*tables, Table("targets_levels", title, ["Level", *heads], levels, note)] if levels else tables
 
 
 def _cells(table: xr.Dataset, kind: str, place: int | None = None) -> list[str]:

@@ -18,9 +18,9 @@ FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_di
 def friction_guess(view: StudyView) -> Sentence | None:
     """Name the friction coefficients from the database that are placeholders."""
     guesses = [r for r in friction_records(view.attrs) if r["placeholder"]]
-    told = [f"{number(r['value'])} ({level_text('material_pair', r['material_pair'])})" for r in guesses]
-    text = f"The friction coefficient {listing(told)} of the database is a placeholder: measure it."
-    return Sentence("friction_guess", text, {"guesses": guesses}) if told else None
+    names = [f"{number(r['value'])} ({level_text('material_pair', r['material_pair'])})" for r in guesses]
+    text = f"The friction coefficient {listing(names)} of the database is a placeholder: measure it."
+    return Sentence("friction_guess", text, {"guesses": guesses}) if names else None
 
 
 def friction_error(view: StudyView) -> Sentence | None:

@@ -33,26 +33,26 @@ def assumptions(ds: xr.Dataset) -> list[str]:
 
 def standards(ds: xr.Dataset) -> str:
     """Return the standards that the computed limits follow, in one sentence."""
-    told = [f"{LIMITS[name].standard} ({name})" for name in _computed(ds) if LIMITS[name].standard]
-    return f"{capital('; '.join(told))}." if told else "No standard is followed."
+    standards = [f"{LIMITS[name].standard} ({name})" for name in _computed(ds) if LIMITS[name].standard]
+    return f"{capital('; '.join(standards))}." if standards else "No standard is followed."
 
 
 def _computed(ds: xr.Dataset) -> list[str]:
     """Return the limits that have a utilisation or a life; those of the output `life` without the verdict too."""
     if "utilisation" not in ds:
         return ["fatigue"] if "life_cycles" in ds else []
-    found = ds["utilisation"].notnull() | ds["life_hours_by_limit"].notnull()
-    return [str(name) for name in ds["limit"].values if bool(found.sel(limit=name).any())]
+    known = ds["utilisation"].notnull() | ds["life_hours_by_limit"].notnull()
+    return [str(name) for name in ds["limit"].values if bool(known.sel(limit=name).any())]
 
 
 def friction_sentence(ds: xr.Dataset) -> str:
     """Say which entry of the database the friction coefficient is; an empty text if the case gives the number."""
-    told = [
+    sentences = [
         f"Friction coefficient {number(r['value'])}: {r['level']} value of the database for {r['material_pair']}, "
         f"source: {friction_source(r)}."
         for r in friction_records(ds.attrs)
     ]
-    return " ".join(told)
+    return " ".join(sentences)
 
 
 def material_warnings(stored: Mapping[str, Mapping[str, Any]], materials: Mapping[str, Material]) -> list[str]:
@@ -92,6 +92,8 @@ def strength_sentences(materials: Mapping[str, Material]) -> list[str]:
             for name in ("yield_strength", "hardness")
             if (value := getattr(material, name)) is not None
         ]
-        told = f"shakedown and standard rating use {listing(given)}" if given else "neither yield strength nor hardness"
-        out.append(f"{material.name}: {told}; the pressure limit uses R_m = {number(material.tensile_strength)} MPa.")
+        yields = (
+            f"shakedown and standard rating use {listing(given)}" if given else "neither yield strength nor hardness"
+        )
+        out.append(f"{material.name}: {yields}; the pressure limit uses R_m = {number(material.tensile_strength)} MPa.")
     return out

@@ -31,8 +31,8 @@ def valid_cases(view: StudyView) -> Sentence:
         kept = f"{count(inside)} of them stay" if inside else "none of them stays"
         text += f"; {kept} inside the model: elsewhere {_reason_words(reasons)}."
     if inside and view.met is not None:
-        told = listing([f"`{limit}`" for limit in view.study["constraints"]])
-        text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {told}.{_removed(view)}"
+        constraints = listing([f"`{limit}`" for limit in view.study["constraints"]])
+        text += f" {count(valid) if valid else 'None'} of the {count(inside)} meet {constraints}.{_removed(view)}"
     if valid and valid < rolls:
         text += f" Statements on life and stress use the {count(valid)} unless they name another set"
         text += "; sensitivity indices also count the cases outside the model." if inside < rolls else "."
@@ -57,11 +57,11 @@ def _removed(view: StudyView) -> str:
 
 def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:
     """Return the rolling cases outside the model by flag, and by body if the data set has flags of bodies."""
-    found = []
+    hits = []
     for flag in (f for f in OUTSIDE if f in view.flags):
         for body in bodies_of(flag, view.by_body):
-            found.append((flag, body, view.flagged(flag, body) & view.rolling))
-    return found
+            hits.append((flag, body, view.flagged(flag, body) & view.rolling))
+    return hits
 
 
 def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> str:
@@ -85,5 +85,5 @@ def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequenc
         text = f"One valid case shown here has a finite {words}: {ends[0]}."
     endless = int((rows & np.isposinf(values)).sum())
     text += f" {count(endless)} more have {NO_FAILURE} ({BEYOND})." if endless else ""
-    told = {"column": column, "low": low, "high": high, "unlimited": endless}
-    return Sentence("extremes", text, told, rows)
+    claims = {"column": column, "low": low, "high": high, "unlimited": endless}
+    return Sentence("extremes", text, claims, rows)

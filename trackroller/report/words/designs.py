@@ -145,14 +145,14 @@ def _targets(view: StudyView) -> dict[str, Any]:
 def _life(designs: Designs, row: pd.Series) -> str:
     """Write worst, median and best life of a design, with the conditions in which it is valid."""
     unit = designs.goal[2]
-    told, every = _lives(row, unit, "worst", "median", "best")
+    lives, every = _lives(row, unit, "worst", "median", "best")
     if not designs.conditions:
         return f"{_lasts(designs, lasting(row['worst'], unit, row['worst_beyond']))}{_alone(designs)}"
     where = condition_words(designs, int(row["worst_case"]))
-    text = f"{_lasts(designs, told[0])} at its worst condition ({where}), {told[1]} in the median"
-    text += f" and {told[2]} at best{every}"
+    text = f"{_lasts(designs, lives[0])} at its worst condition ({where}), {lives[1]} in the median"
+    text += f" and {lives[2]} at best{every}"
     if np.isinf(row["worst"]):
-        text = f"{_lasts(designs, told[0])} in any condition in which it is valid"
+        text = f"{_lasts(designs, lives[0])} in any condition in which it is valid"
     if designs.drawn:
         low, high = rounded(row["b10_low"]), rounded(row["b10_high"])
         nine = f"nine of ten of its {count(int(row['cases']))} sampled conditions reach "
@@ -191,9 +191,9 @@ def _validity(designs: Designs, row: pd.Series) -> str:
     if designs.matched and len(designs.size) > 1:
         more = designs.possible - valid
         none = cases - designs.possible
-        told = [f"no design is valid in {count(none)}"] if none else []
-        told += [f"other designs are valid in {count(more)} of the others"] if more else []
-        text += f" ({'; '.join(told)})"
+        others = [f"no design is valid in {count(none)}"] if none else []
+        others += [f"other designs are valid in {count(more)} of the others"] if more else []
+        text += f" ({'; '.join(others)})"
     return text
 
 
@@ -238,14 +238,14 @@ def _first(designs: Designs, row: pd.Series, rows: np.ndarray) -> Sentence | Non
 
 def _margins(row: pd.Series, rows: np.ndarray, several: bool) -> Sentence | None:
     """Say how far a design stays from slip and lift-off where it rolls."""
-    told, slip, lift = [], float(row["slip_margin"]), float(row["lift_off_margin"])
+    margins, slip, lift = [], float(row["slip_margin"]), float(row["lift_off_margin"])
     least = "at least " if several else ""
     if slip < 1:  # without a drive nothing slips
-        told.append(f"{least}{percent(slip)} of the transmissible force is left before it slips")
+        margins.append(f"{least}{percent(slip)} of the transmissible force is left before it slips")
     if np.isfinite(lift):
-        told.append(f"the lighter contact carries {least}{percent(lift)} of the load of the heavier one")
-    text = f"{'Where it rolls, ' if several else ''}{listing(told)}."
-    return Sentence("margins", capital(text), {"slip": slip, "lift_off": lift}, rows) if told else None
+        margins.append(f"the lighter contact carries {least}{percent(lift)} of the load of the heavier one")
+    text = f"{'Where it rolls, ' if several else ''}{listing(margins)}."
+    return Sentence("margins", capital(text), {"slip": slip, "lift_off": lift}, rows) if margins else None
 
 
 def _next(designs: Designs, row: pd.Series, rows: np.ndarray) -> Sentence:
@@ -260,8 +260,8 @@ def _next(designs: Designs, row: pd.Series, rows: np.ndarray) -> Sentence:
     else:
         text = f"{worst} at its worst condition, {middle} in the median{every}; {_valid_in(row)}"
     text += "; roller alone: give `guide_overrollings_per_hour`" if alone(designs) else ""
-    told = {"design": {n: row[n] for n in designs.choices}, "worst": row["worst"], "median": row["median"]}
-    return Sentence("next", f"Next: {design_words(designs, row)}: {text}.", told, rows)
+    values = {"design": {n: row[n] for n in designs.choices}, "worst": row["worst"], "median": row["median"]}
+    return Sentence("next", f"Next: {design_words(designs, row)}: {text}.", values, rows)
 
 
 def _unanswered(designs: Designs) -> Sentence:

@@ -49,18 +49,18 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     ds : xarray.Dataset
         Result of one case.
     """
-    bits, found = int(ds["validity"]), []
+    bits, flags = int(ds["validity"]), []
     by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True)) if "validity_body" in ds else {}
     for name, flag in VALIDITY.items():
         if bits & validity_bit(name):
             own = [body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)]
             words = f"{words_of(name)} {of_body(name, ' and the '.join(own))}".rstrip()
-            found.append(Flag(name, f"{capital(words)}.", flag.remedy))
+            flags.append(Flag(name, f"{capital(words)}.", flag.remedy))
     residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
     exact = "Solve it with contact_model: kalker."
     if residual > KNOWN_ERROR:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
-        found.append(Flag("energy_residual", text, exact))
+        flags.append(Flag("energy_residual", text, exact))
     if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
-        found.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
-    return found
+        flags.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
+    return flags

@@ -107,8 +107,8 @@ def _correlated(sens: xr.Dataset) -> list[str]:
 def _share_words(ranks: list[Rank], what: str, index: str) -> str:
     first, *others = ranks
     verb = "accounts for" if index == "ST" else "explains"
-    told = f"{percent(first.value, first.low, first.high)} of the variance of {what} ({INDEX_WORDS[index]})"
-    text = f"{capital(first.name)} {verb} {told}"
+    share = f"{percent(first.value, first.low, first.high)} of the variance of {what} ({INDEX_WORDS[index]})"
+    text = f"{capital(first.name)} {verb} {share}"
     small = [r for r in others if (r.high if np.isfinite(r.high) else r.value) < SMALL]
     more = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in others if r not in small]
     text += f", {shortened(more)}" if more else ""
@@ -191,8 +191,8 @@ def interactions(sens: xr.Dataset, output: str) -> Sentence:
 
 def part_sentences(sens: xr.Dataset, output: str) -> list[Sentence]:
     """Return the sentences on the groups and on the levels for one output, as far as the analysis has them."""
-    found = (group_indices(sens, output), level_indices(sens, output))
-    return [said for said in found if said is not None]
+    sentences = (group_indices(sens, output), level_indices(sens, output))
+    return [said for said in sentences if said is not None]
 
 
 def group_indices(sens: xr.Dataset, output: str) -> Sentence | None:
@@ -205,10 +205,10 @@ def group_indices(sens: xr.Dataset, output: str) -> Sentence | None:
         return None
     order = np.argsort(-value, kind="stable")
     names = part["group_name"].values
-    told = [f"{names[i]} {percent(value[i], low[i], high[i])}" for i in order]
+    parts = [f"{names[i]} {percent(value[i], low[i], high[i])}" for i in order]
     what = f"of the variance of {of_output(sens, output)} ({INDEX_WORDS['ST']})"
     text = f"By groups, {names[order[0]]} accounts for {percent(value[order[0]], low[order[0]], high[order[0]])} {what}"
-    text += f", {listing(told[1:])}." if told[1:] else "."
+    text += f", {listing(parts[1:])}." if parts[1:] else "."
     ranks = [(str(part["group"].values[i]), float(value[i]), float(low[i]), float(high[i])) for i in order]
     return Sentence("groups", text, {"output": output, "ranks": ranks})
 
@@ -217,7 +217,7 @@ def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
     """Name the factor with the largest first-order index within each level of a category."""
     if "conditional_S1" not in sens:
         return None
-    part, told, lead = sens.sel(output=output), [], {}
+    part, parts, lead = sens.sel(output=output), [], {}
     for level in part["level"].values:
         value, low, high = estimate(part.sel(level=level), "conditional_S1")
         if not np.isfinite(value).any():
@@ -225,11 +225,11 @@ def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
         best = int(np.nanargmax(value))
         lead[str(level)] = str(part["factor"].values[best])
         words = level_text(str(sens["level"].attrs["factor"]), level)
-        told.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
-    if not told:
+        parts.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
+    if not parts:
         return None
     what = f"{INDEX_WORDS['S1']} of the variance of {of_output(sens, output)}"
-    text = f"By {category(sens)}, the largest {what} is: {'; '.join(told)}."
+    text = f"By {category(sens)}, the largest {what} is: {'; '.join(parts)}."
     return Sentence("levels", text, {"output": output, "lead": lead})
 
 

@@ -34,8 +34,8 @@ def limit_sentences(view: StudyView) -> list[Sentence]:
         return []
     names = first_limit(view)[view.valid]
     counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
-    told = [f"{title(n)} in {count(k)}" for n, k in counts.items()]
-    text = f"The first limit of the pair is {listing(told)} of the {count(int(view.valid.sum()))} valid cases."
+    parts = [f"{title(n)} in {count(k)}" for n, k in counts.items()]
+    text = f"The first limit of the pair is {listing(parts)} of the {count(int(view.valid.sum()))} valid cases."
     said = [Sentence("first_limits", text, counts, view.valid)] if counts else []
     order = turn(designs)
     if order is not None:

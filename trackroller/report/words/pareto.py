@@ -41,14 +41,15 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
     ends = []
     for (name, _), at in zip(goals, end_places(front), strict=True):
         ends.append((name, int(front["row"][at]), {g: float(front[g].values[at]) for g, _ in goals}))
-    told = [f"{goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
+    goal_values = [f"{goal_words(front, n)} {_goal_value(front, n, ends[0][2][n])}" for n, _ in goals]
     alike = all(end[2] == ends[0][2] for end in ends) and len(np.unique(_goal_table(front)[best], axis=0)) == 1
     if front.sizes["row"] == 1:
-        text = f"One {kind} is left, so there is no Pareto set: {listing(told)}."
+        text = f"One {kind} is left, so there is no Pareto set: {listing(goal_values)}."
     elif len(best) == 1:
-        text = f"One of {allowed} allowed {kind}s is best in everything: {listing(told)}."
+        text = f"One of {allowed} allowed {kind}s is best in everything: {listing(goal_values)}."
     elif alike:
-        text = f"{count(len(best))} of {allowed} allowed {kind}s tie, none other is better in a goal: {listing(told)}."
+        tied = f"{count(len(best))} of {allowed} allowed {kind}s tie"
+        text = f"{tied}, none other is better in a goal: {listing(goal_values)}."
     else:
         one, two = ends[0], ends[1]
         first = listing([f"{_goal_value(front, g, one[2][g])} {goal_words(front, g)}" for g, _ in goals])

@@ -43,10 +43,10 @@ def target(table: xr.Dataset, number: int) -> Sentence:
     if share.ndim:
         best, worst = int(np.argmax(share)), int(np.argmin(share))
         values |= {"best": best, "worst": worst}
-        told = chance(share[best], low[best], high[best], INTERVAL)
+        highest = chance(share[best], low[best], high[best], INTERVAL)
         same = len(share) > 1 and share[best] - share[worst] < SAME
         where = f"all {len(share)} design points" if same else point_words(table, best)
-        text = f"{what}: probability {told} at {where}"
+        text = f"{what}: probability {highest} at {where}"
         if len(share) > 1 and not same:
             text += f"; no other of the {count(len(share))} design points has more. The least, "
             text += f"{chance(share[worst], low[worst], high[worst], INTERVAL)}, is at {point_words(table, worst)}"
@@ -83,8 +83,8 @@ def _widest(part: xr.Dataset) -> tuple[int, int] | None:
 
 
 def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:
-    found = estimate(part, f"{kind}_probability")
-    return chance(*(found if place is None else found[:, place]))
+    estimates = estimate(part, f"{kind}_probability")
+    return chance(*(estimates if place is None else estimates[:, place]))
 
 
 def _level_words(part: xr.Dataset, level: int) -> str:

@@ -162,5 +162,5 @@ def _friction(materials: MaterialDatabase, columns: dict[str, np.ndarray]) -> tu
         records.append(materials.friction_record(roller, guide, level))
         return float(records[-1]["value"])
 
-    found = _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))
-    return found, {FRICTION: json.dumps(records)} if records else {}
+    coefficients = _mapped(known, float, values, *(_mapped(str, object, columns[name]) for name in MATERIAL_FIELDS))
+    return coefficients, {FRICTION: json.dumps(records)} if records else {}

@@ -45,7 +45,7 @@ def check_entries(value: Any) -> tuple[Entry, ...]:
     example = "For example [[radial_force, axial_force, 0.6]]."
     if not isinstance(value, (list, tuple)):
         raise InputError(KEY, value, "a list of [factor, factor, rank correlation]", example)
-    found: dict[frozenset[str], Entry] = {}
+    entries: dict[frozenset[str], Entry] = {}
     for entry in value:
         good = isinstance(entry, (list, tuple)) and len(entry) == 3 and all(isinstance(n, str) for n in entry[:2])
         if not good or entry[0] == entry[1]:
@@ -53,10 +53,10 @@ def check_entries(value: Any) -> tuple[Entry, ...]:
         rho = entry[2]
         if isinstance(rho, bool) or not isinstance(rho, (int, float)) or not -1 < rho < 1:
             raise InputError(KEY, list(entry), "a rank correlation (Spearman) above -1 and below 1")
-        if frozenset(entry[:2]) in found:
+        if frozenset(entry[:2]) in entries:
             raise InputError(KEY, list(entry), "each pair of factors once", "Remove one of the entries.")
-        found[frozenset(entry[:2])] = (entry[0], entry[1], float(rho))
-    return tuple(found.values())
+        entries[frozenset(entry[:2])] = (entry[0], entry[1], float(rho))
+    return tuple(entries.values())
 
 
 def check_design(entries: Sequence[Entry], method: str) -> None:

@@ -32,8 +32,8 @@ def short(name: str, value: Any) -> str:
     A description of the mapping, such as 'linear to 0.3 at 50 mm/s'.
     """
     try:
-        told = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
-        return _law(told) if name == "friction_law" else _profile(told)
+        mapping = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
+        return _law(mapping) if name == "friction_law" else _profile(mapping)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError):
         text = str(value)
         return text if len(text) <= 40 else f"{text[:34]}… {_mark(text)}"
@@ -44,9 +44,9 @@ def in_words(name: str, value: Any) -> str:
     return short(name, value) if name in MAPPING_FIELDS else label(value)
 
 
-def _mark(told: Any) -> str:
+def _mark(value: Any) -> str:
     """Return four characters computed from a value that is too long for a description."""
-    text = told if isinstance(told, str) else json.dumps(told, sort_keys=True, default=float)
+    text = value if isinstance(value, str) else json.dumps(value, sort_keys=True, default=float)
     return f"{zlib.crc32(text.encode()) & 0xFFFF:04x}"
 
 
@@ -56,33 +56,33 @@ def _number(value: Any) -> str:
     return (text if float(text) == float(value) else f"{float(value):.12g}").replace("-", "−")
 
 
-def _law(told: Mapping[str, Any]) -> str:
-    kind = str(told.get("kind", "constant"))
+def _law(law: Mapping[str, Any]) -> str:
+    kind = str(law.get("kind", "constant"))
     if kind in ("linear", "exponential"):
-        lowest = told.get("lowest", 0.0 if kind == "linear" else 0.4)
-        return f"{kind} to {_number(lowest)} {'at' if kind == 'linear' else 'over'} {_number(told['speed'])} mm/s"
+        lowest = law.get("lowest", 0.0 if kind == "linear" else 0.4)
+        return f"{kind} to {_number(lowest)} {'at' if kind == 'linear' else 'over'} {_number(law['speed'])} mm/s"
     if kind == "table":
-        speed, friction = told["speed"], told["friction"]
+        speed, friction = law["speed"], law["friction"]
         last = f"{_number(friction[0])} to {_number(friction[-1])} from {_number(speed[-1])} mm/s"
-        return f"table {last}" if len(speed) <= 2 else f"table {_mark(told)}, {last}"
+        return f"table {last}" if len(speed) <= 2 else f"table {_mark(law)}, {last}"
     return kind
 
 
-def _profile(told: Mapping[str, Any]) -> str:
-    form = next((key for key in ("arc", "parabola", "arcs", "points", "file") if key in told), "")
+def _profile(profile: Mapping[str, Any]) -> str:
+    form = next((key for key in ("arc", "parabola", "arcs", "points", "file") if key in profile), "")
     if not form:
         words = "circle"
     elif form in ("arc", "parabola"):
-        words = f"{form} {_number(told[form])} mm"
+        words = f"{form} {_number(profile[form])} mm"
     elif form == "arcs":
-        words = _arcs(told["arcs"])
+        words = _arcs(profile["arcs"])
     elif form == "file":
-        words = f"drawn {told['file']}"
+        words = f"drawn {profile['file']}"
     else:  # the mark distinguishes drawn shapes, and smoothed from unsmoothed ones
-        words = f"drawn {_mark(told)}, {len(told['points'])} points"
-    if "width" in told:
-        words += f", {_number(told['width'])} mm wide"
-    edge = told.get("edge", {})
+        words = f"drawn {_mark(profile)}, {len(profile['points'])} points"
+    if "width" in profile:
+        words += f", {_number(profile['width'])} mm wide"
+    edge = profile.get("edge", {})
     parts = [f"{words_of} {_number(edge[key])}" for key, words_of in EDGES.items() if key in edge]
     return words + (f", edge {' '.join(parts)} mm" if parts else "")
 

@@ -58,12 +58,12 @@ def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, i
     from_a = [whole, *(whole ^ (1 << j) for j in range(count))]
     from_a += [*(1 << j for j in range(count)), 0] if second_order else [0]
     last = len(from_a) - 1
-    found: dict[int, list[tuple[int, int]]] = {}
+    sharing: dict[int, list[tuple[int, int]]] = {}
     for i, one in enumerate(from_a):
         for j in range(i):
-            found.setdefault(whole ^ one ^ from_a[j], []).append((j, i))
-    ends = {columns: [pair for pair in pairs if pair[0] == 0 or pair[1] == last] for columns, pairs in found.items()}
-    return {columns: ends[columns] or pairs for columns, pairs in found.items()}
+            sharing.setdefault(whole ^ one ^ from_a[j], []).append((j, i))
+    ends = {columns: [pair for pair in pairs if pair[0] == 0 or pair[1] == last] for columns, pairs in sharing.items()}
+    return {columns: ends[columns] or pairs for columns, pairs in sharing.items()}
 
 
 def as_set(columns: Iterable[int]) -> int:

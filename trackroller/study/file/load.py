@@ -45,9 +45,9 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         config: StudyFile = StudyFile.model_validate(dict(data))
         wrong.check()
     except ValidationError as error:
-        found = error.errors()
-        unknown = [str(one["loc"][-1]) for one in found if one["type"] == "extra_forbidden"]
-        for one in found:
+        errors = error.errors()
+        unknown = [str(one["loc"][-1]) for one in errors if one["type"] == "extra_forbidden"]
+        for one in errors:
             if one["type"] != "missing" or not any(nearest(name, map(str, one["loc"][-1:])) for name in unknown):
                 wrong.errors += _translated(one).errors
         wrong.check()

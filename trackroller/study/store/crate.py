@@ -89,7 +89,7 @@ def _file(root: Path, name: str) -> dict[str, Any]:
 
 def _graph(study: Study, root: Path, inputs: list[str], results: list[str]) -> list[dict[str, Any]]:
     """Return the entries of the metadata file, the study, its run, the programs, the licence and every file."""
-    found, work = versions(), "CreativeWork"
+    programs, work = versions(), "CreativeWork"
     ended = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
     return [
         _entry(METADATA, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
@@ -113,12 +113,12 @@ def _graph(study: Study, root: Path, inputs: list[str], results: list[str]) -> l
             instrument={"@id": STUDY_FILE},
             object=_references(inputs),
             result=_references(results),
-            softwareRequirements=_references(f"#{name}" for name in found),
+            softwareRequirements=_references(f"#{name}" for name in programs),
         ),
-        _entry("#study-language", "ComputerLanguage", name="trackroller study file", version=found["trackroller"]),
+        _entry("#study-language", "ComputerLanguage", name="trackroller study file", version=programs["trackroller"]),
         _entry(LICENCE, work, name="MIT License", identifier="MIT"),
         *(_entry(name, work, name=f"Workflow Run Crate profile {name[28:]}") for name in PROFILES),
-        *(_entry(f"#{name}", "SoftwareApplication", name=name, softwareVersion=v) for name, v in found.items()),
+        *(_entry(f"#{name}", "SoftwareApplication", name=name, softwareVersion=v) for name, v in programs.items()),
         *(_file(root, name) for name in (*inputs, *results)),
     ]
 
@@ -156,14 +156,14 @@ def damaged_files(root: Path | str) -> dict[str, str]:
     InputError
         If the folder is not a crate.
     """
-    found = {}
+    damaged = {}
     for name, entry in read_crate(root).items():
         path = Path(root) / name
         if not path.is_file():
-            found[name] = "missing"
+            damaged[name] = "missing"
         elif sha256(path) != entry.get("sha256"):
-            found[name] = "changed"
-    return found
+            damaged[name] = "changed"
+    return damaged
 
 
 def study_of_crate(root: Path | str) -> Study:

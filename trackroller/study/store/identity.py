@@ -43,13 +43,13 @@ _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field
 def _prefix(options: Mapping[str, Any]) -> bytes:
     """Return the options that matter to the contact model and the digest of the solver, as canonical bytes."""
     given = {option.name: options.get(option.name, option.default) for option in OPTIONS.values()}
-    told = {
+    stated = {
         option.name: sorted(value) if isinstance(value := given[option.name], (list, tuple)) else value
         for option in OPTIONS.values()
         if option.identity and option.applies(given["contact_model"])
     }
     own = DECLARED[given["contact_model"]].source
-    return json.dumps(told | {"code": solver_digest()} | ({"model": own} if own else {}), sort_keys=True).encode()
+    return json.dumps(stated | {"code": solver_digest()} | ({"model": own} if own else {}), sort_keys=True).encode()
 
 
 def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarray | None = None) -> np.ndarray:

@@ -72,8 +72,8 @@ def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> d
     kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in {*study.factors, "seconds"}}
     # what `solve` recorded of its materials holds, whatever the database says by now
     recorded = {"materials": attrs["materials"]} if "materials" in attrs else {}
-    told = provenance.attributes(study, [] if recorded else names)
-    return kept | {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs} | told | recorded
+    provenance_attrs = provenance.attributes(study, [] if recorded else names)
+    return kept | {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs} | provenance_attrs | recorded
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:
@@ -125,5 +125,5 @@ def _variable(
     if dims and values.dtype.kind not in "OSU":
         encoding |= {"zlib": True, "complevel": 4, "shuffle": True}
     flags = ("flag_values", "flag_masks")  # these take the type of their variable
-    told = {key: np.asarray(value, values.dtype) if key in flags else value for key, value in attrs.items()}
-    return tuple(dims), values, told, encoding
+    attributes = {key: np.asarray(value, values.dtype) if key in flags else value for key, value in attrs.items()}
+    return tuple(dims), values, attributes, encoding

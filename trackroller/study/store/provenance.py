@@ -47,21 +47,21 @@ def git_commit() -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions of all that computes the numbers: this package, Python, packages, limits of a user's own."""
-    found = {"trackroller": __version__, "python": platform.python_version()}
-    found |= {f"config/limits/{name}.py": f"sha256 {digest}" for name, digest in digests().items()}
+    versions = {"trackroller": __version__, "python": platform.python_version()}
+    versions |= {f"config/limits/{name}.py": f"sha256 {digest}" for name, digest in digests().items()}
     for name in _PACKAGES:
         try:
-            found[name] = metadata.version(name)
+            versions[name] = metadata.version(name)
         except metadata.PackageNotFoundError:
             continue
-    return found
+    return versions
 
 
 def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
     """Return the global attributes of the gathered file for a study that uses the named materials."""
     config = study.config
     values = {name: study.materials.material(name).with_sources() for name in materials}
-    told = {
+    stated = {
         **file_attributes(f"Parameter study '{study.name}' of locating-bearing track rollers", "solved and gathered"),
         "comment": config.description or f"Results of the study {study.name}",
         "study": study.merged(),
@@ -77,5 +77,5 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
         "date_created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }
     if study.path is not None:
-        told["study_file"] = study.path.name
-    return told
+        stated["study_file"] = study.path.name
+    return stated
