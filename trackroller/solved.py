@@ -22,6 +22,7 @@ from trackroller.report.build import report_text
 from trackroller.report.explorer.page import write_explorer
 from trackroller.report.html import write_page
 from trackroller.report.workbook import write_cases
+from trackroller.roller.duty import years
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar
@@ -134,12 +135,19 @@ class Solved(StudyResults):
         return pd.DataFrame() if designs is None else designs.table.head(count).copy()
 
     def to_table(self) -> pd.DataFrame:
-        """Return one row a case: factors, other inputs that vary, and results by contact and body."""
-        return self.view.table.copy()
+        """Return one row a case: factors, other inputs that vary, and results by contact and body.
+
+        Lives in hours are followed by lives in years if the study file has a `duty`.
+        """
+        table, duty = self.view.table.copy(), self.config.duty
+        if duty is None:
+            return table
+        lives = [name for name in map(str, table) if "life" in name and "hours" in name]
+        return table.assign(**{name.replace("hours", "years"): years(table[name], duty) for name in lives})
 
     def export(self, path: Path | str) -> Path:
         """Write `to_table` as a workbook (.xlsx) or as CSV by the name of the file, and return its path."""
-        return write_cases(self.view.table, Path(path))
+        return write_cases(self.to_table(), Path(path))
 
     def report(self, path: Path | str) -> Path:
         """Write the report as one HTML file, or as PDF by the name of the file, and return its path."""

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 from command_line import trackroller
 
 import trackroller as tr
+from trackroller.report.explorer.rows import collect
 from trackroller.report.numbers import hour_unit, lasting, on_duty, quantity, rounded
 from trackroller.roller.duty import checked_duty, years
 
@@ -98,3 +100,24 @@ def test_lives_of_a_case_have_years_in_json(tmp_path):
     assert found["roller_life_hours"]["years"] == pytest.approx(found["roller_life_hours"]["value"] / 1760)
     assert np.array(found["life_hours"]["years"], dtype=float).shape == (2, 2)
     assert "years" not in found["life_cycles"]
+
+
+def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    text = "{name: d, base: {motor_force: 0, friction_coefficient: 0.1}, outputs: [peak_stress, life], "
+    text += "contact_model: sliding, factors: {roller_profile_radius: {values: [-6.4, -7]}}%s}"
+    Path("d.yaml").write_text(text % ", duty: {hours_per_day: 8, days_per_year: 220}")
+    Path("e.yaml").write_text((text % "").replace("name: d", "name: e"))
+    solved = tr.run("d.yaml", progress=False)
+    table = solved.to_table()
+    for body in ("roller", "pair"):
+        assert table[f"{body}_life_years"].tolist() == pytest.approx((table[f"{body}_life_hours"] / 1760).tolist())
+    columns = {c.name: c for c in collect(solved.view)}
+    years_ = columns["roller_life_hours:years"]
+    assert (years_.label, years_.unit) == (columns["roller_life_hours"].label, "years")
+    assert years_.values.tolist() == pytest.approx((columns["roller_life_hours"].values / 1760).tolist())
+    page = solved.report("d.html").read_text(encoding="utf-8")
+    assert "[h; 1760 h = 1 year]" in page and " years)" in page
+    plain = tr.run("e.yaml", progress=False)
+    assert "1 year]" not in plain.report("e.html").read_text(encoding="utf-8")
+    assert not any("years" in name for name in (*plain.to_table(), *(c.name for c in collect(plain.view))))

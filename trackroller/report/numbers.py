@@ -211,9 +211,15 @@ def unit_text(units: str) -> str:
     return UNITS.get(units, units)
 
 
+def head_unit(units: str) -> str:
+    """Return the unit at the head of a column or axis; behind hours the hours of a year, if the duty is known."""
+    duty = _duty.get() if units == "h" else None
+    return f"h; {rounded(1 / years(1.0, duty))} h = 1 year" if duty else unit_text(units)
+
+
 def with_unit(text: str, units: str) -> str:
     """Write an axis label: the quantity and its unit in brackets."""
-    return f"{text} [{unit_text(units)}]"
+    return f"{text} [{head_unit(units)}]"
 
 
 def quantity(value: float, units: str) -> str:

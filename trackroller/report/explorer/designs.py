@@ -10,7 +10,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
-from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count
+from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, with_unit
 from trackroller.report.tables.designs import first_words
 from trackroller.report.tables.table import cell, factor_cell, heading
 from trackroller.report.words.designs import alone
@@ -46,11 +46,12 @@ def design_columns(view: StudyView) -> tuple[list[Column], dict[str, Any]]:
         _numbered("design", "Design, the best first", np.where(own, number, -1)),
         Column("design_worst", f"Worst {words} of the design", unit, "design", worst, log=designs.rising),
     ]
-    lists = {"design": _designs(designs, f"Worst {words} [{unit}]")}
+    head = with_unit(f"Worst {words}", unit)
+    lists = {"design": _designs(designs, head)}
     if designs.possible > 1:
         place = _hardest_first(designs)
         columns.append(_numbered("condition", "Condition, the hardest first", place))
-        lists["condition"] = _conditions(designs, place, number, f"Worst {words} [{unit}]")
+        lists["condition"] = _conditions(designs, place, number, head)
     return columns, lists
 
 

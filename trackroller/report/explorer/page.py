@@ -22,13 +22,14 @@ from trackroller.report.explorer.pack import affordable_rows, pack
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.explorer.sample import extreme_rows, sample_rows
 from trackroller.report.html import render
-from trackroller.report.numbers import count
+from trackroller.report.numbers import count, lives_in_years
 from trackroller.study.outputs import flat
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
 
 
+@lives_in_years
 def explorer(view: StudyView) -> dict[str, Any]:
     """Return what the template of the explorer needs.
 

@@ -16,6 +16,7 @@ from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTI
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
 from trackroller.report.words.flags import words_of
+from trackroller.roller.duty import years
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
@@ -69,6 +70,7 @@ def collect(view: StudyView) -> list[Column]:
     columns += [_setting(view, name, "input") for name in view.derived]
     columns += _results(ds, dims, view)
     columns += _beyond(view, columns)
+    columns += _in_years(view, columns)
     columns += _states(ds, dims, view)
     if len(view.table) <= MOST_DETAILED:
         columns += _details(ds, dims, {column.name for column in columns}, view)
@@ -129,6 +131,15 @@ def _beyond(view: StudyView, columns: Sequence[Column]) -> list[Column]:
             name = f"{column.name}:beyond"
             remarks.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
     return remarks
+
+
+def _in_years(view: StudyView, columns: Sequence[Column]) -> list[Column]:
+    """Return the lives in years, for the card of a chosen case; none if the duty of the roller is not known."""
+    duty = view.study.get("duty")
+    if duty is None:
+        return []
+    lives = [c for c in columns if c.unit == "h" and "life" in c.name]
+    return [Column(f"{c.name}:years", c.label, "years", "detail", years(c.values, duty)) for c in lives]
 
 
 def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Output]:

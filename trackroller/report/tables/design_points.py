@@ -8,7 +8,7 @@ import xarray as xr
 from trackroller.analysis.ranking import estimate, main_lives
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.report.numbers import capital, chance, listing, rounded, unit_text
+from trackroller.report.numbers import capital, chance, head_unit, listing, rounded
 from trackroller.report.tables.table import Table
 from trackroller.report.tables.targets import MAX_POINTS
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
@@ -46,7 +46,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
         chances = [chance(*estimate(table.sel(regime=r), "probability")[:, p]) for r in seen]
         lives = [life_at(part, p, value) for value in (b10, float(part["b10_safe"][p]))]
         rows.append([capital(point_words(table, p)), lives[0], span, lives[1], *chances])
-    unit = unit_text(str(part["output_units"].item()))
+    unit = head_unit(str(part["output_units"].item()))
     name = capital(str(part["output_name"].item()))
     own = f"B10 holds the material's own scatter of life, T_N = {rounded(10 ** (DEVIATES_10_TO_90 * scatter))}."
     note = own if scatter > 0 else "B10 holds the scatter of the study's factors alone, not that of the material."
@@ -71,7 +71,7 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
         values = [float(part["mean"][p]), *spread]
         rows.append([capital(point_words(table, p)), *([life_at(part, p, v) for v in values] if life else values)])
     heads = ["Design point", "Mean", *(f"{q:.0f} %" for q in shares)]
-    name, unit = capital(str(part["output_name"].item())), unit_text(str(part["output_units"].item()))
+    name, unit = capital(str(part["output_name"].item())), head_unit(str(part["output_units"].item()))
     note = "Rolling cases; scatter of the study's factors alone, without that of the material."
     note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
     return Table(f"percentiles_{output}", f"{name} [{unit}]: mean and percentiles", heads, rows, note)

@@ -10,7 +10,7 @@ import pandas as pd
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.report.numbers import Life, capital, count, percent, rounded
+from trackroller.report.numbers import Life, capital, count, head_unit, percent, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEYOND_MEANS, alone, condition_words
 
@@ -55,7 +55,7 @@ def _heads(best: list[pd.Series]) -> list[str]:
 
 def _lives(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
     """Return the rows on lives, with the worst condition and the body that fails first."""
-    words, unit = designs.goal[1:]
+    words, unit = designs.goal[1], head_unit(designs.goal[2])
     several = bool(designs.conditions)
     rows: list[list[Any]] = []
     if designs.drawn:
