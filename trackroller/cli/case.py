@@ -77,12 +77,9 @@ def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[st
 
 def groups_of(words: str) -> tuple[str, ...]:
     """Return the groups of outputs of the limits `all`, or of limits whose names are separated by commas."""
-    from trackroller.damage import LIMITS  # heavy: numpy and scipy
+    from trackroller import damage  # heavy: numpy and scipy
 
-    known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
-    names = known if words == "all" else [word.strip() for word in words.split(",")]
-    check_names("--limits", names, (*known, "all"))
-    return (*dict.fromkeys(LIMITS[name].group for name in names), "limits")
+    return damage.groups_of("--limits", [word.strip() for word in words.split(",")])
 
 
 def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:

@@ -18,6 +18,7 @@ from trackroller.damage import (
     wear,
 )
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
+from trackroller.errors import check_names
 from trackroller.parameters import own_limits
 
 _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
@@ -31,6 +32,17 @@ def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
     if verdict.GROUP in outputs and not named:
         return tuple(limit for limit in LIMITS.values() if limit.verdict is not None)
     return named
+
+
+def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
+    """Return the groups of outputs of limits and of their verdict; `field` stands in the error of an unknown name.
+
+    `all` stands for all limits that have a verdict.
+    """
+    known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
+    check_names(field, names, (*known, "all"))
+    wanted = known if "all" in names else names
+    return (*dict.fromkeys(LIMITS[name].group for name in wanted), verdict.GROUP)
 
 
 def judged(outputs: Collection[str]) -> tuple[Limit, ...]:

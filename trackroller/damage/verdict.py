@@ -37,6 +37,31 @@ def hours_until_reached(used: np.ndarray, hours: np.ndarray, timed: np.ndarray, 
     return np.where((used >= 1.0) & (at_once | ~timed), 0.0, np.where(timed, hours, never))
 
 
+def first_of(reached: np.ndarray, used: np.ndarray, concerned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return when the first limit is reached, and which one it is.
+
+    Parameters
+    ----------
+    reached : numpy.ndarray
+        When each limit is reached, in hours or shifts, (n, limit, body); NaN where it is not known.
+    used : numpy.ndarray
+        Utilisation, (n, limit, body) [1], which ranks limits that are reached together.
+    concerned : numpy.ndarray of bool
+        Bodies that a limit concerns, (limit, body).
+
+    Returns
+    -------
+    tuple of numpy.ndarray
+        The first one, (n, body), NaN where no known limit is ever reached and another one is not known; and the place
+        of its limit, (n, body).
+    """
+    known = ~np.isnan(reached)
+    first = np.min(np.where(known, reached, np.inf), axis=1)
+    rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
+    missing = (~known & concerned).any(axis=1)
+    return np.where(np.isinf(first) & missing, np.nan, first), np.argmax(rank, axis=1)
+
+
 def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
     """Return utilisation and hours of each limit, the hours to the first limit, and its number.
 
@@ -59,9 +84,8 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
 
     Notes
     -----
-    A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. Equal
-    hours are ranked by utilisation. A limit that lacks a value is left out. Hours to the first limit are NaN where no
-    known limit is ever reached and the hours of another one are not known.
+    A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. A limit
+    that lacks a value is left out.
     """
     n = len(solved.rolling_radius)
     used, hours, reached = (np.full((n, len(limits), 2), np.nan) for _ in range(3))
@@ -77,16 +101,13 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
         reached[:, i] = hours_until_reached(used[:, i], hours[:, i], timed, at_once)
     for values in (used, hours, reached):
         values[:, ~concerned] = np.nan
-    known = ~np.isnan(reached)
-    first = np.min(np.where(known, reached, np.inf), axis=1)
-    missing = (~known & concerned).any(axis=1)
-    rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
-    which = np.asarray(numbers, dtype=int)[np.argmax(rank, axis=1)]
-    lives = np.where(np.isinf(first) & missing, np.nan, first)
+    lives, first = first_of(reached, used, concerned)
+    known = ~np.isnan(reached).all(axis=1)
+    which = np.asarray(numbers, dtype=int)[first]
     return {
         "utilisation": used,
         "life_hours_by_limit": hours,
         "life_to_first_limit_hours": lives,
         "pair_life_to_first_limit_hours": first_failure(*lives.T)[0],
-        "limiting_mechanism": np.where(known.any(axis=1), which, unknown),
+        "limiting_mechanism": np.where(known, which, unknown),
     }

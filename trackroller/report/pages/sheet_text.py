@@ -10,7 +10,7 @@ import numpy as np
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
-from trackroller.report.pages.spectrum import assumed, block_table, life_rows, warnings
+from trackroller.report.pages.spectrum import assumed, block_table, life_rows, limit_table, warnings
 from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.flags import flags_of
@@ -70,10 +70,10 @@ def print_margins(facts: Facts, probability: float) -> None:
 @lives_in_years
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives, sentences on their causes and warnings."""
-    blocks = block_table(ds)
-    title = f"{ds.attrs['title']}: damage per shift"
-    print_table(blocks.heads, blocks.rows, range(1, len(blocks.heads)), title)
-    print_text(blocks.note)
+    for told, words in ((block_table(ds), "damage per shift"), (limit_table(ds), "limits")):
+        if told is not None:
+            print_table(told.heads, told.rows, range(1, len(told.heads)), f"{ds.attrs['title']}: {words}")
+            print_text(told.note)
     for body in BODIES:
         lives = "; ".join(f"{row.words}: {row.value} {row.unit}".rstrip() for row in life_rows(ds, body))
         print_text(lives, body)

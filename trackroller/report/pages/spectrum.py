@@ -12,16 +12,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report import html
 from trackroller.report.numbers import (
     capital,
     chance,
+    life,
     life_unit,
     listing,
     lives_in_years,
     long_name,
+    rounded,
     unit_text,
     with_unit,
 )
@@ -84,13 +87,34 @@ def block_table(ds: xr.Dataset) -> Table:
     return Table("spectrum", "Blocks of a shift", heads, rows, note.replace(" –;", ";").replace(" –.", "."))
 
 
+def limit_table(ds: xr.Dataset) -> Table | None:
+    """List the limits of a spectrum with the share that the worst block uses and the shifts; None without limits."""
+    if "life_shifts_by_limit" not in ds:
+        return None
+    heads, rows = ["Limit"], []
+    for body in BODIES:
+        heads += [f"{capital(body)} used", f"{capital(body)} [shifts]"]
+    for name in ds["limit"].values.tolist():
+        own, row = ds.sel(limit=name), [LIMITS[name].title]
+        for body in BODIES:
+            used, shifts = (float(own[n].sel(body=body)) for n in ("utilisation", "life_shifts_by_limit"))
+            row += ["–" if np.isnan(used) else f"{rounded(100.0 * used)} %", "–" if np.isnan(shifts) else life(shifts)]
+        rows.append(row)
+    note = (
+        "The share that the worst block uses, and the shifts until the sum over the blocks is reached. A limit without "
+        "a life has no shifts; a value that is missing leaves a dash."
+    )
+    return Table("spectrum_limits", "Limits", heads, rows, note)
+
+
 def warnings(ds: xr.Dataset) -> list[str]:
     """Return each validity flag in words, with its remedy and the blocks that carry it."""
     blocks_of_flag: dict[str, list[str]] = {}
     for i, name in enumerate(ds["block"].values if "validity" in ds else ()):
         for flag in flags_of(ds.isel(block=i)):
             blocks_of_flag.setdefault(f"{flag.sentence} {flag.remedy}", []).append(f"'{name}'")
-    return [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
+    told = [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
+    return told + str(ds.attrs.get("limits_notes", "")).splitlines()
 
 
 def assumed(ds: xr.Dataset) -> list[str]:
@@ -137,7 +161,7 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
         "assumed": assumed(ds),
         "doubts": doubts_of(ds),
         "materials": body_materials(json.loads(ds.attrs["materials"])),
-        "blocks": block_table(ds),
+        "tables": [table for table in (limit_table(ds), block_table(ds)) if table is not None],
         "flags": warnings(ds),
         "command": f"trackroller spectrum {shlex.quote(file)} --report {shlex.quote(Path(path).name)}",
         "versions": versions_text(),

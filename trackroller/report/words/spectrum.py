@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.analysis.lives import past_data
+from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, REGIME_LABELS
-from trackroller.report.numbers import BEYOND, chance, life, life_unit, listing
+from trackroller.report.numbers import BEYOND, chance, life, life_unit, listing, rounded
 from trackroller.report.words.sentence import Sentence
 
 if TYPE_CHECKING:
@@ -29,8 +30,32 @@ def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
 
 
 def sentences(ds: xr.Dataset) -> list[Sentence]:
-    """Return one sentence for each body: its life, the track that fails first, and the block with the most damage."""
-    return [_sentence(ds, body) for body in BODIES]
+    """Return one sentence for each body: its life, the track that fails first, and the block with the most damage.
+
+    A spectrum with limits has one more for each body: its first limit, and the block that decides it.
+    """
+    first = [_first_limit(ds, body) for body in BODIES] if "limiting_mechanism" in ds else []
+    return [_sentence(ds, body) for body in BODIES] + first
+
+
+def _first_limit(ds: xr.Dataset, body: str) -> Sentence:
+    own, names = ds.sel(body=body), str(ds["limiting_mechanism"].attrs["flag_meanings"]).split()
+    name, shifts = names[int(own["limiting_mechanism"])], float(own["life_to_first_limit_shifts"])
+    if name not in LIMITS:
+        return Sentence("spectrum_no_limit", f"No limit of the {body} is known.", {"body": body})
+    own, title = own.sel(limit=name), LIMITS[name].title
+    used = f"{rounded(100.0 * float(own['utilisation']))} % of it is used"
+    values = {"body": body, "limit": name, "shifts": shifts}
+    if np.isnan(own["life_shifts_by_limit"]) or shifts == 0.0:
+        when = "exceeds" if shifts == 0.0 else "comes closest to"
+        return Sentence("spectrum_limit", f"The {body} {when} {title}: in the worst block {used}.", values)
+    damage = own["damage_by_limit"].values
+    worst = int(np.nanargmax(damage))
+    text = (
+        f"The first limit of the {body} is {title}, after {_life(shifts)} shifts; "
+        f"{chance(float(damage[worst] / damage.sum()))} of its sum comes from '{ds['block'].values[worst]}'."
+    )
+    return Sentence("spectrum_limit", text, values | {"block": str(ds["block"].values[worst])})
 
 
 def _sentence(ds: xr.Dataset, body: str) -> Sentence:

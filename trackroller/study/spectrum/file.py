@@ -8,6 +8,7 @@ A spectrum file describes the roller once (`base`), and then its loads in blocks
       - {name: loaded, distance: 4000, radial_force: -300, axial_force: 60}      # m per shift
       - {name: empty, distance: 4000, radial_force: -80, guide_overrollings: 900}
     life_rule: haibach
+    limits: all
 
 `blocks` may also be the name of a CSV file or workbook in the same folder, with one column for each field and one line
 for each block.
@@ -25,6 +26,7 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.damage import groups_of
 from trackroller.damage.sn_curve import PROBABILITIES
 from trackroller.errors import Collector, InputError, check_names, nearest
 from trackroller.files import files_beside, find_beside, read_text
@@ -49,7 +51,17 @@ LOAD_FIELDS = (
 )
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
 OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
-FILE_FIELDS = ("name", "description", "base", "blocks", "critical_damage", "failure_probabilities", "duty", *OPTIONS)
+FILE_FIELDS = (
+    "name",
+    "description",
+    "base",
+    "blocks",
+    "critical_damage",
+    "failure_probabilities",
+    "duty",
+    "limits",
+    *OPTIONS,
+)
 
 
 @dataclass(frozen=True)
@@ -97,6 +109,8 @@ class Spectrum:
         Options of the solver.
     duty : mapping, optional
         `hours_per_day` and `days_per_year` of travel, for lives in years.
+    groups : tuple of str
+        Groups of outputs of the limits asked for by the key `limits`; empty without it.
     """
 
     name: str
@@ -106,6 +120,7 @@ class Spectrum:
     failure_probabilities: tuple[float, ...] = PROBABILITIES
     options: Mapping[str, Any] = field(default_factory=dict)
     duty: Mapping[str, float] | None = None
+    groups: tuple[str, ...] = ()
 
     @property
     def not_given(self) -> dict[str, Any]:
@@ -143,6 +158,8 @@ class Spectrum:
             found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
         with wrong.part():
             found["duty"] = checked_duty(values["duty"]) if values.get("duty") is not None else None
+            if "limits" in values:
+                found["groups"] = _groups(values["limits"])
         with wrong.part():
             found["options"] = {key: values[key] for key in OPTIONS if key in values}
             Options(**found["options"])  # checked before any case is solved
@@ -248,6 +265,14 @@ def _named(error: InputError, where: str) -> list[InputError]:
 def _number(name: str, value: Any, open_lower: bool = False, unit: str = "-") -> float:
     lower = math.nextafter(0.0, 1.0) if open_lower else 0.0
     return number_in(value, name, f"a finite number {'>' if open_lower else '>='} 0", lower, sys.float_info.max, unit)
+
+
+def _groups(names: Any) -> tuple[str, ...]:
+    """Return the groups of outputs of `all` limits, or of a list of limits."""
+    wanted = [names] if isinstance(names, str) else names
+    if not isinstance(wanted, list) or not wanted:
+        raise InputError("limits", names, "all, or a list of names of limits", "Write limits: [fatigue, wear].")
+    return groups_of("limits", [str(name) for name in wanted])
 
 
 def _probabilities(values: Any) -> tuple[float, ...]:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import fatigue, miner
+from trackroller.damage import LIMITS, fatigue, miner
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
@@ -22,6 +22,7 @@ from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import with_duty
 from trackroller.roller.record import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
+from trackroller.study.spectrum.limits import by_limit, cases_of
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
@@ -51,7 +52,8 @@ def solve_spectrum(
         Dimensions block, contact and body, and probability where a material gives scatter. Overrollings per shift, peak
         stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
         that cannot be solved, or in which a contact lifts off, makes the lives that depend on it NaN; `regime` states
-        why. The life of the guide is NaN where its overrollings are not known.
+        why. The life of the guide is NaN where its overrollings are not known. The key `limits` of the spectrum adds
+        the results of `spectrum.limits.by_limit`.
 
     Notes
     -----
@@ -63,10 +65,15 @@ def solve_spectrum(
     else:
         solve_cases = solve
     database = load_database() if database is None else database
-    cases = [block.case for block in spectrum.blocks]
-    options = {key: value for key, value in spectrum.options.items() if key != "life_rule"}
-    solved = solve_cases(cases, outputs=("forces", "peak_stress", "life"), database=database, **options)
-    return _damage(spectrum, solved, database)
+    overrollings = overrollings_per_shift(spectrum)
+    cases = cases_of(spectrum, overrollings)
+    options = {key: value for key, value in spectrum.options.items() if key != "life_rule" or spectrum.groups}
+    wanted = dict.fromkeys(("forces", "peak_stress", "life", *spectrum.groups))
+    solved = solve_cases(cases, outputs=tuple(wanted), database=database, **options)
+    if spectrum.groups:  # the life brings fatigue even where it was not asked for
+        names = solved["limit"].values.tolist()
+        solved = solved.sel(limit=[name for name in names if LIMITS[name].group in spectrum.groups])
+    return _damage(spectrum, solved, database, overrollings)
 
 
 def damage_per_shift(
@@ -93,13 +100,12 @@ def damage_per_shift(
     return life, miner.block_damage(cycles, life)
 
 
-def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) -> xr.Dataset:
+def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, overrollings: np.ndarray) -> xr.Dataset:
     """Return the damage of the solved blocks as a data set; see `solve_spectrum`."""
     peak, stress = (
         solved[name if name in solved else "peak_stress"].transpose("case", "contact", "body").values
         for name in ("peak_stress", "fatigue_stress")
     )
-    overrollings = overrollings_per_shift(spectrum)
     cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
     bodies = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
@@ -129,6 +135,9 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase) 
             meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
             variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
     variables |= _loads(spectrum, database)
+    if spectrum.groups:
+        chance = spectrum.options.get("failure_probability", 0.5)
+        variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, rule, chance)[1])
     if "fatigue_stress" in solved:
         variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
     if any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
@@ -172,6 +181,7 @@ def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset,
         "block": ("block", [b.name for b in spectrum.blocks], {"long_name": "block of the spectrum"}),
         "contact": solved["contact"],
         "body": solved["body"],
+        **({"limit": solved["limit"]} if "limit" in solved.coords else {}),
     }
     for name in ("regime", "converged", "validity", "validity_body"):
         if name in solved:
