@@ -108,7 +108,7 @@ DECISIONS = {
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/words/factors.py", "times(max(effect.ratio, 1", "times(min(effect.ratio, 1", WORDS),
-    "rounded-outwards": ("report/words/regimes.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
+    "rounded-outwards": ("analysis/events.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
     "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
     "pareto-end": (
         "report/words/pareto.py",

@@ -228,3 +228,24 @@ def errors(paired: xr.Dataset) -> xr.Dataset:
 def measured(compared: xr.Dataset) -> list[Quantity]:
     """Return the quantities for which the errors `compared` hold a number."""
     return [q for q in QUANTITIES if q.name in compared and bool(compared[q.name].notnull().any())]
+
+
+def known(error: xr.DataArray) -> np.ndarray:
+    """Return the errors of the cases that have one, shape (k,)."""
+    return np.asarray(error.values[~np.isnan(error.values)])
+
+
+def compared(one: xr.Dataset) -> int:
+    """Return the number of cases for which the errors of one model are known."""
+    return max((int(one[q.name].notnull().sum()) for q in measured(one)), default=0)
+
+
+def good_share(error: np.ndarray) -> float:
+    """Return the share of cases whose error is at most `GOOD`, among those that have one; NaN without any."""
+    error = error[~np.isnan(error)]
+    return float(np.mean(error <= GOOD)) if error.size else np.nan
+
+
+def spread(error: np.ndarray) -> tuple[float, float, float]:
+    """Return the median, the 90th percentile and the largest error; each is the error of one case."""
+    return tuple(float(np.percentile(error, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]

@@ -286,3 +286,18 @@ def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Ser
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
     rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
     return table.iloc[order].assign(rank=rank)
+
+
+def hardest_first(designs: Designs) -> np.ndarray:
+    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse worst case.
+
+    Cases of a less exact contact model have the number -1.
+    """
+    table, own = designs.view.table, designs.place >= 0
+    use = table.groupby(list(designs.conditions), sort=False, dropna=False, observed=True).ngroup().to_numpy()
+    use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
+    worst = np.full(use.max() + 1, np.inf)
+    values = designs.view.column(designs.goal[0]) * (1.0 if designs.rising else -1.0)
+    np.minimum.at(worst, use[designs.usable], values[designs.usable])
+    valid = np.bincount(use[designs.usable], minlength=len(worst))
+    return np.where(own, np.argsort(np.lexsort((worst, valid)))[use], -1)

@@ -257,3 +257,15 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
         if variable in ds and len(goals) == 1:
             goals[name] = "min"
     return goals if len(goals) == 2 else {}
+
+
+def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
+    """List the goals of a Pareto set: (name, 'min' or 'max')."""
+    return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]
+
+
+def end_places(front: xr.Dataset) -> list[int]:
+    """Return for each goal the place of the optimal design that is best in it, shape (goals,)."""
+    best = np.flatnonzero(front["optimal"].values == 1)
+    signs = [(front[name].values[best].astype(float), -1.0 if way == "max" else 1.0) for name, way in goals_of(front)]
+    return [int(best[np.argmin(sign * values)]) for values, sign in signs]

@@ -11,6 +11,7 @@ from scipy import stats
 
 from trackroller.analysis.labels import correlated_pairs
 from trackroller.analysis.probability import probabilities
+from trackroller.analysis.ranking import estimate
 from trackroller.study.design.factors import Factor
 from trackroller.study.design.levels import in_words
 from trackroller.study.design.sampling import SampledDesign
@@ -189,3 +190,21 @@ def _coordinates(
         },
         "level_rows": ("target_level", np.array([level.rows.sum() for level in levels], dtype=int)),
     }
+
+
+def most_apart(part: xr.Dataset) -> tuple[int, int] | None:
+    """Return the levels with the least and the largest probability of the factor whose levels differ most.
+
+    None if their intervals meet, so that the difference may be chance.
+    """
+    best: tuple[float, int, int] | None = None
+    if "level_probability" not in part:
+        return None
+    share, low, high = estimate(part, "level_probability")
+    for name in dict.fromkeys(part["level_factor"].values.tolist()):
+        own = np.flatnonzero(part["level_factor"].values == name)
+        least, most = int(own[np.argmin(share[own])]), int(own[np.argmax(share[own])])
+        apart = share[most] - share[least]
+        if apart > 0 and not high[least] >= low[most] and (best is None or apart > best[0]):
+            best = float(apart), least, most
+    return None if best is None else best[1:]

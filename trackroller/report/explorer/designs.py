@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.designs import Designs
+from trackroller.analysis.designs import Designs, hardest_first
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
@@ -49,7 +49,7 @@ def design_columns(view: StudyView) -> tuple[list[Column], dict[str, Any]]:
     head = with_unit(f"Worst {words}", unit)
     lists = {"design": _designs(designs, head)}
     if designs.possible > 1:
-        place = _hardest_first(designs)
+        place = hardest_first(designs)
         columns.append(_numbered("condition", "Condition, the hardest first", place))
         lists["condition"] = _conditions(designs, place, number, head)
     return columns, lists
@@ -100,21 +100,6 @@ def _goals(designs: Designs) -> tuple[list[str], dict[tuple[Any, ...], list[str]
     keys = zip(*(front[name].values.tolist() for name in designs.choices), strict=True)
     heads = [*(goal_heading(front, name) for name in names), "In the Pareto set"]
     return heads, dict(zip(keys, lines, strict=True)), note
-
-
-def _hardest_first(designs: Designs) -> np.ndarray:
-    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse worst case.
-
-    Cases of a less exact contact model have the number -1.
-    """
-    table, own = designs.view.table, designs.place >= 0
-    use = table.groupby(list(designs.conditions), sort=False, dropna=False, observed=True).ngroup().to_numpy()
-    use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
-    worst = np.full(use.max() + 1, np.inf)
-    values = designs.view.column(designs.goal[0]) * (1.0 if designs.rising else -1.0)
-    np.minimum.at(worst, use[designs.usable], values[designs.usable])
-    valid = np.bincount(use[designs.usable], minlength=len(worst))
-    return np.where(own, np.argsort(np.lexsort((worst, valid)))[use], -1)
 
 
 def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: str) -> dict[str, Any]:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.pareto import goals_of
 from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import ROLE_OF
@@ -14,7 +15,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import listing, long_name, plain
 from trackroller.report.words.levels import coloured
-from trackroller.report.words.pareto import goal_heading, goals_of, pareto_sentence
+from trackroller.report.words.pareto import goal_heading, pareto_sentence
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import OF_MATERIALS
 

@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.pareto import end_places, goals_of
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import Life, capital
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
-from trackroller.report.words.pareto import end_places, goal_heading, goal_words, goals_of
+from trackroller.report.words.pareto import goal_heading, goal_words
 from trackroller.report.words.sentence import Sentence
 from trackroller.study.file.goals import statistic
 

@@ -64,7 +64,7 @@ def _designs_that_meet(table: xr.Dataset, view: StudyView) -> list[str]:
     met = designs.targets_met()
     if met is None:
         return []
-    every, told = met == designs.size, [np.ones(len(met), dtype=bool)]
+    every, chosen = met == designs.size, [np.ones(len(met), dtype=bool)]
     choices = designs.table.sort_index()
     for i in range(table.sizes.get("target_level", 0)):
         name, text = str(table["level_factor"][i].item()), str(table["level_text"][i].item())
@@ -77,5 +77,5 @@ def _designs_that_meet(table: xr.Dataset, view: StudyView) -> list[str]:
             if text
             else own.between(low, high)
         )
-        told.append(np.asarray(at))
-    return [f"{count(int(every[at].sum()))} of {count(int(at.sum()))}" if at.any() else "–" for at in told]
+        chosen.append(np.asarray(at))
+    return [f"{count(int(every[at].sum()))} of {count(int(at.sum()))}" if at.any() else "–" for at in chosen]

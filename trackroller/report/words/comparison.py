@@ -8,7 +8,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
+from trackroller.analysis.contact_models import (
+    GOOD,
+    compared,
+    designs,
+    errors,
+    good_share,
+    known,
+    measured,
+    pairs,
+    spread,
+)
 from trackroller.analysis.groups import DRIVE, Groups, drives, groups
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import capital, listing, long_name, percent
@@ -48,16 +58,16 @@ def short(paired: xr.Dataset) -> list[str]:
     exact = paired["regime"].sel(contact_model=paired.attrs["reference"]).values
     for model in map(str, deviations["contact_model"].values):
         one = deviations.sel(contact_model=model)
-        if _compared(one) < FEWEST:
-            rolls = f"{_compared(one) or 'no'} case{'s' * (_compared(one) != 1)} of {paired.sizes['design']}"
+        if compared(one) < FEWEST:
+            rolls = f"{compared(one) or 'no'} case{'s' * (compared(one) != 1)} of {paired.sizes['design']}"
             said.append(f"{NAMES[model]}: cannot be compared with the reference, because both models roll in {rolls}.")
             continue
         parts = [
-            f"{q.words.split(' (')[0]} in {percent(_share(one[q.name].values))}"
+            f"{q.words.split(' (')[0]} in {percent(good_share(one[q.name].values))}"
             for q in measured(one)
             if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
         ]
-        shares = f"{', '.join(parts)} of {_cases(_compared(one))}"
+        shares = f"{', '.join(parts)} of {_cases(compared(one))}"
         own = paired["regime"].sel(contact_model=model).values
         unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
         more = f" In {_cases(unlike)} the two are not in the same regime." if unlike else ""
@@ -74,7 +84,7 @@ def details(paired: xr.Dataset) -> list[str]:
     said = []
     for model in map(str, deviations["contact_model"].values):
         one = deviations.sel(contact_model=model)
-        for k, text in enumerate(group_texts(drive) if _compared(one) >= FEWEST else ()):
+        for k, text in enumerate(group_texts(drive) if compared(one) >= FEWEST else ()):
             head = f"{NAMES[model]}{f', {text}' if DRIVE in view.factors else ''}"
             said.append(_sentence(one.where(xr.DataArray(drive.index == k, dims="design")), along, head))
     return said
@@ -92,9 +102,9 @@ def report_section(view: StudyView) -> dict[str, Any]:
     if paired.sizes["design"]:
         deviations = errors(paired)
         for model, q in product(map(str, deviations["contact_model"].values), measured(deviations)):
-            e = _rolling(deviations[q.name].sel(contact_model=model))
+            e = known(deviations[q.name].sel(contact_model=model))
             if e.size:
-                cells = [percent(v) for v in (float(np.mean(e <= GOOD)), *_spread(e))]
+                cells = [percent(v) for v in (good_share(e), *spread(e))]
                 rows.append([f"{model}: {q.words}", *cells, str(e.size)])
     heads = ["Model, quantity", f"cases within {percent(GOOD)}", "median error", "90 % below", "largest", "cases"]
     table = Table("contact_models", "Errors of the cheaper models", heads, rows)
@@ -110,24 +120,11 @@ def _cases(number: int) -> str:
     return f"{number} case{'s' if number > 1 else ''}"
 
 
-def _rolling(error: xr.DataArray) -> np.ndarray:
-    return np.asarray(error.values[~np.isnan(error.values)])
-
-
-def _compared(one: xr.Dataset) -> int:
-    return max((int(one[q.name].notnull().sum()) for q in measured(one)), default=0)
-
-
-def _spread(e: np.ndarray) -> tuple[float, float, float]:
-    """Return the median, the 90th percentile and the largest error, each an error that was found."""
-    return tuple(float(np.percentile(e, p, method="nearest")) for p in (50, 90, 100))  # type: ignore[return-value]
-
-
 def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
     clauses: dict[str, list[str]] = {"good enough for": [], "not good enough for": []}
     for q in measured(one):
         where = levels_kept(along, one[q.name].values)
-        clause = f"{q.words} {where} ({_range(_rolling(one[q.name]))})".replace("  ", " ")
+        clause = f"{q.words} {where} ({_range(known(one[q.name]))})".replace("  ", " ")
         clauses["good enough for" if where else "not good enough for"].append(clause)
     sentence = "; ".join(f"{head} {', '.join(listed)}" for head, listed in clauses.items() if listed)
     return f"{who}: {sentence or 'nothing to compare, because no case rolls'}."
@@ -147,7 +144,7 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
     along : groups of the cases
     e : error of every case [1], shape (n,), NaN where the case has no error
     """
-    shares = _shares_along(e, along)
+    shares = np.array([good_share(e[along.index == k]) for k in range(len(along))])
     at = np.flatnonzero(~np.isnan(shares))
     keeps = shares[at] >= MOST
     if not keeps.any():
@@ -176,24 +173,13 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
     return [(int(a), int(b) - 1) for a, b in edge.reshape(-1, 2)]
 
 
-def _shares_along(e: np.ndarray, along: Groups) -> np.ndarray:
-    """Return the share of good cases in every group, NaN for a group without rolling cases."""
-    return np.array([_share(e[along.index == k]) for k in range(len(along))])
-
-
-def _share(e: np.ndarray) -> float:
-    """Return the share of good cases among the rolling ones, NaN without rolling cases."""
-    e = e[~np.isnan(e)]
-    return float(np.mean(e <= GOOD)) if e.size else np.nan
-
-
 def gap(deviations: xr.Dataset, name: str) -> str:
     """Say by how much each cheaper model errs in one quantity; '' if it is not known."""
     said = []
     for model in map(str, deviations["contact_model"].values):
-        e = _rolling(deviations[name].sel(contact_model=model)) if name in deviations else np.empty(0)
+        e = known(deviations[name].sel(contact_model=model)) if name in deviations else np.empty(0)
         if e.size:
-            middle, _, most = _spread(e)
+            middle, _, most = spread(e)
             said.append(f"{model} is off by {percent(middle)} in the median and {percent(most)} at most")
     words = next((q.words.split(" (")[0] for q in measured(deviations) if q.name == name), name)
     return f"{capital(words)}: {', '.join(said)}." if said else ""

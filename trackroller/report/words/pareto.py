@@ -5,22 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.pareto import end_places, goals_of
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import GUIDE_UNKNOWN, capital, count, lasting, listing, long_name, quantity, with_unit
 from trackroller.report.words.sentence import Sentence
-
-
-def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
-    """List the goals of a Pareto set: (name, 'min' or 'max')."""
-    return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]  # type: ignore[misc]
-
-
-def end_places(front: xr.Dataset) -> list[int]:
-    """Return for each goal the place of the optimal design that is best in it, shape (goals,)."""
-    best = np.flatnonzero(front["optimal"].values == 1)
-    signs = [(front[name].values[best].astype(float), -1.0 if way == "max" else 1.0) for name, way in goals_of(front)]
-    return [int(best[np.argmin(sign * values)]) for values, sign in signs]
 
 
 def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentence:

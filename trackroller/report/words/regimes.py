@@ -6,12 +6,11 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.table import MOST_LEVELS, StudyView
+from trackroller.analysis.events import FEW, confining, meets, most_frequent
+from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import count, level_text, listing, long_name, number, setting, share
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence
-
-FEW = 20  # fewer events without a common level or range are named one by one, without a cause
 
 
 def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
@@ -33,7 +32,7 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
     if cases == whole:
         return Sentence("everywhere", f"{what} occurs in all {count(whole)} cases.", values, among)
     head = f"{what} occurs in {count(cases)} of {count(whole)} cases ({share(cases, whole)})"
-    only = _confined(view, hit, among)
+    only = confining(view, hit, among)
     inside = among.copy()
     for name, levels in only:
         inside &= meets(view, name, levels)
@@ -50,47 +49,13 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
         shared = [(n, own) for n, own in only if isinstance(own, list) and len(own) == 1] if cases > 1 else []
         where = f", only {_places(view, shared)}" if shared else ""
         return Sentence("cases", f"{text}{where}.", values | {"cases": named, "conditions": shared}, among)
-    most = _most_frequent(view, hit, among)
+    most = most_frequent(view, hit, among)
     if most is None:
         return Sentence("share", f"{head}.", values, among)
     name, high, low = most
     levels_said = [f"{setting(name, level)} ({count(k)} of {count(n)} cases)" for level, k, n in (high, low)]
     text = f"{head}, most often at {levels_said[0]} and least at {levels_said[1]}."
     return Sentence("frequent", text, values | {"factor": name, "most": high, "least": low}, among)
-
-
-def meets(view: StudyView, name: str, levels: Any) -> np.ndarray:
-    """Mark the cases at one of the levels (a list), or within the bounds (a pair), shape (n,) bool."""
-    column = view.table[name]
-    if isinstance(levels, tuple):
-        return ((column >= levels[0]) & (column <= levels[1])).to_numpy()
-    return column.isin(levels).to_numpy()
-
-
-def _confined(view: StudyView, hit: np.ndarray, among: np.ndarray) -> list[tuple[str, Any]]:
-    """Return at most three factors whose levels confine an event, sorted by the cases that they leave out."""
-    confining = []
-    for name in view.factors:
-        own = view.table[name].to_numpy()
-        if view.ordered(name) and len(view.levels(name)) > MOST_LEVELS:
-            low, high = float(own[hit].min()), float(own[hit].max())
-            levels: Any = (_outwards(low, -1), _outwards(high, 1))
-        else:
-            there = set(own[hit].tolist())
-            levels = [v for v in view.levels(name) if v in there]
-        outside = among & ~meets(view, name, levels)
-        if outside.sum() >= 0.1 * among.sum():
-            confining.append((int(outside.sum()), name, levels))
-    return [(name, levels) for _, name, levels in sorted(confining, key=lambda item: -item[0])[:3]]
-
-
-def _outwards(value: float, way: int) -> float:
-    """Round to three figures so that the value stays inside the bound."""
-    if value == 0:
-        return 0.0
-    step = 10.0 ** (np.floor(np.log10(abs(value))) - 2)
-    turned = (np.floor if way < 0 else np.ceil)(value / step + way * 1e-9) * step
-    return float(f"{turned:.3g}")
 
 
 def _places(view: StudyView, conditions: list[tuple[str, Any]]) -> str:
@@ -108,45 +73,6 @@ def _levels_words(view: StudyView, name: str, levels: Any) -> str:
         return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
     first = setting(name, levels[0])
     return listing([first, *(level_text(name, v) for v in levels[1:])], "or")
-
-
-def _most_frequent(
-    view: StudyView, hit: np.ndarray, among: np.ndarray
-) -> tuple[str, tuple[Any, int, int], tuple[Any, int, int]] | None:
-    """Return the factor whose levels differ most in the share of hits, and the levels of its largest and least share.
-
-    Each level comes with its number of hits and its number of rows among `among`. The order of the two levels must be
-    the same within every category.
-    """
-    best = None
-    for name in view.factors:
-        levels = view.levels(name)
-        if len(levels) > MOST_LEVELS:
-            continue
-        own = view.table[name].to_numpy()
-        cells = [(v, int((hit & (own == v)).sum()), int((among & (own == v)).sum())) for v in levels]
-        cells = [cell for cell in cells if cell[2] >= FEW]
-        if len(cells) < 2:
-            continue
-        high, low = max(cells, key=lambda c: c[1] / c[2]), min(cells, key=lambda c: c[1] / c[2])
-        gap = high[1] / high[2] - low[1] / low[2]
-        noise = 3 * np.sqrt(sum(k * (n - k) / n**3 for _, k, n in (high, low)))
-        if gap > max(noise, 0.1) and (best is None or gap > best[0]) and _shared(view, name, hit, among, (high, low)):
-            best = gap, name, high, low
-    return None if best is None else best[1:]
-
-
-def _shared(view: StudyView, name: str, hit: np.ndarray, among: np.ndarray, ends: tuple) -> bool:
-    """Return whether the order of two levels is the same within every category (otherwise: Simpson's paradox)."""
-    own = view.table[name].to_numpy()
-    for category in (c for c in view.categories if c != name):
-        values = view.table[category].to_numpy()
-        for level in view.levels(category):
-            inside = among & (values == level)
-            cells = [inside & (own == end[0]) for end in ends]
-            if all(c.any() for c in cells) and hit[cells[0]].mean() < hit[cells[1]].mean():
-                return False
-    return True
 
 
 def lift_off(view: StudyView) -> Sentence | None:

@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.ranking import estimate
+from trackroller.analysis.targets import most_apart
 from trackroller.report.numbers import capital, chance, count, level_text, long_name, number, quantity, setting
 from trackroller.report.words.design_points import point_words
 from trackroller.report.words.sentence import Sentence
@@ -55,31 +56,13 @@ def target(table: xr.Dataset, number: int) -> Sentence:
     else:
         of = WHOLE.get(str(table.attrs.get("method")), "cases")
         text = f"{what}: met by {chance(share)} of the {of}"
-    most = _widest(part)
+    most = most_apart(part)
     if most is not None:
         values["levels"] = most
         ends = [f"{_cell(part, 'level', i)} at {_level_words(part, i)}" for i in most]
         name = capital(long_name(str(part["level_factor"][most[0]].item())))
         text += f". {name} changes it most: from {ends[0]} to {ends[1]}"
     return Sentence("target", f"{text}.", values)
-
-
-def _widest(part: xr.Dataset) -> tuple[int, int] | None:
-    """Return the levels with the least and the largest probability of the factor whose levels differ most.
-
-    None if their intervals meet, so that the difference may be chance.
-    """
-    best: tuple[float, int, int] | None = None
-    if "level_probability" not in part:
-        return None
-    share, low, high = estimate(part, "level_probability")
-    for name in dict.fromkeys(part["level_factor"].values.tolist()):
-        own = np.flatnonzero(part["level_factor"].values == name)
-        least, most = int(own[np.argmin(share[own])]), int(own[np.argmax(share[own])])
-        apart = share[most] - share[least]
-        if apart > 0 and not high[least] >= low[most] and (best is None or apart > best[0]):
-            best = float(apart), least, most
-    return None if best is None else best[1:]
 
 
 def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:
