@@ -46,7 +46,7 @@ def first_failing(view: StudyView, goal: str) -> np.ndarray:
 
 def beyond_data(view: StudyView, column: str) -> np.ndarray:
     """Mark the cases in which a life lies beyond the S-N data, shape (n,); see `StudyView.beyond_data`."""
-    if "life" not in column:
+    if "life" not in column or "wear" in column:
         return np.zeros(len(view.table), dtype=bool)
     if not any(body in column for body in BODIES):
         guide = first_failing(view, column) == FIRST_TO_FAIL.index("guide")

@@ -149,6 +149,6 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         """Return `as_dict` with `sources` and `notes` of the values, and the names of those that are `guesses`."""
         return self.as_dict() | {
             "sources": {k: r.source for k, r in self.records.items()},
-            "notes": {k: r.note for k, r in self.records.items() if r.note},
+            "notes": {k: r.note for k, r in self.records.items() if r.note and not (r.placeholder and k in OF_LIMITS)},
             "guesses": self.placeholders,
         }

@@ -31,6 +31,7 @@ def file_attributes(title: str, action: str) -> dict[str, str]:
     }
 
 
+NOTES = "limits_notes"  # attribute: what limits lack, and the placeholders that they rest on, a sentence a line
 _ODD = {"odd": True}  # the value changes its sign in the mirror image of a roller
 _SHOWN = {"shown": True}  # the value stands on the sheet, in the table of cases and in the explorer
 _C, _CB = ("contact",), ("contact", "body")
@@ -236,6 +237,13 @@ def build(
     return ds.assign_coords(further) if further else ds
 
 
+def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str, Any]:
+    """Return the attributes of the first of several results, with the notes on limits of all of them."""
+    notes = [line for part in parts for line in str(part.get(NOTES, "")).split("\n") if line]
+    own = dict(next(iter(parts), {}))
+    return own | {NOTES: "\n".join(dict.fromkeys(notes))} if notes else own
+
+
 def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
     """Join results of different cases along `case`; what a part lacks is missing there.
 
@@ -257,6 +265,6 @@ def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
         coords="minimal",
         compat="override",
         join="override",
-        combine_attrs="override",
+        combine_attrs=united,
         fill_value=whole,
     )

@@ -11,7 +11,7 @@ from numba.core.registry import cpu_target
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.settings import converged_up_to
-from trackroller.damage import computed, fatigue, judged, of_patches, verdict
+from trackroller.damage import computed, fatigue, judged, of_mechanics, of_patches, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
@@ -20,7 +20,7 @@ from trackroller.roller import requirements
 from trackroller.roller.accuracy import Accuracy, error_attributes
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
-from trackroller.roller.dataset import VARIABLES, build, file_attributes, joined
+from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
@@ -177,8 +177,9 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     ds = with_reasons(_assemble(join(windows), options, single), table, options)
     _tell_errors(ds, table, options)
-    if verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF:
-        ds.attrs["limits_notes"] = "\n".join(stages_case.notes_on_limits(table, options))
+    told = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
+    if told or of_mechanics(options.outputs, options.life_criterion):
+        ds.attrs[NOTES] = "\n".join(stages_case.notes_on_limits(table, options))
     return ds
 
 

@@ -152,7 +152,8 @@ def _output(one: Output, role: str, view: StudyView) -> Column:
         overloaded = view.flagged("static", body) if "static" in view.flags else np.zeros(len(view.table), dtype=bool)
         one = replace(one, values=np.where(view.rolling & ~overloaded, one.values, np.nan))
     values = one.values.astype(np.float32) if role == "detail" else one.values
-    return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log="life" in one.name)
+    log = "life" in one.name or one.name == "run_in_distance"
+    return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
 
 
 def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], view: StudyView) -> list[Column]:

@@ -12,6 +12,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
 from trackroller.report.tables.lives import overrollings
+from trackroller.roller.dataset import NOTES
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -150,8 +151,9 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str,
             if lifeless[body]:
                 hours = math.nan
             value = float(own[variable].max())
-            bound = rounded(value / used if used > 0 else math.nan)
-            texts = f"{rounded(value)} {unit}".strip(), f"{bound} {unit}".strip() + words
+            bound = f"{rounded(value / used if used > 0 else math.nan)} {unit}".strip()
+            bound = "not given" if math.isnan(used) else bound
+            texts = f"{rounded(value)} {unit}".strip(), bound + words
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
             timed = bool(life.notnull().any()) and not lifeless[body]
@@ -213,7 +215,7 @@ def first_limits(listed: list[Margin]) -> list[str]:
 
 
 def not_checked(ds: xr.Dataset) -> list[str]:
-    """Return what was not checked: limits that lack a value, limits not asked for, and wear."""
+    """Return what was not checked: limits that lack a value, and limits not asked for."""
     asked = str(ds.attrs.get("limits", "")).split()
     missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
     lacking: dict[str, list[str]] = {}
@@ -224,7 +226,7 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     out = [f"Not checked, or in part: {listing(names)}; {text}" for text, names in lacking.items()]
     if missing:
         out.append(f"Not asked for: {listing(missing)}. `trackroller solve --limits all` checks them.")
-    return out if "wear" in LIMITS else [*out, "Wear is not computed: judge it by tests or by the maker's catalogue."]
+    return out
 
 
 def placeholders(ds: xr.Dataset) -> list[str]:
@@ -233,4 +235,4 @@ def placeholders(ds: xr.Dataset) -> list[str]:
 
 
 def _notes(ds: xr.Dataset) -> list[str]:
-    return [note for note in str(ds.attrs.get("limits_notes", "")).split("\n") if note]
+    return [note for note in str(ds.attrs.get(NOTES, "")).split("\n") if note]

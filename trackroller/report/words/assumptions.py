@@ -19,16 +19,18 @@ if TYPE_CHECKING:
 ALWAYS = (
     "Dry contact: no lubricant and no dirt.",
     "Isothermal: no value of a material and no friction changes with temperature, and nothing expands.",
-    "No wear: the profiles stay as given.",
     "Smooth surfaces, elastic half-spaces, steady rolling and constant loads; no shocks and no vibration.",
     "Pressure limit: R_m stands for the yield strength.",
 )
+NO_WEAR = "No wear: the profiles stay as given."
 POLYMER = 20e3  # MPa; a material with a lower Young's modulus is treated as a polymer
 
 
 def assumptions(ds: xr.Dataset) -> list[str]:
     """Return the assumptions of a solved case, those of the limits that were computed among them."""
-    return [*ALWAYS, *(sentence for name in _computed(ds) for sentence in LIMITS[name].assumes)]
+    wear = LIMITS["wear"].assumes if "run_in_distance" in ds else (NO_WEAR,)
+    others = (sentence for name in _computed(ds) if name != "wear" for sentence in LIMITS[name].assumes)
+    return [*ALWAYS, *wear, *others]
 
 
 def standards(ds: xr.Dataset) -> str:

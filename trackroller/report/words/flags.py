@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import capital, percent, plain
-from trackroller.report.words.accuracy import KNOWN_ERROR, SLIDING_ERROR
+from trackroller.report.words.accuracy import KNOWN_ERROR, SLIDING_ERROR, SLIDING_WEAR
 from trackroller.roller.dataset import validity_bit
 
 if TYPE_CHECKING:
@@ -61,6 +61,8 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     if residual > KNOWN_ERROR:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
         flags.append(Flag("energy_residual", text, exact))
+    if "run_in_distance" in ds and ds.attrs.get("contact_model") == "sliding":
+        flags.append(Flag("wear_of_sliding", SLIDING_WEAR, exact))
     if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
         flags.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
     return flags

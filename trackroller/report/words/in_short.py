@@ -10,11 +10,11 @@ from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, count
 from trackroller.report.words import indices
-from trackroller.report.words.accuracy import accuracy, friction_error, friction_guess, full_sliding
+from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
 from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
-from trackroller.report.words.limits import limit_of_best
+from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, worn
 from trackroller.report.words.regimes import occurrence
 from trackroller.report.words.samples import samples
 from trackroller.report.words.sentence import Sentence
@@ -37,11 +37,14 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         ("Best", [*best_design(view), _target(view)]),  # first, so that the first screen answers what to build
-        ("What ends it", [limit_of_best(view)]),
+        ("What ends it", [limit_of_best(view), best_whatever(view)]),
         ("Valid cases", [valid_cases(view), stopped(view)]),
         ("What decides", decides(sens)),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
-        ("How sure", [friction_guess(view), friction_error(view), full_sliding(view), *accuracy(view), *compared]),
+        (
+            "How sure",
+            [friction_guess(view), guesses(view), worn(view), *known_errors(view), *accuracy(view), *compared],
+        ),
         ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]

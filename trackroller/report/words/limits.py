@@ -8,10 +8,14 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.first_limits import first_limit, turn, without_first
 from trackroller.analysis.lives import FIRST_LIMIT, body_lives
 from trackroller.analysis.table import StudyView
+from trackroller.analysis.unsure import COEFFICIENT, unbeaten
 from trackroller.damage import LIMITS
 from trackroller.report.numbers import capital, count, lasting, listing, rounded
+from trackroller.report.tables.limits import GUESSES, placeholders
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence
+
+MOST_NAMED = 4  # designs that a sentence names
 
 
 def title(name: str) -> str:
@@ -41,6 +45,50 @@ def limit_sentences(view: StudyView) -> list[Sentence]:
     if order is not None:
         said.append(_turned(designs, order.before, order.after, order.correlation))
     return said
+
+
+def guesses(view: StudyView) -> Sentence | None:
+    """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
+    found: dict[str, list[str]] = {}
+    for note in placeholders(view.data):
+        name, _, rest = note.partition(GUESSES)
+        found.setdefault(name, []).append(rest.split("'")[1])
+    told = [f"{title(name)} ({listing(list(dict.fromkeys(own)))})" for name, own in found.items()]
+    text = f"Placeholders of materials, guesses without a source, decide {listing(told)}: measure them."
+    return Sentence("guesses", text, found) if told else None
+
+
+def worn(view: StudyView) -> Sentence | None:
+    """Say how many lives exceed the run-in distance, from which on the worn groove decides; None if none does."""
+    rows = view.valid & view.flagged("worn") if "worn" in view.flags else np.zeros(len(view.table), bool)
+    if not rows.any():
+        return None
+    km = view.column("run_in_distance")[rows]
+    text = f"In {count(int(rows.sum()))} of {count(int(view.valid.sum()))} valid cases the groove wears away "
+    text += f"(run-in distance {rounded(km.min())} to {rounded(km.max())} km) before the lives end: the rate of the "
+    text += "new profiles gives these lives by order of magnitude only."
+    return Sentence("worn", text, {"count": int(rows.sum()), "least": km.min(), "most": km.max()}, view.valid)
+
+
+def best_whatever(view: StudyView) -> Sentence | None:
+    """Say which designs are the best whatever the wear coefficients are; None if the study does not vary them."""
+    designs = Designs.of(view)
+    found = unbeaten(designs) if designs is not None else None
+    if designs is None or found is None or not len(found):
+        return None
+    factors = view.table[COEFFICIENT]
+    span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
+    rows = designs.table[designs.table.index.isin(found)]
+    names = [design_words(designs, row) for _, row in rows.iterrows()]
+    values = {"designs": rows.index.tolist(), "of": len(designs.size)}
+    if len(names) == 1:
+        text = f"Whatever the wear coefficients are, {span}, the best design is {names[0]}."
+        return Sentence("best_whatever", text, values, designs.usable)
+    more = f" and {count(len(names) - MOST_NAMED)} more" if len(names) > MOST_NAMED else ""
+    text = f"Wear coefficients, {span}, decide which of {count(len(names))} designs is the best: "
+    text += f"{'; '.join(names[:MOST_NAMED])}{more}. "
+    text += f"The other {count(len(designs.size) - len(names))} of {count(len(designs.size))} designs never are."
+    return Sentence("best_whatever", text, values, designs.usable)
 
 
 def _gain(designs: Designs) -> Sentence:

@@ -11,6 +11,7 @@ from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, asked, computed, judged, of_mechanics, of_patches, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, SolvedRollers, lacks
+from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
@@ -34,7 +35,7 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
     if "friction_work" in options.outputs:
         v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
     limits(table, v, options)
-    validity(table, block)
+    validity(table, block, options)
 
 
 def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> SolvedRollers:
@@ -115,7 +116,18 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
         return np.maximum(*split) > 0.1
 
 
-def validity(table: CaseTable, block: Block) -> None:
+def outlives_groove(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> np.ndarray:
+    """Return True where a life of a body, in travel of the roller, exceeds the run-in distance, (n, 2)."""
+    solved, out = solved_of(table, v, options), np.zeros((len(table), 2), bool)
+    run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
+    for limit in judged(options.outputs):
+        assert limit.verdict is not None
+        hours = limit.verdict(solved, v).life_hours
+        out |= False if hours is None else hours > run_in[:, None]
+    return out
+
+
+def validity(table: CaseTable, block: Block, options: Options) -> None:
     """Set the validity flags where the assumptions of the model do not hold, see `parameters.validity`."""
     v = block.values
     bit = {name: 1 << i for i, name in enumerate(VALIDITY)}
@@ -146,5 +158,7 @@ def validity(table: CaseTable, block: Block) -> None:
             warn("deep_life", np.all(amplitude < knee[:, None, :], axis=1))  # the worse contact sets the life
         if "heat_utilisation" in v:
             warn("overheated", np.any(v["heat_utilisation"] > 1.0, axis=1))
+        if "run_in_distance" in v:
+            warn("worn", outlives_groove(table, v, options))
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]

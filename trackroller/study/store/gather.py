@@ -13,7 +13,7 @@ import xarray as xr
 
 from trackroller.errors import WorkError
 from trackroller.files import reserve, write_whole
-from trackroller.roller.dataset import file_attributes
+from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell
 from trackroller.study.store.inventory import Inventory, take_inventory
@@ -104,7 +104,7 @@ def collect(
             block = chunks.read(found.paths[number])
         except (chunks.CorruptFile, FileNotFoundError) as exc:
             raise WorkError(f"corrupt results: {exc}. Start again: only its cases are solved.") from None
-        attrs = block.attrs | attrs
+        attrs = united((attrs or block.attrs, block.attrs))
         coords = {name: v.variable for name, v in block.coords.items() if name != "case"} | coords
         for name, v in block.data_vars.items():
             known = results.get(name, v[:0].variable)
