@@ -8,6 +8,8 @@ from scipy.stats import spearmanr
 import trackroller as tr
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.first_limits import deciding, first_limit, turn, without_first
+from trackroller.damage import LIMITS
+from trackroller.report.explorer.rows import collect
 from trackroller.report.pages.study import contents
 from trackroller.report.words.limits import title
 from trackroller.study.file.load import parse_study
@@ -103,3 +105,65 @@ def test_the_page_says_which_limit_rules_and_its_table_counts_every_valid_case(s
     cells = [part for row in table.rows for cell in row[1:] for part in cell.split(", ") if part != "–"]
     assert sum(int(part.rsplit(" ", 1)[1]) for part in cells) == solved.view.valid.sum()
     assert any(text.startswith("The first limit of the pair is ") for text in page["said"]["decide"])
+
+
+def test_results_of_limits_serve_as_goals_constraints_targets_and_outputs(solved):
+    """A limit and a body choose one number a case; the limits not asked for are unknown names."""
+    used = {"utilisation[rating,guide]": "min", "pair_life_to_first_limit_hours": "max"}
+    stacked = solved.data["utilisation"].sel(limit="rating", body="guide").stack(row=FACTORS).values
+    middle = float(np.median(stacked))
+    more = {
+        "pareto": used,
+        "constraints": [f"utilisation[rating,guide] < {middle}"],
+        "analysis": {
+            "target": {"utilisation[rating,guide]": {"max": middle}},
+            "outputs": ["life_hours_by_limit[fatigue,roller]"],
+        },
+    }
+    found = tr.run(parse_study(STUDY | more), progress=False)
+    assert found.view.met.tolist() == (stacked < middle).tolist()
+    indices = found.indices()
+    assert indices.output.values.tolist() == ["life_hours_by_limit[fatigue,roller]"]
+    assert float(indices.target_probability[0]) == pytest.approx(np.mean(stacked < middle))
+    worst = (
+        pd.DataFrame({n: solved.view.table[n] for n in FACTORS[:2]})
+        .assign(used=stacked)
+        .groupby(FACTORS[:2])["used"]
+        .max()
+    )
+    front = found.pareto()
+    for row in front.row.values:
+        own = front.sel(row=row)
+        place = (str(own["material_pair"].values), float(own["roller_profile_radius"]))
+        assert float(own["utilisation[rating,guide]"]) <= worst[place] * (1 + 1e-12)
+    for name in ("utilisation[heat,roller]", "utilisation[rating]", "utilisation"):
+        with pytest.raises(tr.InputError, match="pareto"):
+            parse_study(STUDY | {"pareto": used | {name: "min"}})
+
+
+def test_robust_designs_have_the_b10_and_the_worst_condition_of_the_first_limit():
+    factors = {"roller_profile_radius": {"values": [-6.3, -7]}, "friction_coefficient": {"uniform": [0.05, 0.4]}}
+    goals = {"b10(pair_life_to_first_limit_hours)": "max", "mean(utilisation[rating,roller])": "min"}
+    study = tr.run(
+        parse_study(STUDY | {"factors": factors, "design": "inner_outer", "samples": 16, "pareto": goals}),
+        progress=False,
+    )
+    hours = study.view.column("pair_life_to_first_limit_hours").reshape(2, 16)
+    by_point = study.robustness().sel(output="pair_life_to_first_limit_hours")
+    assert by_point.b10.values.tolist() == np.sort(hours, axis=1)[:, 1].tolist()  # 10 % of 16: the second shortest
+    assert study.best()["worst"].tolist() == sorted(hours.min(axis=1), reverse=True)
+    front = study.pareto()
+    used = study.view.data["utilisation"].sel(limit="rating", body="roller").values.reshape(2, 16).mean(axis=1)
+    assert front["mean(utilisation[rating,roller])"].values == pytest.approx(used)
+
+
+def test_the_explorer_colours_by_the_first_limit(solved):
+    columns = {column.name: column for column in collect(solved.view)}
+    pair = columns["limiting_mechanism"]
+    assert [pair.texts[i] for i in pair.values] == [LIMITS[name].title for name in first_limit(solved.view)]
+    for body in ("roller", "guide"):
+        own = columns[f"limiting_mechanism_{body}"]
+        flags = solved.view.column(f"limiting_mechanism_{body}").astype(int)
+        assert own.role == "state" and [own.texts[i] for i in own.values] == [
+            LIMITS[solved.view.limits[i]].title for i in flags
+        ]

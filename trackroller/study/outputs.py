@@ -128,13 +128,13 @@ def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -
             raise unknown_name("analysis.outputs", name, [*options, *(n for n in DEFAULTS if DEFAULTS[n][0] in ds)])
         variable, join = match[1], ""
         keys = [key.strip() for key in (match[2] or "").split(",") if key.strip()]
-        choice = {"contact" if k.isdigit() else "body": int(k) if k.isdigit() else k for k in keys}
+        choice = dict((("contact", int(k)) if k.isdigit() else ("body" if k in BODIES else "limit", k)) for k in keys)
         scale = "log10" if "life" in variable else "natural"
         words = str(ds[variable].attrs.get("long_name", variable)) + (f" ({match[2]})" if match[2] else "")
     try:
         part = ds.sel({k: v for k, v in choice.items() if k in ds[variable].dims})
     except KeyError:
-        raise InputError("analysis.outputs", name, "contact 1 or 2, body roller or guide") from None
+        raise InputError("analysis.outputs", name, "contact 1 or 2, body roller or guide, a limit asked for") from None
     values = flat(part, variable, dims).astype(float)
     if values.ndim > 1 and not join:
         raise InputError(

@@ -10,8 +10,10 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.analysis.first_limits import first_limit
 from trackroller.analysis.groups import spaced_by_ratio
 from trackroller.analysis.table import StudyView
+from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
@@ -184,6 +186,7 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Colu
             texts_of_masks = [flag_text(int(mask), view.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
             columns.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, texts_of_masks))
+    columns += _first_limits(view)
     if view.met is not None:
         met = ("met", "not met")
         columns.append(
@@ -195,6 +198,21 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Colu
         if (texts != "").any():
             columns.append(coded("reason", "Reason", "state", texts))
     return columns
+
+
+def _first_limits(view: StudyView) -> list[Column]:
+    """Return the limit that ends the pair first, and the first one of each body; nothing without limits."""
+    if not view.limits:
+        return []
+    words = np.array([LIMITS[name].title if name in LIMITS else "not known" for name in view.limits])
+    last = len(words) - 1
+    found = {"limiting_mechanism": [LIMITS[name].title if name else words[last] for name in first_limit(view)]}
+    for body in BODIES:
+        numbers = np.nan_to_num(view.column(f"limiting_mechanism_{body}", np.nan), nan=last).astype(int)
+        found[f"limiting_mechanism_{body}"] = words[numbers].tolist()
+    labels = ("First limit of the pair", *(f"First limit of the {body}" for body in BODIES))
+    pairs = zip(found.items(), labels, strict=True)
+    return [coded(name, label, "state", np.array(values, dtype=object)) for (name, values), label in pairs]
 
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:

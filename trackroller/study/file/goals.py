@@ -23,8 +23,9 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
 
+from trackroller.damage import judged
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
+from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
 from trackroller.study.design.factors import Factor
@@ -156,10 +157,13 @@ def output_names(groups: Iterable[str]) -> list[str]:
     names = [name for name, (variable, *_) in DEFAULTS.items() if variable in there]
     for name in VARIABLES:
         dims = VARIABLES[name].dims
-        if name in there and set(dims) <= {"contact", "body"}:
-            contacts = [[c] for c in ("1", "2")] if "contact" in dims else [[]]
-            keys = [c + b for c in contacts for b in ([["roller"], ["guide"]] if "body" in dims else [[]])]
-            names += [f"{name}[{','.join(key)}]" if key else name for key in keys]
+        if name in there and set(dims) <= {"contact", "limit", "body"}:
+            places = [(limit.name, body) for limit in judged(groups) for body in limit.bodies]
+            if "limit" not in dims:
+                contacts = ("1", "2") if "contact" in dims else ("",)
+                places = [(c, b) for c in contacts for b in (BODIES if "body" in dims else ("",))]
+            keys = [",".join(key for key in place if key) for place in places]
+            names += [f"{name}[{key}]" if key else name for key in keys]
     return list(dict.fromkeys(names))
 
 
@@ -267,7 +271,7 @@ def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str])
         )
     if name_of in VARIABLES and variable not in DEFAULTS and "[" not in name:
         dims = VARIABLES[name_of].dims
-        example = ",".join(word for d, word in (("contact", "1"), ("body", "roller")) if d in dims)
+        example = ",".join(word for d, word in (("contact", "1"), ("limit", "static"), ("body", "roller")) if d in dims)
         if example:
             return InputError(where, name, "one number a case", f"Choose one, such as {name}[{example}].")
     short = [n for n in dict.fromkeys(known) if "[" not in n]  # with the parts of variables the list is too long
