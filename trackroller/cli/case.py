@@ -8,14 +8,14 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller.cli.usage import print_line
-from trackroller.errors import Collector, InputError, WorkError, check_names
+from trackroller.errors import InputError, WorkError, check_names
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
-from trackroller.parameters import OPTIONS, REGIMES
-from trackroller.roller.aliases import ALIASES, RADII
-from trackroller.roller.case import FIELDS, Case
+from trackroller.parameters import REGIMES
+from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
-from trackroller.roller.duty import checked_duty, with_duty
+from trackroller.roller.duty import with_duty
+from trackroller.roller.settings import checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping
 
 if TYPE_CHECKING:
@@ -44,35 +44,13 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], 
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = ({} if path is None else parse_mapping(text, "case file")) | given
     with errors_by_line(text, given), files_beside(path):
-        return _checked_case(values)
+        return checked_case(values)
 
 
 def tell_doubts(case: Case) -> None:
     """Print a line on stderr for each unusual value of a case."""
     for text in doubts_of_case(case, load_database()):
         print_line(f"doubtful: {text}")
-
-
-def _checked_case(values: dict[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
-    """Return the case, the options and the duty among these values."""
-    wrong, duty = Collector(), None
-    options = {key: values.pop(key) for key in OPTIONS if key in values}
-    with wrong.part():
-        duty = checked_duty(values.pop("duty")) if "duty" in values else None
-    with wrong.part():
-        check_names("case field", values, (*FIELDS, *ALIASES, *RADII, *OPTIONS, "duty"))
-    for key in options:
-        if OPTIONS[key].kind == "words" and isinstance(options[key], str):
-            options[key] = [part.strip() for part in options[key].split(",")]
-    with wrong.part():
-        case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
-    with wrong.part():
-        if options:
-            from trackroller.roller.options import Options  # heavy: numba
-
-            Options(**options)  # refuses wrong options before the solver is imported
-    wrong.check()
-    return case, options, duty
 
 
 def groups_of(words: str) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import math
 import shlex
@@ -140,10 +141,15 @@ def is_default(name: str, value: Any) -> bool:
     """Return whether an input has the value that it takes when it is not given."""
     if name in MAPPING_FIELDS:
         return value is None
-    default = getattr(Case(), name)
+    default = getattr(_example(), name)
     if isinstance(default, float) and isinstance(value, (int, float)):
         return float(value) == float(default)
     return value == default
+
+
+@functools.cache
+def _example() -> Case:
+    return Case()
 
 
 def setting_text(value: Any) -> str | None:

@@ -105,13 +105,15 @@ class Facts:
     versions: str
 
 
-def collect(ds: xr.Dataset) -> Facts:
+def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     """Return the facts of a solved case.
 
     Parameters
     ----------
     ds : xarray.Dataset
         Result of `trackroller.solve` for one case.
+    ranges : Limits, optional
+        Ranges of forces and friction in which the roller rolls; searched if not given.
 
     Raises
     ------
@@ -121,7 +123,7 @@ def collect(ds: xr.Dataset) -> Facts:
     inputs, stored, given = inputs_of(ds), materials_of(ds), not_given_of(ds)
     materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
-    ranges = limits(case_of_result(ds), str(ds.attrs["contact_model"]))
+    ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
     lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
@@ -217,6 +219,8 @@ def _verdict(
         return f"No solution: {ds['reason'].item()}"
     if regime == "lift_off":
         low, high = ranges.axial_force
+        if math.isnan(low):
+            return "A contact lifts off."
         return (
             f"A contact lifts off. Both contacts carry load for axial forces from {rounded(low)} to {rounded(high)} N."
         )
