@@ -59,9 +59,13 @@ class Labels:
 
     def _covered(self, middle: np.ndarray, half: np.ndarray) -> int:
         """Count the points of lines and the texts that a box covers; a box outside the drawing covers a thousand."""
-        outside = bool(np.any(middle - half < 0.0) or np.any(middle + half > SIZE))
-        texts = sum(bool(np.all(np.abs(middle - other) < half + own)) for other, own in self.boxes)
-        return int(np.all(np.abs(self.points - middle) < half, axis=1).sum()) + 100 * texts + 1000 * outside
+        (x, y), (dx, dy), (width, height) = middle.tolist(), half.tolist(), SIZE.tolist()
+        outside = x < dx or y < dy or x + dx > width or y + dy > height
+        texts = sum(
+            bool(abs(x - other[0]) < dx + own[0] and abs(y - other[1]) < dy + own[1]) for other, own in self.boxes
+        )
+        points = (np.abs(self.points[:, 0] - x) < dx) & (np.abs(self.points[:, 1] - y) < dy)
+        return int(points.sum()) + 100 * texts + 1000 * outside
 
 
 def drawing(ds: xr.Dataset) -> str:

@@ -124,7 +124,10 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
     ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
-    contacts = [_contact(ds, number, materials) for number in ds["contact"].values.tolist()]
+    scalars = ds[[name for name in ds if ds.variables[name].ndim <= 2]]  # without the fields over the patches
+    if "peak_stress" in scalars:
+        scalars = scalars.assign(at_surface=at_surface(scalars))
+    contacts = [_contact(scalars, number, materials) for number in ds["contact"].values.tolist()]
     lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
     said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
@@ -193,7 +196,7 @@ def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> C
 
 
 def _body(own: xr.Dataset, body: str, material: Material) -> BodyFacts:
-    peak, depth = float(own["peak_stress"]), 0.0 if at_surface(own) == 1 else float(own["peak_z"])
+    peak, depth = float(own["peak_stress"]), 0.0 if own["at_surface"] == 1 else float(own["peak_z"])
     return BodyFacts(body, peak, depth, peak / material.tensile_strength)
 
 

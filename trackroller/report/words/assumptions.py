@@ -44,7 +44,7 @@ def _computed(ds: xr.Dataset) -> list[str]:
     if "utilisation" not in ds:
         return ["fatigue"] if "life_cycles" in ds else []
     known = ds["utilisation"].notnull() | ds["life_hours_by_limit"].notnull()
-    return [str(name) for name in ds["limit"].values if bool(known.sel(limit=name).any())]
+    return ds["limit"].values[known.any([dim for dim in known.dims if dim != "limit"]).values].tolist()
 
 
 def friction_sentence(ds: xr.Dataset) -> str:
