@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller.cli.usage import print_line
-from trackroller.errors import InputError, WorkError, check_names
+from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import REGIMES

@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any, TextIO
 
 import numpy as np
-from rich.filesize import decimal
 
 from trackroller.cli.case import case_of, is_study, tell_doubts, writable, writable_page
 from trackroller.cli.usage import print_line
@@ -19,17 +18,17 @@ from trackroller.report.terminal import print_table
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options, options_of_cases
-from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report
+from trackroller.study.cost import duration
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar, shown_steps
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
-from trackroller.study.status import Status, find_study, status_of
+from trackroller.study.status import Status, find_study, plan_rows, status_of
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.plan import chunk_size, study_folder
+from trackroller.study.store.plan import study_folder
 
 MOST = 20_000  # --explain examines at most this many cases of a study
 
@@ -198,21 +197,8 @@ def print_plan(path: Path | None, results: Path, explain: bool, words: list[str]
 def _print_study(path: Path, results: Path) -> None:
     """Print the number of cases and chunks, the expected time and the disk space."""
     study = load_study(path)
-    status = status_of(study, results)
-    chunk = chunk_size(study, status.missing)
-    chunks = -(-status.missing // chunk)
-    seconds = status.seconds_left + START
-    source = "measured" if status.measured else "estimated"
-    print(f"study     {study.name} ({study.config.design})")
-    print(f"cases     {status.total}, {status.done} of them solved already")
-    if status.unused:
-        print(f"unused    {status.unused}")
-    print(f"chunks    {chunks} of up to {chunk} cases")
-    times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
-    print(f"time      {times} ({source} cases/s: {status.speed:.3g})")
-    pages = seconds_of_report(study.config.design, status.total)
-    print(f"report    {duration(pages)} more on one core, for analysis, figures and page")
-    print(f"disk      about {decimal(status.total * bytes_a_case(study.config.outputs))}")
+    for name, text in plan_rows(study, status_of(study, results)):
+        print(f"{name:<9} {text}")
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
     _print_doubts(study)
 

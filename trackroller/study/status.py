@@ -9,17 +9,18 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
+from rich.filesize import decimal
 
 from trackroller.errors import InputError, nearest
 from trackroller.parameters import REGIMES
-from trackroller.study.cost import study_rate
+from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report, study_rate
 from trackroller.study.design.growth import with_history
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
-from trackroller.study.store.plan import locate, study_folder, unused_cases
+from trackroller.study.store.plan import chunk_size, locate, study_folder, unused_cases
 from trackroller.study.store.seal import altered
 
 if TYPE_CHECKING:
@@ -145,6 +146,33 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
             counts = Counter(_level(name, study.drawn.columns[name][i]) for i in failed)
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     return status
+
+
+def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
+    """Return what a run of a study takes, as names and texts: cases, chunks, time, report and disk space.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study.
+    status : Status
+        Its state, see `status_of`.
+    """
+    chunk = chunk_size(study, status.missing)
+    seconds = status.seconds_left + START
+    source = "measured" if status.measured else "estimated"
+    times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
+    pages = seconds_of_report(study.config.design, status.total)
+    rows = [
+        ("study", f"{study.name} ({study.config.design})"),
+        ("cases", f"{status.total}, {status.done} of them solved already"),
+        ("unused", status.unused),
+        ("chunks", f"{-(-status.missing // chunk)} of up to {chunk} cases"),
+        ("time", f"{times} ({source} cases/s: {status.speed:.3g})"),
+        ("report", f"{duration(pages)} more on one core, for analysis, figures and page"),
+        ("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"),
+    ]
+    return [(name, text) for name, text in rows if text]
 
 
 def _upcoming(folder: StudyFolder) -> str:
