@@ -29,6 +29,7 @@ __all__ = [
     "Case",
     "InputError",
     "__version__",
+    "app",
     "load_database",
     "load_study",
     "max_shear",
@@ -43,7 +44,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from trackroller import report
+    from trackroller import app, report
     from trackroller.errors import InputError
     from trackroller.halfspace.stress import (
         max_shear,
@@ -61,8 +62,8 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""
-    if name == "report":
-        return importlib.import_module("trackroller.report")  # the module itself can be called
+    if name in ("app", "report"):
+        return importlib.import_module(f"trackroller.{name}")  # the module itself can be called
     if name in _WHERE:
         return getattr(importlib.import_module(_WHERE[name]), name)
     raise AttributeError(f"module 'trackroller' has no attribute {name!r}")

@@ -32,6 +32,7 @@ ORDER = (
     "analysis",
     "report",
     "solved",
+    "app",
     "cli",
     "__init__",
 )

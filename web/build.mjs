@@ -1,11 +1,11 @@
-// Bundle the explorer: `node build.mjs` writes the assets, `node build.mjs --check` compares them byte for byte.
+// Bundle the explorer and the live page: `node build.mjs` writes the assets, `--check` compares them byte for byte.
 import { readFileSync, writeFileSync } from "node:fs";
-import { dirname, join } from "node:path";
+import { basename, dirname, join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
 const here = dirname(fileURLToPath(import.meta.url));
-const assets = join(here, "..", "trackroller", "report", "explorer", "assets");
+const place = (...parts) => join(here, "..", "trackroller", ...parts, "assets");
 
 // Licences of the bundled packages: they travel inside every report.
 function licences(inputs) {
@@ -31,19 +31,28 @@ const options = {
   absWorkingDir: here,
   logLevel: "warning",
 };
-const script = await build({ ...options, entryPoints: ["src/main.js"] });
-const style = await build({ ...options, entryPoints: ["src/explorer.css"] });
-const kept = Object.entries(Object.values(script.metafile.outputs)[0].inputs).filter(([, { bytesInOutput }]) => bytesInOutput > 0);
-const notice = licences(kept.map(([path]) => path));
+
+async function bundled(main, look, words) {
+  const script = await build({ ...options, entryPoints: [main] });
+  const style = await build({ ...options, entryPoints: [look] });
+  const kept = Object.entries(Object.values(script.metafile.outputs)[0].inputs).filter(([, { bytesInOutput }]) => bytesInOutput > 0);
+  const text = `/*! ${words} of trackroller (MIT) with\n${licences(kept.map(([path]) => path))}\n*/\n${script.outputFiles[0].text}`;
+  if (/<\/script|<!--/i.test(text)) throw new Error("the script would end its own element");
+  return [text, style.outputFiles[0].text];
+}
+
+const explorer = await bundled("src/main.js", "src/explorer.css", "The explorer");
+const app = await bundled("src/app/main.js", "src/app/app.css", "The live page");
 const files = {
-  "explorer.js": `/*! The explorer of trackroller (MIT) with\n${notice}\n*/\n${script.outputFiles[0].text}`,
-  "explorer.css": style.outputFiles[0].text,
+  [join(place("report", "explorer"), "explorer.js")]: explorer[0],
+  [join(place("report", "explorer"), "explorer.css")]: explorer[1],
+  [join(place("app"), "app.js")]: app[0],
+  [join(place("app"), "app.css")]: app[1],
 };
-if (/<\/script|<!--/i.test(files["explorer.js"])) throw new Error("the script would end its own element");
 
 let stale = 0;
-for (const [name, text] of Object.entries(files)) {
-  const path = join(assets, name);
+for (const [path, text] of Object.entries(files)) {
+  const name = basename(path);
   if (process.argv.includes("--check")) {
     if (readFileSync(path, "utf8") !== text) {
       console.error(`${name} is not what web/src gives: run \`make explorer\``);

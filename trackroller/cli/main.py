@@ -21,6 +21,7 @@ import typer
 
 from trackroller import __version__
 from trackroller.cli import INTERRUPTED, STOPPED
+from trackroller.cli.live import live_page
 from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
 from trackroller.files import interrupts_wait_for_files
@@ -37,6 +38,7 @@ app = typer.Typer(
 )
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 app.add_typer(materials, name="materials")
+app.command("app")(live_page)
 
 SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"
 NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="skip no stage; the results stay the same")]
@@ -123,9 +125,7 @@ def report(
 def explore(
     study: Annotated[str, typer.Argument(help="results/NAME, NAME, or a study.nc", show_default=False)],
     results: Results = Path("results"),
-    out: Annotated[
-        Path | None, typer.Option("-o", "--out", help="file; explorer.html beside study.nc if not given")
-    ] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="file; beside study.nc if not given")] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
     from trackroller.cli.study import print_explorer

@@ -5,7 +5,7 @@ const STATES = {
   dark: ["#7cc0ee", "#9aa2aa", "#f0b03c", "#ff8a5c", "#f4f4f4", "#e39ac8", "#4fc9a4"],
 };
 // cividis (Nuñez, Anderton and Renslow 2018), read at eight places
-const CIVIDIS = ["#00224e", "#123570", "#3b496c", "#575d6d", "#797877", "#a59c74", "#d3c164", "#fee838"];
+export const CIVIDIS = ["#00224e", "#123570", "#3b496c", "#575d6d", "#797877", "#a59c74", "#d3c164", "#fee838"];
 
 export const SHAPES = ["disc", "ring", "triangle", "square", "cross", "diamond", "plus"];
 
@@ -17,10 +17,10 @@ export function theme() {
   return { paper: read("--paper"), ink: read("--ink"), soft: read("--soft"), line: read("--line"), mark: read("--mark") };
 }
 
-const parse = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
+export const parsed = (hex) => [1, 3, 5].map((i) => parseInt(hex.slice(i, i + 2), 16));
 
-function mixed(low, high, share) {
-  const [a, b] = [parse(low), parse(high)];
+export function mixed(low, high, share) {
+  const [a, b] = [parsed(low), parsed(high)];
   return `#${a.map((v, i) => Math.round(v + (b[i] - v) * share).toString(16).padStart(2, "0")).join("")}`;
 }
 
@@ -53,6 +53,6 @@ export function colouring(column, scale, rows) {
 }
 
 export const packed = (hex) => {
-  const [r, g, b] = parse(hex);
+  const [r, g, b] = parsed(hex);
   return (255 << 24) | (b << 16) | (g << 8) | r;
 };

@@ -20,8 +20,8 @@ class Patch:
         self.ds = ds.sel(contact=contact)
         self.x, self.y = self.ds["patch_x"].values, self.ds["patch_y"].values
         self.solved = ds.attrs.get("normal") == "halfspace" and "pressure" in self.ds
-        self.a = float(self.ds.get("semi_axis_lateral", np.nanmax(np.abs(self.x))))
-        self.b = float(self.ds.get("semi_axis_rolling", np.nanmax(np.abs(self.y))))
+        self.a = float(self.ds.get("semi_axis_lateral", np.max(np.abs(self.x))))
+        self.b = float(self.ds.get("semi_axis_rolling", np.max(np.abs(self.y))))
 
     @property
     def there(self) -> bool:

@@ -1,0 +1,161 @@
+"""What the page shows is what `solve`, the sheet and the study file say."""
+
+from __future__ import annotations
+
+import base64
+import threading
+import time
+
+import numpy as np
+import pytest
+import yaml
+
+import trackroller as tr
+from trackroller.app.fields import all_fields, slider
+from trackroller.app.lane import STALE, Lane
+from trackroller.app.picture import curve, picture, texts
+from trackroller.app.studies import checked
+from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
+from trackroller.report.pages.sheet_facts import collect
+
+
+def test_every_parameter_stands_on_the_page():
+    fields = all_fields()
+    assert [p["name"] for p in fields["parameters"]] == list(PARAMETERS)
+    assert all(p["meaning"] and p["allowed"] and p["group"] for p in fields["parameters"])
+    assert set(fields["bodies"]) == set(MATERIAL_FIELDS)
+    assert {o["name"] for o in fields["options"]} == set(OPTIONS) - {"outputs", "accuracy", "stop_if", "shortcuts"}
+    assert any("42crmo4" in material["search"] for material in fields["materials"])
+
+
+def test_a_slider_holds_its_example_within_the_bounds():
+    for parameter in PARAMETERS.values():
+        ends = slider(parameter)
+        if ends is not None:
+            assert ends[0] <= parameter.default <= ends[1] and ends[0] < ends[1]
+            assert parameter.accepts(ends[0]) and parameter.accepts(ends[1])
+
+
+def numbers(picture):
+    """Return the numbers of both contacts by their words."""
+    lines = {words: [v.replace("−", "-") for v in values] for words, *values, _ in picture["lines"]}
+    return {words: tuple(map(float, values)) for words, values in lines.items() if "·" not in "".join(values)}
+
+
+@pytest.fixture(scope="module")
+def shown():
+    return picture({"axial_force": 20, "guide_curve_radius": "inf"}, "standard", complete=True, inside=True)
+
+
+def test_the_tables_hold_the_numbers_of_solve(shown):
+    ds = tr.solve(tr.Case(axial_force=20, guide_curve_radius=float("inf")), accuracy="standard")
+    lines = numbers(shown)
+    np.testing.assert_allclose(lines["normal force F_N"], ds.normal_force.values, rtol=1e-3)
+    np.testing.assert_allclose(lines["largest contact pressure p_max"], ds.max_pressure.values, rtol=1e-3)
+    np.testing.assert_allclose(
+        lines["peak stress of the roller (von Mises)"], ds.peak_stress.sel(body="roller"), rtol=1e-2
+    )
+    assert shown["regime"] == "rolling" and shown["drawing"].lstrip().startswith("<svg")
+
+
+def test_the_maps_carry_the_load(shown):
+    """The pressure over the patch, as it is sent in bytes, adds up to the normal force."""
+    loads = numbers(shown)["normal force F_N"]
+    for patch, load in zip(shown["patches"], loads, strict=True):
+        field = patch["fields"]["pressure"]
+        nx, ny = patch["size"]
+        values = np.frombuffer(base64.b64decode(field["data"]), np.uint8).reshape(ny, nx) / 255 * field["top"]
+        dx, dy = np.diff(patch["x"])[0] / (nx - 1), np.diff(patch["y"])[0] / (ny - 1)
+        assert values.sum() * dx * dy == pytest.approx(load, rel=0.01)
+        assert abs(patch["pole"][0]) < 10 * patch["ellipse"][0]
+
+
+def test_the_stress_below_is_that_of_the_peak(shown):
+    ds = tr.solve(tr.Case(axial_force=20, guide_curve_radius=float("inf")))
+    for section in shown["sections"]:
+        peak = float(ds.peak_stress.sel(contact=section["contact"], body=section["body"]))
+        assert section["field"]["top"] == pytest.approx(peak, rel=0.03)
+
+
+def test_margins_are_those_of_the_sheet(shown):
+    groups = ("forces", "contact", "friction_work", "peak_stress", "life", "limits")
+    ds = tr.solve(tr.Case(axial_force=20, guide_curve_radius=float("inf")), groups)
+    told = {(m.title, m.body): m.used for m in collect(ds).margins}
+    found = {(m["title"], m["body"]): m["used"] for m in shown["margins"]}
+    common = set(told) & set(found)
+    assert {"lift-off of a contact (axial force)", "full slip (motor force)"} <= {title for title, _ in common}
+    for key in common:
+        assert found[key] == pytest.approx(told[key], rel=1e-6, nan_ok=True)
+
+
+def test_lift_off_and_wrong_values_are_words():
+    assert picture({"axial_force": 130}, complete=True)["verdict"].startswith("A contact lifts off.")
+    assert picture({"axial_force": 130})["verdict"] == "A contact lifts off."
+    with pytest.raises(tr.InputError, match="conform"):
+        picture({"roller_profile_radius": -5})
+    with pytest.raises(tr.InputError, match="axial_force"):
+        picture({"axial_forc": 3})
+
+
+def test_a_curve_is_the_results_of_its_cases():
+    found = curve({"motor_force": 0}, "axial_force", (0.0, 60.0))
+    assert len(found["along"]) == 21 and found["refused"] == ""
+    ds = tr.solve([tr.Case(motor_force=0, axial_force=v) for v in (0.0, 60.0)], accuracy="preview")
+    ends = [found["columns"]["roller_peak_stress"]["values"][i] for i in (0, -1)]
+    np.testing.assert_allclose(ends, ds.peak_stress.sel(body="roller").max("contact"), rtol=1e-6)
+
+
+def test_a_curve_names_what_it_leaves_out():
+    found = curve({}, "roller_profile_radius", (-28.0, -1.75))
+    values = found["columns"]["max_pressure"]["values"]
+    assert "conform" in found["refused"] and np.isnan(values[-1]) and np.isfinite(values[0])
+
+
+def test_each_text_repeats_the_case():
+    values = {"axial_force": "70 N", "guide_curve_radius": "inf", "roller_material": "PA6", "contact_model": "fastsim"}
+    found = texts(values)
+    same = {"axial_force": 70.0, "guide_curve_radius": "inf", "roller_material": "PA6", "contact_model": "fastsim"}
+    assert yaml.safe_load(found["YAML"]) == same
+    for word in ("axial_force=70.0", "guide_curve_radius=inf", "roller_material=PA6", "contact_model=fastsim"):
+        assert word in found["command"]
+    place: dict = {}
+    exec(found["Python"], place)
+    assert place["ds"].attrs["contact_model"] == "fastsim" and "PA6" in place["ds"].attrs["case"]
+
+
+def test_text_and_fields_of_a_study_follow_each_other(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mapping = {"name": "two", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
+    from_fields = checked(None, mapping)
+    assert from_fields["errors"] == [] and dict(from_fields["plan"])["cases"].startswith("2,")
+    assert checked(from_fields["text"])["study"] == mapping == yaml.safe_load(from_fields["text"])
+
+
+def test_errors_of_a_study_name_field_and_line(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    found = checked("name: two\nfactors:\n  axial_force: {values: [0, x]}\ncontact_model: slidin\n")
+    assert [(e["field"], e["line"]) for e in found["errors"]] == [
+        ("factors.axial_force.values", 3),
+        ("contact_model", 4),
+    ]
+    assert found["plan"] == [] and found["study"]["name"] == "two"
+    assert "line" in checked("name: [")["errors"][0]["message"]
+
+
+def test_only_the_newest_request_of_a_page_is_worked_on():
+    lane, go, done = Lane("test"), threading.Event(), []
+    first = lane.submit("page 1", go.wait)
+    time.sleep(0.05)  # the lane works on the first one now
+    old = [lane.submit("page 1", lambda i=i: done.append(i)) for i in range(5)]
+    other = lane.submit("page 2", lambda: done.append("other"))
+    go.set()
+    assert old[-1].result(5) is None and other.result(5) is None and first.result(5)
+    assert [future.result(5) for future in old[:-1]] == [STALE] * 4
+    assert sorted(map(str, done)) == ["4", "other"]
+
+
+def test_an_error_of_one_request_stops_no_other():
+    lane = Lane("test")
+    with pytest.raises(ZeroDivisionError):
+        lane.submit(1, lambda: 1 / 0).result(5)
+    assert lane.submit(1, lambda: 7).result(5) == 7

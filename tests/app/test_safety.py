@@ -1,0 +1,192 @@
+"""The server answers its own page only, in its own folder only, and says in words why it refuses."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import signal
+import socket
+
+import pytest
+from live_page import LONG, STUDY, LivePage
+
+from trackroller.app.server import LARGEST
+
+ATTACKS = [
+    "results/..%2f..%2fsecret/report.html",
+    "results/small/..%2f..%2fsecret.html",
+    "../secret",
+    "results/%2e%2e/x",
+]
+
+
+def message(found):
+    return found["errors"][0]["message"]
+
+
+def test_a_request_without_the_token_is_refused(live):
+    wrong = LivePage.__new__(LivePage)
+    for address in (f"http://{live.host}/", f"http://{live.host}/wrong/", live.address[:-3] + "/"):
+        wrong.address = address
+        status, text, headers = wrong.get("")
+        assert (status, "token" in text) == (403, True)
+        assert "no-store" in headers["Cache-Control"]
+        status, found = wrong.ask("solve", case={})
+        assert (status, "token" in message(found)) == (403, True)
+
+
+@pytest.mark.parametrize(
+    "headers",
+    [
+        {"Origin": "http://evil.example"},
+        {"Origin": "null"},
+        {"Sec_Fetch_Site": "cross-site"},
+        {"Sec_Fetch_Site": "same-site"},
+        {"Host": "evil.example"},
+        {"Content_Type": "text/plain"},
+        {"Content_Type": "application/x-www-form-urlencoded"},
+    ],
+    ids=lambda h: " ".join(map(str, *h.items())),
+)
+def test_another_site_is_refused(live, headers):
+    status, found = live.send("solve", b'{"case": {}}', **headers)
+    assert status in (403, 415)
+    assert message(found).endswith(".")
+
+
+def test_the_page_trusts_its_own_script_only(live):
+    _, text, headers = live.get("")
+    policy = headers["Content-Security-Policy"]
+    assert "script-src 'self'" in policy and "connect-src 'self'" in policy and "unsafe" not in policy
+    assert "default-src 'none'" in policy and "http" not in policy.partition("frame-ancestors")[0]
+    assert "<script>" not in text and " style=" not in text and " on" not in text.partition("<body>")[2]
+    _, sheet, headers = live.get("sheet?case=%7B%7D")
+    assert "sandbox" in headers["Content-Security-Policy"] and "Track roller" in sheet
+
+
+@pytest.mark.parametrize(
+    "body", [b"", b"{", b"[]", b"1", b'"text"', b"[" * 50_000, b"\xff\xfe", b"{}", b'{"case": [1]}']
+)
+def test_malformed_bodies_are_refused_in_words(live, body):
+    status, found = live.send("solve", body)
+    assert status == 400
+    assert message(found).startswith("The request ")
+
+
+def test_large_bodies_are_refused(live):
+    status, found = live.send("solve", b" " * (LARGEST + 1))
+    assert (status, "larger than" in message(found)) == (413, True)
+    connection = http.client.HTTPConnection(live.host, timeout=30)
+    connection.putrequest("POST", "/" + live.address.split("/", 3)[3] + "api/solve")
+    connection.putheader("Content-Length", "4000000000")
+    connection.endheaders()
+    assert connection.getresponse().status in (400, 413)
+    assert live.ask("solve", case={})[0] == 200
+
+
+@pytest.mark.parametrize("path", ATTACKS)
+def test_no_path_leads_out_of_the_folder(live, path):
+    (live.folder.parent / "secret.html").write_text("secret")
+    status, text, _ = live.get(path)
+    assert status in (403, 404, 422)
+    assert "secret" not in text.replace("/secret", "").replace("secret.html", "").replace("..secret", "")
+
+
+@pytest.mark.parametrize("name", ["../outside", "/etc", "a/b", "", ".", "con", "x" * 300, 7, None, ["a"]])
+@pytest.mark.parametrize("action", ["open", "pause", "resume", "delete"])
+def test_names_of_studies_are_no_paths(live, name, action):
+    status, found = live.ask(action, name=name, confirm=name)
+    assert status in (400, 409, 422)
+    assert message(found)
+
+
+def test_a_link_in_the_results_is_not_followed(live):
+    target = live.folder.parent / "elsewhere"
+    target.mkdir(exist_ok=True)
+    (target / "study.nc").write_text("")
+    (live.folder / "results").mkdir(exist_ok=True)
+    (live.folder / "results" / "linked").symlink_to(target)
+    assert live.ask("delete", name="linked", confirm="linked")[0] == 422
+    assert (target / "study.nc").exists()
+    assert "linked" not in [one["name"] for one in live.ask("studies")[1]]
+
+
+def test_a_million_cases_are_refused_before_they_are_drawn(live):
+    spec = {"linspace": [0, 30, 1000]}
+    _, found = live.ask(
+        "study", study={"name": "big", "factors": {"axial_force": spec, "velocity": {"linspace": [1, 9, 1000]}}}
+    )
+    assert "at most 200,000 cases" in message(found)
+    _, found = live.ask(
+        "study", text="name: big\ndesign: sobol\nsamples: 1000000\nfactors: {velocity: {uniform: [1, 9]}}"
+    )
+    assert "at most 200,000 cases" in message(found)
+    assert live.ask("start", text="name: big\nfactors: {velocity: {linspace: [1, 9, 1000000]}}")[0] == 422
+
+
+def test_markup_in_names_stays_text(live):
+    nasty = '<img src=x onerror="alert(1)">'
+    _, found = live.ask("study", text=f"name: fine\ndescription: '{nasty}'\nfactors: {{velocity: {{values: [1, 2]}}}}")
+    assert found["study"]["description"] == nasty
+    status, found = live.ask("solve", case={"roller_material": nasty})
+    assert status == 422 and nasty in message(found)
+    raw = live.get("")[1]
+    assert nasty not in raw
+
+
+def test_only_this_machine_is_served(live):
+    port = int(live.host.split(":")[1])
+    for host in {info[4][0] for info in socket.getaddrinfo(socket.gethostname(), None, socket.AF_INET)} - {"127.0.0.1"}:
+        with pytest.raises(OSError):
+            socket.create_connection((host, port), timeout=2).close()
+
+
+def test_a_second_start_says_where_the_first_runs(live):
+    second = LivePage(live.folder)
+    assert live.address in second.line and "already" in second.line
+    assert second.process.wait(30) == 0
+
+
+def test_a_taken_port_is_named(live, tmp_path):
+    second = LivePage(tmp_path, "--port", live.host.split(":")[1])
+    code, said = second.process.wait(60), second.process.stderr.read()
+    assert code == 1
+    assert "is not free" in said and "Traceback" not in said
+
+
+@pytest.mark.slow
+def test_a_study_survives_its_server_and_is_found_again(tmp_path):
+    first = LivePage(tmp_path)
+    assert first.ask("start", text=LONG) == (200, {"name": "long"})
+    first.until("long", "running", cases=60)
+    assert first.ask("start", text=LONG)[0] == 409
+    assert first.ask("delete", name="long", confirm="long")[0] == 409
+    first.stop(signal.SIGKILL)
+    second = LivePage(tmp_path)
+    assert second.until("long", "running")["total"] == 1200
+    assert second.ask("pause", name="long")[0] == 200
+    paused = second.until("long", "paused")
+    assert 0 < paused["done"] < 1200
+    assert second.ask("resume", name="long")[0] == 200
+    second.until("long", "running", cases=paused["done"])
+    assert second.ask("pause", name="long")[0] == 200
+    second.until("long", "paused")
+    code, said = second.stop()
+    assert code == 0
+    assert said.rstrip().splitlines()[-1] == "trackroller: the page is closed; studies that run go on."
+
+
+@pytest.mark.slow
+def test_a_study_runs_to_its_report_and_is_deleted_after_asking(live):
+    assert live.ask("start", text=STUDY)[0] == 200
+    done = live.until("small", "done")
+    assert (done["total"], done["done"], done["failed"], done["question"]) == (6, 6, 0, "What does friction do?")
+    status, text, headers = live.get("results/small/report.html")
+    assert status == 200 and "<title>" in text and "sandbox" in headers["Content-Security-Policy"]
+    assert live.get("results/small/explorer.html")[0] == 200
+    (one,) = live.ask("compare", names=["small"])[1]
+    assert one["cases"] == 6 and one["factors"]["Axial force F_ax"] == "0, 30 N"
+    assert live.ask("delete", name="small", confirm="")[0] == 422
+    assert live.ask("delete", name="small", confirm="small")[0] == 200
+    assert live.entry("small") == {}
+    assert json.loads(json.dumps(live.ask("open", name="small")[1]))["text"] == STUDY

@@ -1,0 +1,223 @@
+"""What the page shows of one case: the drawing, both patches, tables, margins, lives, warnings, curves and texts."""
+
+from __future__ import annotations
+
+import base64
+import functools
+import json
+import math
+from collections.abc import Mapping
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.damage import LIMITS
+from trackroller.errors import InputError
+from trackroller.materials import load_database
+from trackroller.parameters import OPTIONS, PARAMETERS, REGIME_LABELS
+from trackroller.report.figures.contact_outline import Patch, patches_of
+from trackroller.report.figures.roller_section import drawing
+from trackroller.report.numbers import lives_in_years, unit_text
+from trackroller.report.pages.sheet import render
+from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
+from trackroller.report.words.flags import flags_of
+from trackroller.roller.case import Case
+from trackroller.roller.doubts import doubts_of_case
+from trackroller.roller.duty import with_duty
+from trackroller.roller.limits import Limits, limits
+from trackroller.roller.record import is_default, plain_inputs, solve_command
+from trackroller.roller.settings import checked_case
+from trackroller.roller.solver import solve
+from trackroller.study.outputs import outputs
+from trackroller.yaml_file import parse_yaml, write_yaml
+
+Values = Mapping[str, Any]
+POINTS = 21  # cases of a curve
+LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
+_JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None))
+_UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes 0.2 s
+_FIELDS = {"pressure": "pressure", "shear": "shear traction", "friction_energy_density": "friction energy"}
+STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
+
+
+def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
+    """Return case, options and duty of the fields of the page; texts are read as the command line reads `--set`."""
+    if not isinstance(values, Mapping):
+        raise InputError("case", values, "a mapping of fields to values")
+    given = {n: parse_yaml(v, n) if isinstance(v, str) else v for n, v in values.items() if v not in ("", None)}
+    return checked_case(given)
+
+
+@functools.lru_cache(maxsize=8)
+def _solved(text: str, accuracy: str, groups: tuple[str, ...]) -> xr.Dataset:
+    """Return the solution of a case given as JSON; the steps of one picture ask for it several times."""
+    case, options, duty = read(json.loads(text))
+    return with_duty(solve(case, groups, **{"accuracy": accuracy, **options}), duty)
+
+
+def picture(values: Values, accuracy: str = "preview", complete: bool = False, inside: bool = False) -> dict[str, Any]:
+    """Solve one case and return everything that the page shows of it, as values of JSON.
+
+    Parameters
+    ----------
+    values : mapping
+        Fields of the case and options by name.
+    accuracy : str
+        "preview" while a slider moves, "standard" when it rests.
+    complete : bool
+        Whether to search the distance to lift-off, full slip and self-locking as well.
+    inside : bool
+        Whether to compute the von Mises stress below the surface as well.
+
+    Raises
+    ------
+    InputError
+        If a value is wrong.
+    """
+    text, groups = json.dumps(values, sort_keys=True), (*LIVE, *_JUDGED, "limits")
+    ds = _solved(text, accuracy, (*groups, "subsurface") if inside else groups)
+    case, options, _ = read(values)
+    model = str(options.get("contact_model", OPTIONS["contact_model"].default))
+    facts = _facts(ds, limits(case, model) if complete else _UNKNOWN)
+    return {
+        **facts,
+        "accuracy": accuracy,
+        "complete": complete,
+        "regime": REGIME_LABELS[int(ds["regime"])],
+        "drawing": drawing(ds),
+        "patches": [_patch(patch) for patch in patches_of(ds, "pressure", "shear_lateral", "shear_rolling")],
+        "sections": _sections(ds) if inside else [],
+        "doubts": doubts_of_case(case, load_database()),
+    }
+
+
+@lives_in_years
+def _facts(ds: xr.Dataset, found: Limits) -> dict[str, Any]:
+    facts: Facts = collect(ds, found)
+    told = ("verdict", "reason", "first", "not_checked", "guesses", "command", "options")
+    rows = {name: [asdict(row) for row in getattr(facts, name)] for name in ("inputs", "whole", "lives")}
+    margins = [
+        asdict(m) | {"share": m.share, "factor": m.factor, "life": m.life, "when": m.when} for m in facts.margins
+    ]
+    return {
+        **{name: getattr(facts, name) for name in told},
+        **rows,
+        "lines": side_by_side(facts.contacts) if any(c.carries for c in facts.contacts) else [],
+        "margins": margins,
+        "flags": [{"sentence": flag.sentence, "remedy": flag.remedy} for flag in flags_of(ds)],
+    }
+
+
+def _bytes(values: np.ndarray, top: float) -> str:
+    """Return numbers from 0 to `top` as base64 of one byte each."""
+    scaled = np.nan_to_num(values / top if top > 0 else 0.0 * values)
+    return base64.b64encode(np.round(255 * np.clip(scaled, 0, 1)).astype(np.uint8).tobytes()).decode()
+
+
+def _field(values: np.ndarray, words: str, unit: str) -> dict[str, Any]:
+    top = float(np.max(np.nan_to_num(values), initial=0.0))
+    return {"words": words, "unit": unit, "top": top, "data": _bytes(values, top)}
+
+
+def _patch(patch: Patch) -> dict[str, Any]:
+    """Return the fields of one patch as bytes, its ends [mm], its edge, the adhesion area and the spin pole."""
+    fields = {
+        "pressure": _field(patch.field("pressure"), "pressure", "MPa"),
+        "shear": _field(np.hypot(patch.field("shear_lateral"), patch.field("shear_rolling")), "shear traction", "MPa"),
+    }
+    creepage = np.hypot(patch.field("slip_lateral"), patch.field("slip_rolling"))
+    still = patch.inside & (creepage < STILL * np.max(creepage, where=patch.inside, initial=0.0))
+    pole = [float(patch.ds.get(f"spin_pole_{way}", math.nan)) for way in ("lateral", "rolling")]
+    return {
+        "contact": patch.contact,
+        "size": [len(patch.x), len(patch.y)],
+        "x": [float(patch.x[0]), float(patch.x[-1])],
+        "y": [float(patch.y[0]), float(patch.y[-1])],
+        "ellipse": None if patch.solved else [patch.a, patch.b],
+        "fields": fields,
+        "inside": _bytes(patch.inside.astype(float), 1.0),
+        "adhesion": _bytes(still.astype(float), 1.0),
+        "pole": pole if all(map(math.isfinite, pole)) else None,
+    }
+
+
+def _sections(ds: xr.Dataset) -> list[dict[str, Any]]:
+    """Return the von Mises stress below each contact of each body, in the plane across the track through the peak."""
+    found = []
+    for contact in ds["contact"].values.tolist():
+        for body in ds["body"].values.tolist():
+            own = ds.sel(contact=contact, body=body)
+            x, z, stress = (own[name].values for name in ("xz_x", "xz_z", "von_mises_xz"))
+            if np.isfinite(stress).any():
+                ends = {"x": [float(x[0]), float(x[-1])], "z": [float(z[0]), float(z[-1])], "size": [len(x), len(z)]}
+                field = _field(stress, "von Mises stress", "MPa")
+                found.append({"contact": contact, "body": body, **ends, "field": field})
+    return found
+
+
+def sheet(values: Values) -> str:
+    """Return the sheet of a case as a page to print."""
+    groups = (*LIVE, "subsurface", *_JUDGED, "limits")
+    return render(_solved(json.dumps(values, sort_keys=True), "standard", groups))
+
+
+def curve(values: Values, over: str, ends: tuple[float, float]) -> dict[str, Any]:
+    """Solve 21 cases over a parameter in one batch.
+
+    Parameters
+    ----------
+    values : mapping
+        Fields of the case and options by name.
+    over : str
+        The parameter.
+    ends : tuple of float
+        Its first and last value.
+
+    Returns
+    -------
+    dict
+        The values, every result with one number a case by name, and what is wrong with values that are refused.
+    """
+    if over not in PARAMETERS:
+        raise InputError("over", over, "a parameter of a case", "Choose one of the list.")
+    low, high = float(ends[0]), float(ends[1])
+    along = np.geomspace(low, high, POINTS) if low * high > 0 else np.linspace(low, high, POINTS)
+    cases, kept, refused = [], [], ""
+    for i, value in enumerate(along):
+        try:
+            cases.append(read({**values, over: float(value)})[0])
+            kept.append(i)
+        except InputError as exc:
+            refused = str(exc.errors[0])
+    if not cases:
+        raise InputError(over, f"{low:g} to {high:g}", "values of which one at least can be solved", refused)
+    ds = solve(cases, LIVE[:-1], **{"accuracy": "preview", **read(values)[1]})
+    columns = {}
+    for one in outputs(ds, ("case",), keep=("rolling", "full_slip", "lift_off"), unlimited=True, scale="natural"):
+        column = np.full(POINTS, np.nan)
+        column[kept] = one.values
+        columns[one.name] = {"label": one.long_name, "unit": unit_text(one.units), "values": column.tolist()}
+    return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
+
+
+def texts(values: Values) -> dict[str, str]:
+    """Return the case as a case file (YAML), as a command and as lines of Python."""
+    case, options, duty = read(values)
+    given = {n: v for n, v in plain_inputs(case).items() if not is_default(n, v)}
+    words = {name: list(value) if isinstance(value, tuple) else value for name, value in options.items()}
+    also = {} if duty is None else {"duty": duty}
+    fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())
+    more = "".join(f", {name}={value!r}" for name, value in words.items())
+    return {
+        "YAML": write_yaml({**given, **words, **also}) if given or words or also else "{}\n",
+        "command": solve_command(given | words),
+        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n",
+    }
+
+
+def _python(value: Any) -> str:
+    """Write a value as Python; an infinite number stands as a text in the values of JSON."""
+    infinite = isinstance(value, str) and value.lstrip("-") == "inf"
+    return f'float("{value}")' if infinite else repr(value)

@@ -1,0 +1,276 @@
+"""The server of the live page, on 127.0.0.1 only.
+
+Whoever wants an answer has to know the token, which is the first part of every path. Requests of another site are
+refused by the headers `Host`, `Origin` and `Sec-Fetch-Site`. A page runs only the script of this server, and can reach
+no other host.
+"""
+
+from __future__ import annotations
+
+import asyncio
+import hmac
+import json
+import math
+import secrets
+import traceback
+from collections.abc import Callable, Mapping
+from http import HTTPStatus
+from importlib import resources
+from typing import Any
+
+import tornado.httpserver
+import tornado.netutil
+import tornado.web
+
+from trackroller.app import studies
+from trackroller.app.fields import all_fields
+from trackroller.app.lane import Lane
+from trackroller.app.picture import curve, picture, sheet, texts
+from trackroller.errors import InputError, WorkError
+from trackroller.files import MAX_BYTES
+
+HOST = "127.0.0.1"
+LARGEST = 300_000  # bytes of a request; a study file with a table of cases names the table
+FRAMES = "http://127.0.0.1:* http://localhost:*"  # a notebook on this machine may show the page
+OWN = (
+    "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
+    f"base-uri 'none'; form-action 'none'; frame-ancestors {FRAMES}"
+)
+# a sheet has its styles inside, a report its scripts too; `sandbox` keeps them away from this server
+SHEET = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; sandbox"
+REPORT = (
+    "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
+    "form-action 'none'; sandbox allow-scripts allow-downloads"
+)
+KINDS = {dict: "mapping", str: "text", list: "list", (int, float): "number"}
+ASSETS = {"": ("index.html", "text/html"), "app.js": ("app.js", "text/javascript"), "app.css": ("app.css", "text/css")}
+
+
+class Refused(Exception):
+    """A request that is not answered, with its HTTP status and the reason in words."""
+
+    def __init__(self, status: int, message: str) -> None:
+        super().__init__(message)
+        self.status = status
+
+
+def part(body: Mapping[str, Any], name: str, kind: Any, default: Any = None) -> Any:
+    """Return a part of a request; refuse a request that lacks it, or has one of another kind."""
+    value = body.get(name, default)
+    if not isinstance(value, kind):
+        raise Refused(400, f"The request needs '{name}' as a {KINDS[kind]}.")
+    return value
+
+
+def name_of(body: Mapping[str, Any]) -> str:
+    """Return the name of a study in a request."""
+    return str(part(body, "name", str))
+
+
+def _solve(body: Mapping[str, Any]) -> dict[str, Any]:
+    accuracy, flags = part(body, "accuracy", str, "preview"), [bool(body.get(n)) for n in ("complete", "inside")]
+    return picture(part(body, "case", dict), accuracy, *flags)
+
+
+def _curve(body: Mapping[str, Any]) -> dict[str, Any]:
+    ends = float(part(body, "from", (int, float))), float(part(body, "to", (int, float)))
+    return curve(part(body, "case", dict), part(body, "over", str), ends)
+
+
+def _study(body: Mapping[str, Any]) -> dict[str, Any]:
+    return (
+        studies.checked(part(body, "text", str)) if "text" in body else studies.checked(None, part(body, "study", dict))
+    )
+
+
+Answer = Callable[[Mapping[str, Any]], Any]
+SOLVING: dict[str, Answer] = {  # the thread of the solver answers
+    "solve": _solve,
+    "curve": _curve,
+    "texts": lambda body: texts(part(body, "case", dict)),
+}
+FILES: dict[str, Answer] = {  # the thread of the files answers
+    "fields": lambda body: all_fields(),
+    "study": _study,
+    "studies": lambda body: studies.listing(),
+    "open": lambda body: studies.text_of(name_of(body)),
+    "start": lambda body: studies.start(part(body, "text", str)),
+    "resume": lambda body: studies.resume(name_of(body)),
+    "pause": lambda body: studies.pause(name_of(body)),
+    "delete": lambda body: studies.delete(name_of(body), part(body, "confirm", str, "")),
+    "compare": lambda body: studies.compare(part(body, "names", list)[:2]),
+}
+NEWEST = ("solve", "curve", "study", "studies")  # an older request of the same page is not worth an answer
+
+
+def plain(value: Any) -> Any:
+    """Return a value as JSON can hold it: NaN as None, and infinite numbers as the texts inf and -inf."""
+    if isinstance(value, float) and not math.isfinite(value):
+        return None if math.isnan(value) else "inf" if value > 0 else "-inf"
+    if isinstance(value, Mapping):
+        return {str(key): plain(entry) for key, entry in value.items()}
+    return [plain(entry) for entry in value] if isinstance(value, (list, tuple)) else value
+
+
+class _Handler(tornado.web.RequestHandler):
+    """What all answers share: who may ask, the headers, and errors in words."""
+
+    def initialize(self, server: Server) -> None:
+        self.server = server
+
+    def set_default_headers(self) -> None:
+        for name, text in {
+            "Content-Security-Policy": OWN,
+            "X-Content-Type-Options": "nosniff",
+            "Referrer-Policy": "no-referrer",
+            "Cache-Control": "no-store",
+            "Cross-Origin-Resource-Policy": "same-origin",
+            "Server": "trackroller",
+        }.items():
+            self.set_header(name, text)
+
+    def prepare(self) -> None:
+        """Refuse who does not know the token, who asks under another name of this machine, and other sites."""
+        server, headers = self.server, self.request.headers
+        if self.request.host not in server.names:
+            raise Refused(403, f"This server answers at {HOST}:{server.port} only.")
+        if not hmac.compare_digest(str(self.path_args[0]).encode(), server.token.encode()):
+            raise Refused(
+                403, "The token in the address is missing or wrong. Open the address that the terminal shows."
+            )
+        foreign = headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin")
+        if self.request.method == "POST" and (foreign or headers.get("Origin") not in (None, *server.origins)):
+            raise Refused(403, "Another site asked. Only the page of this server may.")
+
+    def write_error(self, status_code: int, **info: Any) -> None:
+        """Answer with the reason in words; an error of the program leaves its traceback in the terminal only."""
+        exc = info.get("exc_info", (None, None, None))[1]
+        errors = [{"field": "", "message": str(exc) or HTTPStatus(status_code).phrase}]
+        if isinstance(exc, Refused):
+            self.set_status(exc.status)
+        elif isinstance(exc, InputError):
+            self.set_status(422)
+            errors = [{"field": e.field, "message": str(e)} for e in exc.errors]
+        elif isinstance(exc, WorkError):
+            self.set_status(409)
+        elif isinstance(exc, tornado.web.HTTPError):
+            errors[0]["message"] = f"{HTTPStatus(status_code).phrase}. The page asks for nothing of this kind."
+        elif exc is not None:
+            errors[0]["message"] = f"Internal error, {type(exc).__name__}. The terminal shows more."
+        self.finish({"errors": errors})
+
+    def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
+        """Print the traceback of an error of the program; refusals and wrong input are answers."""
+        if not isinstance(value, (Refused, InputError, WorkError, tornado.web.HTTPError)):
+            traceback.print_exception(typ, value, tb)
+
+
+class _Page(_Handler):
+    """The page itself, with its script and style."""
+
+    def get(self, token: str, name: str) -> None:
+        if name not in ASSETS:
+            raise Refused(404, "There is no such page.")
+        file, kind = ASSETS[name]
+        self.set_header("Content-Type", f"{kind}; charset=utf-8")
+        self.finish((resources.files("trackroller.app") / "assets" / file).read_bytes())
+
+
+class _Answer(_Handler):
+    """Answers to the script of the page: JSON in, JSON out."""
+
+    async def post(self, token: str, name: str) -> None:
+        solving = name in SOLVING
+        if not solving and name not in FILES:
+            raise Refused(404, f"The page cannot ask for '{name}'.")
+        if self.request.headers.get("Content-Type", "").partition(";")[0] != "application/json":
+            raise Refused(415, "The request is not of the type application/json.")
+        if len(self.request.body) > LARGEST:
+            raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
+        body = self._body()
+        answer, lane = (SOLVING[name], self.server.solver) if solving else (FILES[name], self.server.files)
+        page = str(body.get("page", "")) if name in NEWEST else secrets.token_hex(8)
+        found = await asyncio.wrap_future(lane.submit((name, page), lambda: answer(body)))
+        self.set_header("Content-Type", "application/json")
+        self.finish(json.dumps(plain(found), allow_nan=False).replace("<", "\\u003c"))
+
+    def _body(self) -> dict[str, Any]:
+        try:
+            body = json.loads(self.request.body)
+        except (ValueError, RecursionError):
+            raise Refused(400, "The request is not JSON.") from None
+        if not isinstance(body, dict):
+            raise Refused(400, "The request is not a JSON object.")
+        return body
+
+
+class _Sheet(_Handler):
+    """The printable sheet of the case that the query holds as JSON."""
+
+    async def get(self, token: str) -> None:
+        try:
+            values = json.loads(self.get_query_argument("case", "{}"))
+        except (ValueError, RecursionError):
+            raise Refused(400, "The address holds no case.") from None
+        page = await asyncio.wrap_future(self.server.solver.submit(secrets.token_hex(8), lambda: sheet(values)))
+        self.set_header("Content-Security-Policy", SHEET)
+        self.finish(page)
+
+
+class _Result(_Handler):
+    """Report and explorer of a study."""
+
+    async def get(self, token: str, name: str, page: str) -> None:
+        lane = self.server.files
+        path = await asyncio.wrap_future(lane.submit(secrets.token_hex(8), lambda: studies.page_of(name, page)))
+        self.set_header("Content-Security-Policy", REPORT)
+        self.finish(path.read_bytes())
+
+
+class Server:
+    """The server on a port of this machine.
+
+    Parameters
+    ----------
+    port : int
+        The port; 0 takes a free one.
+
+    Raises
+    ------
+    WorkError
+        If another program has the port.
+    """
+
+    def __init__(self, port: int = 0) -> None:
+        self.token = secrets.token_urlsafe(24)
+        self.solver, self.files = Lane("solver"), Lane("files")
+        try:
+            sockets = tornado.netutil.bind_sockets(port, HOST)
+        except OSError as exc:
+            remedy = "Give another number with --port, or none."
+            raise WorkError(f"port {port} is not free ({exc.strerror}). {remedy}") from None
+        self.port = sockets[0].getsockname()[1]
+        self.names = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
+        self.origins = tuple(f"http://{name}" for name in self.names)
+        own = {"server": self}
+        application = tornado.web.Application(
+            [
+                (r"/([^/]*)/sheet", _Sheet, own),
+                (r"/([^/]*)/results/([^/]+)/([^/]+)", _Result, own),
+                (r"/([^/]*)/api/(\w+)", _Answer, own),
+                (r"/([^/]*)/?([\w.]*)", _Page, own),
+                (r"/(.*?)(?:/(.*))?", _Page, own),
+            ],
+            log_function=lambda handler: None,  # its lines would hold the token
+        )
+        self.http = tornado.httpserver.HTTPServer(application, max_body_size=MAX_BYTES, max_header_size=65_536)
+        self.http.add_sockets(sockets)
+
+    @property
+    def address(self) -> str:
+        """Return the address of the page with its token."""
+        return f"http://{HOST}:{self.port}/{self.token}/"
+
+    def warm_up(self) -> None:
+        """Load the compiled solver before the first request."""
+        self.solver.submit("first", lambda: picture({}))

@@ -1,0 +1,291 @@
+"""Studies of a folder: check their texts, start, pause, list, compare and delete them.
+
+A study of the page stands in `studies/NAME.yaml`, and its results in `results/NAME/`, both in the working directory.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import datetime
+import json
+import math
+import shutil
+import subprocess
+import sys
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.table import StudyView
+from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
+from trackroller.errors import InputError, WorkError
+from trackroller.files import files_beside, write_text
+from trackroller.report.numbers import rounded, unit_text
+from trackroller.report.tables.inputs import factor_table
+from trackroller.report.words.in_short import in_short
+from trackroller.study.design.factors import LISTS
+from trackroller.study.design.sampling import ARRAYS
+from trackroller.study.file.config import check_name
+from trackroller.study.file.load import parse_study
+from trackroller.study.file.study import Study
+from trackroller.study.outputs import default_names, outputs
+from trackroller.study.status import plan_rows, status_of
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.seal import read_result
+from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
+
+TEXTS, RESULTS = Path("studies"), Path("results")
+MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
+PAGES = ("report.html", "explorer.html")
+_running: dict[str, subprocess.Popen[bytes]] = {}  # the studies that this server started
+
+
+def folder_of(name: Any) -> StudyFolder:
+    """Return the folder of a study; refuse names and links that lead out of the results folder."""
+    root = RESULTS / check_name(name)
+    if root.is_symlink() or RESULTS.is_symlink():
+        raise InputError("name", name, "a folder of this place; this one is a link", "Copy the folder here.")
+    return StudyFolder(root)
+
+
+def _least_cases(mapping: Mapping[str, Any]) -> float:
+    """Return about how many cases a study has, found without drawing its design, which may fill the memory."""
+    count, factors, design = 1.0, mapping.get("factors"), mapping.get("design", "grid")
+    for spec in factors.values() if isinstance(factors, Mapping) and design in ("grid", "inner_outer") else ():
+        for kind, value in spec.items() if isinstance(spec, Mapping) else ():
+            if kind == "values" and isinstance(value, list):
+                count *= max(1, len(value))
+            elif kind in LISTS and isinstance(value, list) and len(value) == 3:
+                count *= value[2] if isinstance(value[2], (int, float)) else 1
+    samples = mapping.get("samples", 1)
+    sampled = design not in (*ARRAYS, "table") and isinstance(samples, (int, float))
+    return count * samples if sampled else count
+
+
+def checked(text: str | None, mapping: Mapping[str, Any] | None = None) -> dict[str, Any]:
+    """Check a study and plan it.
+
+    Parameters
+    ----------
+    text : str or None
+        The study file, or None if the fields of the page give the study.
+    mapping : mapping, optional
+        The keys of a study file.
+
+    Returns
+    -------
+    dict
+        The text and the keys, so that each follows the other; what is wrong with field, line and message; the rows of
+        the plan; and doubts about values.
+    """
+    out: dict[str, Any] = {"text": text, "study": None, "errors": [], "plan": [], "doubts": []}
+    try:
+        out["text"] = write_yaml(_without_empty(mapping or {})) if text is None else text
+        out["study"] = parse_mapping(out["text"], "study file")
+        study = _study(out["text"])
+        status = status_of(study, RESULTS)
+        out |= {"plan": plan_rows(study, status), "doubts": study.doubts(), "name": study.name}
+    except InputError as exc:
+        found = [{"field": e.field, "line": e.line, "message": str(e)} for e in exc.errors]
+        out["errors"] = found
+    except WorkError as exc:
+        out["errors"] = [{"field": "name", "line": None, "message": str(exc)}]
+    return out
+
+
+def _without_empty(mapping: Mapping[str, Any]) -> dict[str, Any]:
+    return {key: value for key, value in mapping.items() if value not in (None, "", {}, [])}
+
+
+def _study(text: str) -> Study:
+    """Return the checked study of a text, unless it is too large for the page."""
+    data = parse_mapping(text, "study file")
+    cases = _least_cases(data)
+    if cases > MOST_CASES:
+        allowed = f"at most {MOST_CASES:,} cases on this page"
+        raise InputError("design", f"{cases:,.0f} cases", allowed, "Start larger studies with `trackroller run`.")
+    with errors_by_line(text), files_beside(TEXTS / "study.yaml"):
+        study = parse_study(data, TEXTS / "study.yaml")
+    if (size := study.drawn.size) > MOST_CASES:
+        allowed = f"at most {MOST_CASES:,} cases on this page"
+        raise InputError("design", f"{size:,} cases", allowed, "Start larger studies with `trackroller run`.")
+    return study
+
+
+def start(text: str) -> dict[str, Any]:
+    """Write a study file and run the study in a process of its own; a study that was paused goes on."""
+    name = _study(text).name
+    folder = folder_of(name)
+    if _works(name, folder):
+        raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
+    write_text(TEXTS / f"{name}.yaml", text)
+    return _spawn(name, folder)
+
+
+def resume(name: str) -> dict[str, Any]:
+    """Let a paused study go on."""
+    folder = folder_of(name)
+    if _works(name, folder):
+        raise WorkError(f"The study '{name}' runs already.")
+    if not (TEXTS / f"{name}.yaml").is_file():
+        if not folder.study_file.is_file():
+            raise InputError("name", name, "a study of this folder", "Start it in the tab 'Study'.")
+        write_text(TEXTS / f"{name}.yaml", folder.study_file.read_text(encoding="utf-8"))
+    return _spawn(name, folder)
+
+
+def _spawn(name: str, folder: StudyFolder) -> dict[str, Any]:
+    folder.root.mkdir(parents=True, exist_ok=True)
+    for file in (PROGRESS, PAUSE):
+        (folder.root / file).unlink(missing_ok=True)
+    with open(folder.root / "page.log", "ab") as log:
+        _running[name] = subprocess.Popen(
+            [sys.executable, "-m", "trackroller.app.worker", name],
+            stdin=subprocess.DEVNULL,
+            stdout=log,
+            stderr=subprocess.STDOUT,
+            start_new_session=True,  # Ctrl-C at the server does not reach it
+        )
+    return {"name": name}
+
+
+def pause(name: str) -> dict[str, Any]:
+    """Ask a running study to stop; its finished chunks stay."""
+    folder = folder_of(name)
+    if not (_starts(name) or is_held(folder.root / LOCK)):
+        raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
+    (folder.root / PAUSE).touch()
+    return {"name": name}
+
+
+def delete(name: str, confirm: str) -> dict[str, Any]:
+    """Delete the results of a study; its file in `studies/` stays."""
+    folder = folder_of(name)
+    if confirm != name:
+        raise InputError("confirm", confirm, f"the name of the study, {name}", "Confirm the question of the page.")
+    if _works(name, folder):
+        raise WorkError(f"The study '{name}' runs. Pause it first.")
+    if not folder.root.is_dir():
+        raise InputError("name", name, "a study of this folder", "It may be deleted already.")
+    shutil.rmtree(folder.root)
+    return {"name": name}
+
+
+def _works(name: str, folder: StudyFolder) -> bool:
+    """Return whether a process works on a study, started here, by an earlier server or on the command line."""
+    return _starts(name) or is_held(folder.root / LOCK) or is_held(folder.lock)
+
+
+def _starts(name: str) -> bool:
+    """Return whether a process of this server works on a study, which takes its lock after some seconds only."""
+    return name in _running and _running[name].poll() is None
+
+
+def listing() -> list[dict[str, Any]]:
+    """Return the studies of the folder, the newest first."""
+    names = {path.name for path in RESULTS.glob("*") if path.is_dir() and not path.is_symlink()}
+    found = []
+    for name in names:
+        with contextlib.suppress(InputError):  # a folder of something else
+            found.append(_entry(name))
+    return sorted((e for e in found if e is not None), key=lambda e: str(e["date"]), reverse=True)
+
+
+def _entry(name: str) -> dict[str, Any] | None:
+    folder = folder_of(name)
+    progress: dict[str, Any] = {}
+    with contextlib.suppress(OSError, ValueError):
+        progress = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
+    works = _works(name, folder)
+    if not (works or progress or folder.plan_file.is_file() or folder.gathered.is_file()):
+        return None
+    chunks = folder.record().get("chunks", {})
+    total = progress.get("total") or sum(chunks.values()) or None
+    done = progress.get("done") if works or progress.get("step") == "done" else None
+    done = sum(n for key, n in chunks.items() if folder.chunk(key).is_file()) if done is None and chunks else done
+    files = [path.stat() for path in folder.root.rglob("*") if path.is_file()]
+    newest = max((stat.st_mtime for stat in files), default=0.0)
+    step = str(progress.get("step", "")) if works or progress.get("error") else ""
+    state = "running" if works else "stopped" if progress.get("error") else "done" if _whole(folder) else "paused"
+    return {
+        "name": name,
+        "question": _question(name, folder),
+        "state": state,
+        "step": step or ("starting" if works else ""),
+        "error": progress.get("error", ""),
+        "total": total,
+        "done": total if state == "done" else done,
+        "failed": progress.get("failed"),
+        "bytes": sum(stat.st_size for stat in files),
+        "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
+        "pages": [page for page in PAGES if (folder.root / page).is_file()],
+        "text": (TEXTS / f"{name}.yaml").is_file() or folder.study_file.is_file(),
+    }
+
+
+def _whole(folder: StudyFolder) -> bool:
+    """Return whether every chunk is solved and gathered."""
+    return folder.gathered.is_file() and all(folder.chunk(n).is_file() for n in folder.record().get("chunks", {}))
+
+
+def text_of(name: str) -> dict[str, Any]:
+    """Return the file of a study, as it was written or as it was stored with the results."""
+    for path in (TEXTS / f"{check_name(name)}.yaml", folder_of(name).study_file):
+        if path.is_file():
+            return {"text": path.read_text(encoding="utf-8")}
+    raise InputError("name", name, "a study of this folder", "Choose one of the list.")
+
+
+def _question(name: str, folder: StudyFolder) -> str:
+    with contextlib.suppress(InputError, OSError, ValueError):
+        text = folder.record().get("study") or text_of(name)["text"]
+        return str(parse_mapping(str(text), name).get("description") or "")
+    return ""
+
+
+def page_of(name: str, page: str) -> Path:
+    """Return the report of a study, or its explorer, which is written when it is first asked for."""
+    folder = folder_of(name)
+    path = folder.root / page
+    if page not in PAGES or path.is_symlink():
+        raise InputError("page", page, f"one of {', '.join(PAGES)}")
+    if page == "explorer.html" and not path.is_file() and folder.gathered.is_file():
+        from trackroller.solved import open_study  # heavy: SALib
+
+        open_study(folder.root).explore(path)
+    if not path.is_file():
+        raise InputError("page", f"{name}/{page}", "a page that was made", "Let the study run to its end.")
+    return path
+
+
+def compare(names: list[str]) -> list[dict[str, Any]]:
+    """Return factors, headline numbers and the sentences of *In short* of some studies."""
+    return [_headlines(name) for name in names]
+
+
+def _headlines(name: str) -> dict[str, Any]:
+    folder = folder_of(name)
+    view = read_results(folder.root).view
+    if (stored := folder.root / "sensitivity.nc").is_file() and not view.solved.unfinished:
+        view = view.analysed(read_result(stored))
+    table = factor_table(view)
+    return {
+        "name": name,
+        "cases": len(view.table),
+        "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows} if table else {},
+        "numbers": _numbers(view),
+        "short": [(head, " ".join(s.text for s in said)) for head, said in in_short(view, [])],
+    }
+
+
+def _numbers(view: StudyView) -> dict[str, list[str]]:
+    """Return lowest, middle and highest value of each output over the cases that roll."""
+    out = {}
+    for one in outputs(view.data, view.dims, default_names(view.data, view.dims, view.dims), scale="natural"):
+        values = sorted(v for v in one.values.tolist() if math.isfinite(v))
+        if values:
+            unit = unit_text(one.units).replace("–", "")
+            ends = (values[0], values[len(values) // 2], values[-1])
+            out[f"{one.long_name} [{unit}]" if unit else one.long_name] = [rounded(v) for v in ends]
+    return out

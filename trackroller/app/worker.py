@@ -1,0 +1,112 @@
+"""Run one study in a process of its own, which outlives the page and its server.
+
+`python -m trackroller.app.worker NAME` solves `studies/NAME.yaml` in the working directory and makes its report. It
+holds the lock `results/NAME/.page.lock` as long as it lives, writes how far it is into `results/NAME/.page.json`, and
+stops as at Ctrl-C once the file `results/NAME/.pause` is there.
+"""
+
+from __future__ import annotations
+
+import _thread
+import contextlib
+import json
+import sys
+import threading
+import time
+import traceback
+from pathlib import Path
+from typing import Any
+
+from trackroller.errors import InputError, WorkError
+from trackroller.files import interrupts_wait_for_files, write_text
+from trackroller.study.store.folder import try_lock
+
+LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
+TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress
+
+
+class Progress:
+    """How far a study is, kept in a file for the page."""
+
+    def __init__(self, root: Path) -> None:
+        self.root, self.told, self.written = root, dict[str, Any](), 0.0
+
+    def say(self, at_once: bool = True, **told: Any) -> None:
+        """Add facts to the record, and write it at once or if the last record is old."""
+        self.told |= told
+        if at_once or time.monotonic() - self.written > TICK:
+            write_text(self.root / PROGRESS, json.dumps(self.told))
+            self.written = time.monotonic()
+
+    def started(self, total: int, done: int) -> None:
+        """Record the number of cases, and how many were solved before."""
+        self.say(total=total, done=done, step="solving")
+
+    def advanced(self, count: int) -> None:
+        """Record solved cases."""
+        self.say(at_once=False, done=self.told.get("done", 0) + count)
+
+
+def is_held(path: Path) -> bool:
+    """Return whether another process holds the lock of a file."""
+    if not path.is_file():
+        return False
+    with open(path, "rb+") as stream:
+        return not try_lock(stream)
+
+
+def _watch(pause: Path) -> None:
+    """Interrupt the main thread once the file that asks for a pause is there."""
+    while not pause.exists():
+        time.sleep(TICK)
+    pause.unlink(missing_ok=True)
+    _thread.interrupt_main()
+
+
+def run(name: str) -> int:
+    """Solve a study and make its report; return the exit code.
+
+    Parameters
+    ----------
+    name : str
+        Name of the study, whose file is `studies/NAME.yaml`.
+    """
+    root = Path("results", name)
+    root.mkdir(parents=True, exist_ok=True)
+    with open(root / LOCK, "ab") as lock:
+        if not try_lock(lock):
+            return 1
+        progress = Progress(root)
+        progress.say(step="starting", error="")
+        threading.Thread(target=_watch, args=(root / PAUSE,), daemon=True).start()
+        try:
+            with interrupts_wait_for_files():
+                _work(name, progress)
+        except KeyboardInterrupt:
+            progress.say(step="paused")
+        except (InputError, WorkError) as exc:
+            progress.say(step="stopped", error=str(exc))
+        except Exception as exc:
+            traceback.print_exc()
+            progress.say(step="stopped", error=f"internal error, {type(exc).__name__}; see {root / 'page.log'}")
+        return int(progress.told["step"] != "done")
+
+
+def _work(name: str, progress: Progress) -> None:
+    from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
+    from trackroller.study.file.load import load_study
+    from trackroller.study.run import run_study
+    from trackroller.study.status import status_of
+
+    study = load_study(Path("studies", f"{name}.yaml"))
+    plan = run_study(study, started=progress.started, progress=progress.advanced)
+    status = status_of(study)
+    progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
+    build_report(plan.folder, lambda line: progress.say(step=line))
+    progress.say(step="done")
+
+
+if __name__ == "__main__":
+    with contextlib.suppress(IndexError):
+        sys.exit(run(sys.argv[1]))
+    sys.exit(2)

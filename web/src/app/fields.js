@@ -1,0 +1,133 @@
+// A row for every parameter of a case: name, slider, number field and unit, and what can be done with it.
+import { el, replace } from "../dom.js";
+import { number } from "../words.js";
+
+const STEPS = 160; // of a slider with a logarithmic scale
+const FACTOR = 4; // a slider spans a quarter to four times a value that lies outside of its ends
+
+export const symbol = (text) => {
+  const greek = { alpha: "α", mu: "μ", nu: "ν", sigma: "σ", tau: "τ", xi: "ξ" };
+  return text.split(/(\b[A-Za-z]+_[A-Za-z0-9]+(?:,[A-Z]+)?|\b(?:alpha|mu|nu|xi)\b)/).map((part, i) => {
+    if (i % 2 === 0) return part;
+    const [letter, index] = part.split("_");
+    const sign = greek[letter] ?? letter;
+    if (sign.length > 2) return part;
+    return el("span", { class: "symbol" }, el("i", {}, sign), index ? el("sub", {}, index.replace(/^Delta/, "Δ")) : null);
+  });
+};
+
+const asNumber = (value) => (value === "inf" ? Infinity : value === "-inf" ? -Infinity : Number(value));
+export const textOf = (value) => (value === Infinity || value === "inf" ? "inf" : value === null || value === undefined ? "" : String(value));
+
+function nice(step) {
+  const power = 10 ** Math.floor(Math.log10(step));
+  return [1, 2, 5, 10].map((k) => k * power).find((k) => k >= step * 0.999);
+}
+
+// The scale between the places of a slider and values.
+function scaleOf([low, high]) {
+  if (low * high > 0 && Math.max(low / high, high / low) > 2) {
+    const ratio = high / low;
+    return {
+      ends: [0, STEPS, 1],
+      value: (place) => Number((low * ratio ** (place / STEPS)).toPrecision(3)),
+      place: (value) => (value * low > 0 ? (STEPS * Math.log(value / low)) / Math.log(ratio) : 0),
+    };
+  }
+  const step = nice((high - low) / 200);
+  return { ends: [low, high, step], value: (place) => Number(Number(place).toPrecision(6)), place: (value) => value };
+}
+
+function endsFor(parameter, value) {
+  const ends = parameter.ends;
+  if (!Number.isFinite(value)) return ends;
+  if (ends && value >= ends[0] && value <= ends[1]) return ends;
+  if (value === 0) return ends ? [Math.min(0, ends[0]), Math.max(0, ends[1])] : null;
+  return [value / FACTOR, value * FACTOR].sort((a, b) => a - b);
+}
+
+// A row tells `change(value, moving)`; `set` shows a value, `complain` a message beside the field.
+export function parameterRow(parameter, { change, curve, factor }) {
+  const { name, label, unit, meaning } = parameter;
+  const id = `field-${name}`;
+  let scale = null;
+  const range = el("input", { type: "range", "aria-label": `${label}, slider` });
+  const field = el("input", { type: "text", id, inputmode: "decimal", autocomplete: "off", spellcheck: false, "aria-describedby": `${id}-said`, "data-field": name });
+  const said = el("span", { class: "said", id: `${id}-said`, role: "status" });
+  const straight = parameter.infinite
+    ? el("button", { type: "button", class: "mini", title: "straight: infinite radius", "aria-label": `${label}: straight`, onclick: () => change(field.value === "inf" ? null : "inf") }, "∞")
+    : null;
+  const tools = [
+    straight,
+    parameter.ends || parameter.optional
+      ? el("button", { type: "button", class: "mini", title: `Curve over ${label.toLowerCase()}`, "aria-label": `Curve over ${label}`, onclick: curve }, "∿")
+      : null,
+    el("button", { type: "button", class: "mini", title: "Make it a factor of the study", "aria-label": `Make ${label} a factor of the study`, onclick: factor }, "+"),
+  ];
+  const name_ = el("label", { for: id, title: `${meaning} (${parameter.allowed})` }, label, " ", symbol(parameter.symbol));
+  const node = el("div", { class: "field" }, name_, range, field, el("span", { class: "unit" }, unit), el("span", { class: "tools" }, tools), said);
+  range.addEventListener("input", () => {
+    const value = scale.value(Number(range.value));
+    field.value = String(value);
+    range.setAttribute("aria-valuetext", `${value} ${unit}`);
+    change(value, true);
+  });
+  range.addEventListener("change", () => change(scale.value(Number(range.value))));
+  field.addEventListener("change", () => change(field.value.trim() === "" ? null : field.value.trim().replace("−", "-").replace(",", ".")));
+  return {
+    node,
+    name,
+    set(given) {
+      const value = given ?? parameter.value;
+      const size = value === null ? NaN : asNumber(value);
+      if (document.activeElement !== field) field.value = textOf(value);
+      node.classList.toggle("given", given !== undefined);
+      field.placeholder = parameter.optional ? "not given" : "";
+      const ends = endsFor(parameter, size);
+      range.hidden = ends === null;
+      range.disabled = !Number.isFinite(size);
+      straight?.setAttribute("aria-pressed", String(size === Infinity));
+      if (ends === null || document.activeElement === range) return;
+      scale = scaleOf(ends);
+      [range.min, range.max, range.step] = scale.ends.map(String);
+      if (Number.isFinite(size)) range.value = String(scale.place(size));
+      range.setAttribute("aria-valuetext", Number.isFinite(size) ? `${number(size)} ${unit}` : "straight");
+    },
+    complain(message) {
+      said.textContent = message ?? "";
+      node.classList.toggle("wrong", Boolean(message));
+      field.setAttribute("aria-invalid", String(Boolean(message)));
+    },
+    ends: () => (scale ? [scale.value(Number(range.min)), scale.value(Number(range.max))] : null),
+  };
+}
+
+// A text field or a choice, for materials, profiles, laws and options.
+export function wordRow({ name, label, meaning, words = null, list = null, fallback = "" }, { change, factor }) {
+  const id = `field-${name}`;
+  const shared = { id, "data-field": name, "aria-describedby": `${id}-said` };
+  const field = words
+    ? el("select", shared, Object.entries(words).map(([value, text]) => el("option", { value, title: text }, value)))
+    : el("input", { type: "text", autocomplete: "off", spellcheck: false, ...shared, list });
+  const said = el("span", { class: "said", id: `${id}-said`, role: "status" });
+  const facts = el("span", { class: "facts" });
+  const more = factor
+    ? el("button", { type: "button", class: "mini", title: "Make it a factor of the study", "aria-label": `Make ${label} a factor of the study`, onclick: factor }, "+")
+    : null;
+  field.addEventListener("change", () => change(field.value.trim() === fallback ? null : field.value.trim()));
+  const node = el("div", { class: "field words" }, el("label", { for: id, title: meaning }, label), field, el("span", { class: "tools" }, more), facts, said);
+  return {
+    node,
+    name,
+    set(given) {
+      if (document.activeElement !== field) field.value = textOf(given ?? fallback);
+      node.classList.toggle("given", given !== undefined);
+    },
+    tell: (text) => replace(facts, text),
+    complain(message) {
+      said.textContent = message ?? "";
+      node.classList.toggle("wrong", Boolean(message));
+      field.setAttribute("aria-invalid", String(Boolean(message)));
+    },
+  };
+}

@@ -1,0 +1,147 @@
+// The live page: tabs, the fields of the roller, and what follows from every change of them.
+import { ask } from "./api.js";
+import { copy, el, replace } from "../dom.js";
+import { parameterRow, wordRow } from "./fields.js";
+import { live } from "./live.js";
+import { pictureView } from "./picture.js";
+import { resultsView } from "./results.js";
+import { createState } from "./state.js";
+import { studyView } from "./study.js";
+import { whatIf } from "./whatif.js";
+
+const TABS = [
+  ["roller", "Roller"],
+  ["whatif", "What if"],
+  ["study", "Study"],
+  ["results", "Results"],
+];
+const OPEN = ["Loads and use", "Roller and guide"];
+
+async function start() {
+  const root = document.querySelector("#app");
+  const offered = await ask("fields");
+  const state = createState();
+  const rows = new Map();
+  const times = []; // ms from the event of a slider to its picture
+  let since = 0;
+
+  const view = pictureView({ again: () => flow.again() });
+  const flow = live({
+    values: () => state.values,
+    inside: () => view.inside() && state.tab === "roller",
+    shown(picture) {
+      for (const row of rows.values()) row.complain("");
+      view.show(picture);
+      if (since) requestAnimationFrame(() => (times.push(performance.now() - since), (since = 0)));
+    },
+    failed(errors) {
+      for (const row of rows.values()) row.complain("");
+      for (const { field, message } of errors) {
+        const named = [...rows.keys()].find((name) => name === field || field.startsWith(`${name}.`) || field.startsWith(`${name} `));
+        rows.get(named)?.complain(message);
+      }
+      view.refuse(errors);
+    },
+  });
+  const study = studyView(state, offered, { started: () => results.look() });
+  const running = el("button", { type: "button", class: "running", hidden: true, onclick: () => state.show("results") });
+  const results = resultsView(state, {
+    open: (text) => study.open(text),
+    told(list) {
+      running.hidden = !list.length;
+      running.textContent = list.map((s) => `${s.name}: ${s.total ? Math.round((100 * (s.done ?? 0)) / s.total) : 0} %`).join(", ");
+    },
+  });
+  const variants = whatIf(state, offered, { rows });
+
+  const fields = el("form", { class: "fields", "aria-label": "The roller", onsubmit: (event) => event.preventDefault() });
+  const group = (title, ...content) => (OPEN.includes(title) ? el("fieldset", {}, el("legend", {}, title), content.flat()) : el("details", {}, el("summary", {}, title), content.flat()));
+  const change = (name) => (value, moving = false) => {
+    if (moving && !since) since = performance.now();
+    state.change({ [name]: value }, moving);
+  };
+  const add = (name, row) => (rows.set(name, row), row.node);
+  const grouped = Map.groupBy ? Map.groupBy(offered.parameters, (p) => p.group) : offered.parameters.reduce((m, p) => m.set(p.group, [...(m.get(p.group) ?? []), p]), new Map());
+  const parameters = (title) => (grouped.get(title) ?? []).map((p) => add(p.name, parameterRow(p, { change: change(p.name), curve: () => variants.curve(p.name), factor: () => study.add(p.name) })));
+  const datalist = el("datalist", { id: "materials" }, offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.search.replace(m.name.toLowerCase(), "").trim()}` })));
+  const bodies = offered.bodies.map((name) => add(name, wordRow({ name, label: `${name.replace("_", " ")}`.replace(/^./, (c) => c.toUpperCase()), meaning: "a name of the database; type a part of it, or of its description", list: "materials", fallback: offered.materials[0].name }, { change: change(name), factor: () => study.add(name) })));
+  const options = offered.options.map((o) => add(o.name, wordRow({ name: o.name, label: o.name.replaceAll("_", " "), meaning: o.meaning, words: o.kind === "word" ? o.values : o.kind === "switch" ? { true: "", false: "" } : null, fallback: Array.isArray(o.value) ? "" : String(o.value) }, { change: change(o.name) })));
+  const more = [...offered.mappings, { name: "duty", meaning: "{hours_per_day: 16, days_per_year: 250}: lives in years, too" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning }, { change: change(m.name) })));
+  fields.append(
+    group(OPEN[0], parameters(OPEN[0])),
+    group(OPEN[1], parameters(OPEN[1]), bodies, datalist),
+    group("Limits: what they need", [...grouped.keys()].filter((title) => !OPEN.includes(title)).flatMap(parameters)),
+    group("Model and conventions", options),
+    group("Profiles, friction law, bearing, catalogue, duty", el("p", { class: "soft" }, "Written as in a case file, such as {file: groove.csv}; files stand in the folder of this page."), more),
+  );
+
+  const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => state.undo() }, "Undo");
+  const redo = el("button", { type: "button", title: "Ctrl+Y", onclick: () => state.redo() }, "Redo");
+  const reset = el("button", { type: "button", onclick: () => state.replace({}) }, "Reset");
+  const pin = el("button", { type: "button", onclick: () => state.pin() }, "Pin");
+  const sheet = el("a", { target: "_blank", rel: "noopener" }, "Printable sheet");
+  const link = el("button", { type: "button", title: "without the address of this server", onclick: () => copy(location.href, link) }, "Copy link");
+  const tabs = TABS.map(([name, text]) => el("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, onclick: () => state.show(name) }, text));
+  const contents = { roller: el("div", { class: "roller" }, fields, view.node, el("div", { class: "lives" }, view.lives)), whatif: variants.node, study: study.node, results: results.node };
+  const panels = TABS.map(([name]) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, tabindex: "-1" }, contents[name]));
+  const list = el("div", { role: "tablist", "aria-label": "Parts of the page" }, tabs);
+  list.addEventListener("keydown", (event) => {
+    const step = { ArrowRight: 1, ArrowLeft: -1 }[event.key];
+    if (!step) return;
+    const next = TABS[(TABS.findIndex(([name]) => name === state.tab) + step + TABS.length) % TABS.length][0];
+    state.show(next);
+    document.querySelector(`#tab-${next}`).focus();
+  });
+  replace(root, el("header", {}, el("h1", {}, "trackroller"), list, running, el("div", { class: "tools" }, undo, redo, reset, pin, sheet, link)), el("main", {}, panels));
+  document.addEventListener("keydown", (event) => {
+    if (!(event.ctrlKey || event.metaKey) || /^(TEXTAREA|INPUT)$/.test(event.target.tagName) && event.target.type !== "range") return;
+    if (event.key === "z") state.undo();
+    else if (event.key === "y") state.redo();
+    else return;
+    event.preventDefault();
+  });
+
+  let own = "";
+  let writing = 0;
+  function address() {
+    clearTimeout(writing);
+    writing = setTimeout(() => {
+      own = `#${state.written()}`;
+      if (location.hash !== own) history.replaceState(null, "", own === "#" ? location.pathname : own);
+    }, 150);
+  }
+  state.onChange((what) => {
+    if (what === "case" || what === "moving") {
+      for (const row of rows.values()) row.set(state.values[row.name]);
+      for (const name of offered.bodies) rows.get(name).tell(offered.materials.find((m) => m.name === (state.values[name] ?? offered.materials[0].name))?.facts ?? "");
+      undo.disabled = !state.canUndo();
+      redo.disabled = !state.canRedo();
+      sheet.href = `sheet?case=${encodeURIComponent(JSON.stringify(state.values))}`;
+      flow.changed();
+    }
+    if (what === "tab") {
+      tabs.forEach((tab, i) => {
+        tab.setAttribute("aria-selected", String(TABS[i][0] === state.tab));
+        tab.tabIndex = TABS[i][0] === state.tab ? 0 : -1;
+        panels[i].hidden = TABS[i][0] !== state.tab;
+      });
+      if (state.tab === "results") results.look();
+      if (state.tab === "study") study.draw();
+      if (state.tab === "roller") view.redraw();
+    }
+    if (what !== "moving") variants.draw();
+    address();
+  });
+  addEventListener("hashchange", () => location.hash !== own && state.read(location.hash));
+  addEventListener("resize", () => (view.redraw(), variants.redraw()));
+  matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (view.redraw(), variants.redraw()));
+  state.read(location.hash);
+  if (!TABS.some(([name]) => name === state.tab)) state.show("roller");
+  results.look();
+  window.trackroller = { state, times };
+  root.dataset.ready = "";
+}
+
+start().catch((error) => {
+  document.querySelector("#app").textContent = error.message;
+});
