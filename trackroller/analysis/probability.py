@@ -72,7 +72,7 @@ def bounds(share: np.ndarray, count: np.ndarray | float) -> tuple[np.ndarray, np
 
 
 def _empty(unit: np.ndarray) -> float:
-    """Return the largest share of the n strata of a factor that hold no sample; lists count as stratified."""
+    """Return the largest share of the n strata of a factor without a sample; factors with a list do not count."""
     own = unit[:, (unit % 1 != 0).any(axis=0)]
     return max((1 - len(np.unique((column * len(unit)).astype(int))) / len(unit) for column in own.T), default=0.0)
 

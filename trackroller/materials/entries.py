@@ -143,7 +143,7 @@ class EntryParser:
             raise InputError(where, given_names, f"it lacks {', '.join(missing)}", remedy)
         numbers = {key: value.value for key, value in records.items()}
         numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
-        for key in contradictions(numbers).keys() - given.keys():  # inherited, and no longer true of this material
+        for key in contradictions(numbers).keys() - given.keys():  # inherited, but a given value excludes it
             del records[key]
         fields: dict[str, Any] = {key: value.value for key, value in records.items()} | {
             "name": name,

@@ -2,9 +2,9 @@
 
 A condition is one comparison, or several comparisons joined by `or`. The left side is a result. The right side is
 an expression over parameters and strengths. The condition holds for a case if it holds in any contact and body.
-Results that are known before the stresses decide first. A lower bound of the peak decides `peak_stress > ...`,
-so that no peak has to be searched for. This saves the larger part of the work in wide studies, where many designs are
-overloaded and their exact life is of no interest.
+Comparisons of results that are known before the stresses are evaluated first. For `peak_stress > ...` a lower bound of
+the peak is compared, so that no peak has to be searched for. This saves most of the work in wide studies,
+where many designs are overloaded and their exact life is of no interest.
 """
 
 from __future__ import annotations

@@ -72,7 +72,7 @@ def solve_cases(cases: xr.Dataset, database: MaterialDatabase | None, solver: So
             block = chunks.from_results(solver(part, database=database, **options), names)
             if options.get("normal") == "halfspace" and len(names) > 1:
                 for i in np.flatnonzero(block["regime"] == chunks.FAILED):
-                    # among others, the solver does not say which shapes are wrong
+                    # the reason why a shape is wrong is known only if the case is solved alone
                     block["reason"][i] = solve_cases(part.isel(case=[i]), database, solver)["reason"].values[0]
             blocks.append(block)
         except Exception as exc:

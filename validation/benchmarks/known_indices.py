@@ -75,6 +75,12 @@ def random_rows(function: Function, size: int, seed: int) -> Data:
     return unit, function.evaluate(unit)
 
 
+def rows_of_factor(function: Function, size: int, factor: int, seed: int) -> Data:
+    """Return random rows of all factors, of which only one is shown to the estimator."""
+    unit, y = random_rows(function, size, seed)
+    return unit[:, [factor]], y
+
+
 def category_rows(size: int, seed: int) -> Data:
     """Return rows of a uniform number and three categories, of which one adds 3."""
     rng = np.random.default_rng(seed)

@@ -29,7 +29,7 @@ class FastsimModel(ContactModel):
     most_slender = 0.99 * LARGEST_RATIO
 
     def __init__(self, given: Rollers, settings: Accuracy) -> None:
-        self.given, n = given, settings.on_grids  # strips and steps in the proportion of the default settings
+        self.given, n = given, settings.on_grids  # strips to steps as in the default settings
         self.settings = FastsimSettings(4 * n // 5, 6 * n // 5, n, given.law, given.profile_slip)
 
     def _solution(self, ellipse, slip, friction, rows) -> tuple[FastsimSolution, np.ndarray]:

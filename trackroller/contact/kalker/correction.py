@@ -1,9 +1,9 @@
 """A cheap contact law that is corrected by a few solutions of the exact theory.
 
-The table of the exact theory gives the forces of a patch at any slip. Elements solve the patch at the slip where the
-roller balances, and the difference is added to the table's forces from then on. The corrected law is exact at the
-solved slip and keeps the table's derivatives elsewhere, so that one or two solutions of a patch end the equilibrium
-(deferred correction). With two solutions of a patch the difference also changes linearly with the slip.
+The table of the exact theory gives the forces of a patch at any slip. The patch is solved on elements at the slip where
+the roller balances, and the difference between both forces is added to the table's forces. The corrected law is exact
+at the solved slip and has the table's derivatives. One or two solutions of a patch are therefore enough for the
+equilibrium (deferred correction). From two solutions of a patch on, the difference varies linearly with the slip.
 """
 
 from __future__ import annotations
@@ -26,15 +26,15 @@ NEAR = 0.02  # if the normalised slip changed less than this, the iteration star
 LEAST_STEP = 1e-9  # least change of the normalised slip from which a derivative of the difference is taken
 STEEPEST = 3.0  # largest such derivative
 REACH = 2.0  # steps over which the derivative is trusted
-# Outside its range the table's derivatives are those at the end of the range, and a correction leaves a larger share
-# of its change for the next one. Changes there count this many times.
+# Outside its range the table has the derivatives of the end of its range, so that one correction removes less of the
+# error. A change of the forces is therefore multiplied by this factor there.
 OUTSIDE = 20.0
-# Residual of the friction law over mu p_max where elements give tractions only, and on twice the elements. A smaller
-# residual changes the forces of twice the elements by less than 1e-5 of mu F_N.
+# Largest residual of the friction law over mu p_max for solutions that give the tractions only, and for solutions on
+# twice the elements. A smaller residual changes the forces of twice the elements by less than 1e-5 of mu F_N.
 TRACTION_TOLERANCE = 1e-3
-# Estimated error of the friction forces above which a patch is solved again on twice the elements. It is taken over
-# mu F_N, and as the change that it causes in F_N of the other contact, over this F_N. It holds for
-# `extrapolation.FITTED_AT` elements.
+# Estimated error of the friction forces above which a patch is solved again on twice the elements. The error is divided
+# by mu F_N. The change of F_N that it causes in the other contact, divided by that F_N, must not exceed it either.
+# The limit holds for `extrapolation.FITTED_AT` elements.
 REFINED_ERROR = 4e-3
 
 
@@ -53,7 +53,7 @@ class Correction:
     settings : KalkerSettings
         Discretisation of the elements; the friction law must be constant.
     trusts_table : bool
-        True leaves the forces of patches in the table's range uncorrected; elements then give their tractions only.
+        True: inside the table's range the forces are not corrected, and the elements give the tractions only.
     """
 
     difference_step = 1e-5  # relative step of derivatives of the corrected law

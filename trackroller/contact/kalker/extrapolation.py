@@ -17,15 +17,15 @@ SLIDING, ADHESION = 1.0 / 3.0, 1.0
 # Power of the mean traction over its bound in `weight`. It is high, because even a small adhesion area lowers the order
 # with which the forces converge.
 EARLY = 24
-# Patches that are long in the rolling direction converge faster by this power of b/a, if the elements see adhesion at
-# all: if more than SEEN_USED of the bound is unused.
+# Patches that are long in the rolling direction converge faster by this power of b/a, if the elements resolve
+# an adhesion area, which means that more than SEEN_USED of the bound is unused.
 LONG, SEEN_USED = 0.42, 1e-4
-UNLIKE = 3.4  # on unlike bodies K/mu counts squared: the patch slides at the leading edge, where like bodies stick
+UNLIKE = 3.4  # factor on (K/mu)^2 of unlike bodies: they slide at the leading edge, where like bodies stick
 FITTED, FITTED_AT, SLENDER = 0.054, 28, 0.9  # factor, elements and power of the axis ratio of `force_error`
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
-FEW = 5.0  # elements in an adhesion area of which half the change between the grids is chance
-# Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and spins of an element at which the adhesion area
-# begins to be unseen and at which its share has halved.
+FEW = 5.0  # elements in an adhesion area at which half of the change between the grids is random
+# Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and two spins of an element: where the elements
+# begin to miss the adhesion area, and where the share that they resolve has halved.
 UNSEEN, UNSEEN_POWER, RATIOS, SEEN, SMALL = 0.62, 0.8, (0.25, 3.5), 0.57, 5.0
 
 
@@ -34,8 +34,8 @@ def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndar
 
     Parameters
     ----------
-    used : tractions over their bounds in the mean, (n,). The adhesion area is made of whole elements, so that it would
-        carry its jumps into the forces.
+    used : mean of the tractions over their bounds, (n,). The adhesion area is not used here: it grows by whole
+        elements, so that the forces would jump.
     ratio : b/a, (n,)
     coupling : K/mu, (n,); 0 for like bodies
     """
@@ -45,10 +45,11 @@ def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndar
 
 
 def unseen_adhesion(spin: np.ndarray, ratio: np.ndarray, pole: np.ndarray, elements: int) -> np.ndarray:
-    """Return the share of mu F_N that |F_T| lacks where the adhesion area at the pole is below an element, (n,).
+    """Return by how much |F_T| is too small where the adhesion area at the pole is below an element, over mu F_N (n,).
 
-    Both grids lack it alike, so that their difference does not show it. The formula was fitted to random designs: it
-    falls with the area of an element, and vanishes where the elements see the adhesion area or where there is none.
+    Both grids miss this area equally, so that their difference does not show the error. The formula was fitted to
+    random designs: it falls with the area of an element. It is 0 where the elements resolve the adhesion area and where
+    there is no adhesion area.
 
     Parameters
     ----------
@@ -89,7 +90,7 @@ def extrapolated(
 
 
 def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
-    """Return what |F_T| lacks by `unseen_adhesion`, (n,) [N]."""
+    """Return the error of |F_T| by `unseen_adhesion`, (n,) [N]."""
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     with np.errstate(divide="ignore", invalid="ignore"):
         spin = np.abs(creep.spin) * np.sqrt(a * b) * elastic.shear_modulus / (friction * ellipse.max_pressure)
@@ -109,8 +110,8 @@ def force_error(
 ) -> np.ndarray:
     """Return the estimated error of extrapolated friction forces, (n,) [N].
 
-    The change from elements of twice the size alone tells little, because the coarse grid hardly sees a small adhesion
-    area. The formula was fitted to random designs, so that 1 in 100 errs by more; see
+    The change from elements of twice the size alone is a poor estimate, because the coarse grid hardly resolves a small
+    adhesion area. The formula was fitted to random designs; the error of 1 in 100 designs is larger; see
     `validation.benchmarks.force_errors`.
 
     Parameters
@@ -134,7 +135,7 @@ def _ratio(ellipse: Ellipse | GridPatch) -> np.ndarray:
 def adhesion(fine: np.ndarray, coarse: np.ndarray, weight: np.ndarray, elements: int) -> np.ndarray:
     """Extrapolate the share of the adhesion area from two grids, (n,).
 
-    The coarse grid tells little of an area of few elements, so its change counts less there.
+    The coarse grid resolves an area of few elements poorly, so that the change gets a smaller weight there.
     """
     count = 0.25 * np.pi * elements**2 * fine
     return np.clip(fine + weight * count / (count + FEW) * (fine - coarse), 0.0, 1.0)

@@ -14,9 +14,9 @@ from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, jo
 from trackroller.contact.slip import Creepage, Slip
 
 NEAR = 0.3  # largest change of creepage, over the slip in the patch, for which the last solution is a good start
-# Under a friction law that falls too steeply, a patch has several solutions or none. After MISSES solutions without
-# convergence, the next ones stop after SHORT_STEPS steps: the equilibrium cannot be met there, and the residual is
-# reported in any case.
+# Under a friction law that falls too steeply, a patch has several solutions or none, and the equilibrium cannot be met.
+# After MISSES solutions without convergence, the later solutions of the patch stop after SHORT_STEPS steps. The
+# residual is always reported.
 MISSES, SHORT_STEPS = 3, 4
 
 
@@ -111,7 +111,7 @@ class KalkerLaw:
         return solution
 
     def _near(self, keys, creep: Creepage, patch: Ellipse | GridPatch) -> np.ndarray:
-        """Return True where the last solution has nearly the same creepage; otherwise the coarse grid starts better."""
+        """Return True where the last solution has nearly the same creepage; otherwise half the elements are closer."""
         last = np.array([self._starts[key][1] if key in self._starts else np.inf for key in keys], float)
         size = np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
         with np.errstate(invalid="ignore"):

@@ -13,7 +13,7 @@ from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Accuracy, Rollers
 from trackroller.parameters.contact_models import DECLARED
 
-LEAST_UNDER_LAW = 20  # elements across a patch that resolve steeply falling friction
+LEAST_UNDER_LAW = 20  # least number of elements across a patch under a friction law
 FINER_PARTS = 6  # points of the traction along each side of an element of a refined patch
 
 

@@ -92,7 +92,7 @@ def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSetting
     bound = (friction * ellipse.max_pressure)[:, None]
     sides = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     forces, adhesion = subgrid.integrals(subgrid.fields_of(ellipse, solution), between, *sides)
-    return bound * forces, np.where(solution.report.products > 0, adhesion, 0.0)  # patches without friction have none
+    return bound * forces, np.where(solution.report.products > 0, adhesion, 0.0)  # without friction nothing sticks
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
@@ -217,7 +217,7 @@ def solve_patch(
 
 
 def _slip_of_law(solution: PatchSolution, height: np.ndarray) -> np.ndarray:
-    """Return the slips with which tractions agree: under a falling law the means that the law has used."""
+    """Return the slips from which the friction law gave the tractions: under a falling law the means of neighbours."""
     if solution.factor.shape[1:] == (1, 1):
         return solution.slip
     out = np.empty_like(solution.slip)

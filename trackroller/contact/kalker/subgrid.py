@@ -1,9 +1,10 @@
 """Tractions between the centres of elements.
 
-Neither the traction nor its direction is smooth where slip turns into stick or about the spin pole. Smooth is
-z = tau/(mu p) - k s, k > 0, of which the law of dry friction makes the traction: tau = mu p P(z), where P shortens a
-vector to at most length 1. So z is interpolated by cubic splines and the law is applied at each point. With k from the
-slip that an element's own traction causes, a stick area smaller than an element has about its true size.
+Neither the traction nor its direction is smooth where slip turns into stick or about the spin pole. The
+vector z = tau/(mu p) - k s with k > 0 is smooth. The law of dry friction gives the traction from it: tau = mu p P(z),
+where P shortens a vector to at most length 1. Cubic splines therefore interpolate z, and the law is applied at each
+point. With k from the slip that an element's own traction causes, a stick area smaller than an element has about its
+true size.
 """
 
 from __future__ import annotations
@@ -18,7 +19,7 @@ from trackroller.contact.kalker.cells import cells
 from trackroller.numerics.compiled import compiled
 
 PARTS = 3  # points along each side of an element
-RIM = 0.2  # of the largest bound: the least that slips are divided by
+RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
 @lru_cache(maxsize=16)
@@ -184,8 +185,8 @@ def integrals(
 
     `finer` are the mean pressure over the largest, and the share inside the patch, of PARTS times the elements, each
     (., .) or (n, ., .); a, b (n,) are the half sides of the patches [mm]. In full adhesion the traction is singular at
-    the trailing edge, where an element holds its mean and no smooth field does. So the elements' own tractions count
-    the more, the less of the bound is used.
+    the trailing edge, which an element's mean contains and a smooth field does not. The weight of the elements' own
+    tractions therefore grows as less of the bound is used.
     """
     height, share = finer
     fine = _finer(fields.before_law(), PARTS)

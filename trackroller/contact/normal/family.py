@@ -19,17 +19,17 @@ from trackroller.contact.normal.measure import Box, largest_pressure, patch_area
 from trackroller.contact.normal.pressure import NormalSolution, displacement, solve_normal
 
 LATTICE = 1.6  # ratio of neighbouring lattice loads
-# `roughness` up to which elements across resolve the ridges of a pressure: first, then on finer elements, whose rims
-# are rougher. PROBE elements along the rolling direction are enough to see it.
+# Largest `roughness` of a pressure whose ridges the elements resolve: with the given elements across, and with finer
+# ones, on which the rim of the patch is rougher. PROBE elements along the rolling direction are enough to measure it.
 RESOLVED, RESOLVED_FINER = 0.15, 0.35
 FACTORS = 1, 2, 4, 8  # on the elements across
 PROBE = 8
 KEPT = 8  # number of solutions between lattice loads that are kept in memory
-OVERLAP = 1e-3  # overlap over the approach that counts as contact outside the box
+OVERLAP = 1e-3  # least overlap outside the box that counts as contact, over the approach
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
 BOX_TOLERANCE = 3e-3  # relative change of the sides of the box at which it counts as found
-TOUCHES = 1e-9  # distance from an edge over the width of the box that counts as none
-MARGIN = 0.08  # margin over the sides of the box, for patches that shear moves
+TOUCHES = 1e-9  # largest distance at which a patch ends at an edge, over the width of the box
+MARGIN = 0.08  # margin around the box over its sides; shear can move the patch
 SAMPLES = 401  # points across for the first box and for the search of contact outside the box
 
 

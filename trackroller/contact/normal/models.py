@@ -176,7 +176,7 @@ class GridKalkerModel(GridModel):
         place[own] = np.arange(own.size)
         pressing = Pressing(place, self._per_stress[rows[own]])
         grid = self.patches.at(load, slip.sine, rows, True, pressing)
-        for _ in range(ROUNDS):  # only the patches `own` take part: the digits of the others must not depend on them
+        for _ in range(ROUNDS):  # of the patches `own` only, so that the results of other rollers do not depend on them
             t = self.surface(grid.take(own), slip.take(own), friction[own], rows[own])
             pressing = replace(pressing, shear=t)
             grid = self.patches.at(load, slip.sine, rows, True, pressing)

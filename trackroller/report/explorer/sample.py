@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-RARE = 1_000  # states with at most so many cases keep all of them
+RARE = 1_000  # all cases of a state are kept if it has at most so many cases
 
 
 def sample_rows(state: np.ndarray, keep: np.ndarray, most: int, seed: int = 1) -> np.ndarray:

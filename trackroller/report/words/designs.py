@@ -1,4 +1,4 @@
-"""Sentences on designs: which one to build, what ends it first, and which of them meet a target."""
+"""Sentences on designs: which one to build, what fails first, and which of them meet a target."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ def size_words(view: StudyView) -> str:
 
 
 def best_design(view: StudyView) -> list[Sentence]:
-    """Say which design to build, what it lasts, what fails first, and which design comes next.
+    """Say which design to build, how long it lasts, what fails first, and which design comes next.
 
     Returns
     -------

@@ -24,7 +24,7 @@ def title(name: str) -> str:
 
 
 def limit_of_best(view: StudyView) -> Sentence | None:
-    """Say which limit ends the best design first, and what it would gain without it; None without limits."""
+    """Say which limit the best design reaches first, and its life without this limit; None without limits."""
     designs = Designs.of(view)
     if designs is None or designs.goal != FIRST_LIMIT or not designs.comparable or not designs.table.iloc[0]["valid"]:
         return None

@@ -32,7 +32,7 @@ def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
 def sentences(ds: xr.Dataset) -> list[Sentence]:
     """Return one sentence for each body: its life, the track that fails first, and the block with the most damage.
 
-    A spectrum with limits has one more for each body: its first limit, and the block that decides it.
+    For a spectrum with limits a second sentence for each body names its first limit and the decisive block.
     """
     first = [_first_limit(ds, body) for body in BODIES] if "limiting_mechanism" in ds else []
     return [_sentence(ds, body) for body in BODIES] + first

@@ -36,7 +36,7 @@ from trackroller.study.store.sources import solver_digest
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-BLOCK = 100_000  # cases whose tables are in memory at once: the table of millions of cases takes gigabytes
+BLOCK = 100_000  # cases whose table is in memory at once; the table of millions of cases would take gigabytes
 _MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in ("name", "guesses"))
 
 
