@@ -108,3 +108,12 @@ def test_no_friction_no_flash_and_missing_values_are_named():
     ds = solved(motor_force=0, cooled_area=None)
     assert np.isnan(ds.bulk_temperature_rise.sel(body="roller")).all() and (ds.flash_temperature_rise > 0).all()
     assert "heat: the case gives no cooled_area" in ds.attrs["limits_notes"]
+
+
+def test_surroundings_above_the_limit_exceed_it_without_heat():
+    """A frictionless roller without loss has no rise of temperature at all."""
+    steel = STEEL | {"loss_fraction": 0.0}
+    case = {"friction_coefficient": 0.0, "motor_force": 0, "roller_material": steel, "guide_material": steel} | COOLED
+    cases = [tr.Case(**case, ambient_temperature=t) for t in (149.0, 150.0, 151.0)]
+    used = tr.solve(cases, "heat", contact_model="sliding").heat_utilisation.values
+    assert (used[0] == 0).all() and np.isposinf(used[1:]).all()

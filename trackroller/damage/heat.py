@@ -152,9 +152,10 @@ def evaluate(solved: SolvedRollers) -> Results:
     bulk = power / (1e-6 * c["heat_transfer_coefficient"] * c["cooled_area"])
     flashes = whole * np.stack([partition, 1.0 - partition], axis=2)
     bulks = np.stack([bulk[:, None] + 0.0 * partition, 0.0 * partition], axis=2)
-    room = m["temperature_limit"] - c["ambient_temperature"][:, None]
-    with np.errstate(divide="ignore"):
-        used = (flashes + bulks) / np.maximum(room, 0.0)[:, None, :]
+    room = (m["temperature_limit"] - c["ambient_temperature"][:, None])[:, None, :]
+    rise = flashes + bulks
+    # a body whose surroundings are too hot is over its limit without any heat of its own
+    used = np.where((room <= 0.0) & ~np.isnan(rise), np.inf, rise / np.where(room > 0.0, room, np.nan))
     return {
         "flash_temperature_rise": flashes,
         "bulk_temperature_rise": bulks,
