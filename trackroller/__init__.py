@@ -18,6 +18,7 @@ _WHERE = {
     "load_study": "trackroller.study.file.load",
     "open_study": "trackroller.solved",
     "run": "trackroller.solved",
+    "wear": "trackroller.roller.wear",
     "load_database": "trackroller.materials",
     "stress_from_tractions": "trackroller.halfspace.stress",
     "stress_on_grid": "trackroller.halfspace.stress",
@@ -41,6 +42,7 @@ __all__ = [
     "stress_from_tractions",
     "stress_on_grid",
     "von_mises",
+    "wear",
 ]
 
 if TYPE_CHECKING:
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from trackroller.materials import load_database
     from trackroller.roller.case import Case
     from trackroller.roller.solver import solve
+    from trackroller.roller.wear import wear
     from trackroller.solved import open_study, run
     from trackroller.study.file.load import load_study
 

@@ -203,6 +203,36 @@ def noise_of(u: np.ndarray, height: np.ndarray) -> float:
     return SAFETY * deviation
 
 
+def worn(section: CrossSection, start: float, step: float, depth: np.ndarray, moved: float = 0.0) -> CrossSection:
+    """Return the cross-section after wear: its height less the depth that was worn off.
+
+    Parameters
+    ----------
+    section : CrossSection
+        The new body.
+    start, step : float
+        u in the middle of the first cell of the depth and width of the cells [mm].
+    depth : numpy.ndarray, shape (m,)
+        Mean depth of each cell, normal to the contact plane [mm]; 0 beyond the cells.
+    moved : float
+        Distance by which the body has moved outward along the contact plane [mm].
+    """
+    from scipy.interpolate import PchipInterpolator  # heavy, and for drawn profiles only
+
+    u = start + step * np.arange(-1, depth.size + 1)
+    curve = PchipInterpolator(u, np.concatenate([[0.0], depth, [0.0]]))  # it does not swing beyond its points
+    rise = curve.derivative()
+
+    def height(v: np.ndarray) -> np.ndarray:
+        return section.height(v - moved) - curve(np.clip(v - moved, u[0], u[-1]))
+
+    def slope(v: np.ndarray) -> np.ndarray:
+        return section.slope(v - moved) - rise(np.clip(v - moved, u[0], u[-1]))
+
+    inner, outer = section.inner + moved, section.outer + moved
+    return CrossSection(height, slope, inner, outer, section.chamfer, section.parabolic)
+
+
 def with_edges(section: CrossSection, inner: float, outer: float, chamfer: float = 0.0) -> CrossSection:
     """Return the cross-section cut at `inner` < 0 < `outer` with edges of the radius `chamfer` [mm]."""
     return CrossSection(

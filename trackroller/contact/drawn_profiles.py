@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, smoothed, with_edges
+from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, smoothed, with_edges, worn
 from trackroller.contact.profiles import FEWEST
 from trackroller.errors import ShapeError
 
@@ -75,7 +75,13 @@ def cross_section(text: str, body: str, radius: float, alpha: float, guide_radiu
                 f"{body}.width", profile["width"], f"more than {apart:.6g} mm, the distance of the contacts"
             )
         edge = {"outer": reach}
-    return with_edges(shape, -edge.get("inner", math.inf), edge.get("outer", math.inf), edge.get("chamfer", 0.0))
+    shape = with_edges(shape, -edge.get("inner", math.inf), edge.get("outer", math.inf), edge.get("chamfer", 0.0))
+    if "worn" in profile:
+        loss = profile["worn"]
+        row = min(side, len(loss["depth"])) - 1
+        moved = loss.get("moved", [0.0, 0.0])[row]
+        shape = worn(shape, loss["start"], loss["step"], np.array(loss["depth"][row]), moved)
+    return shape
 
 
 def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius: float, side: int) -> CrossSection:
@@ -225,7 +231,8 @@ def gap(
         guide_curve_radius,
     )
     less = " Or smooth less: `smooth` is the noise in mm." if '"smooth"' in guide + roller else ""
-    _check_touch(between, "roller_profile" if roller else "guide_profile", guide_radius, less)
+    if '"worn"' not in guide + roller:  # the contact of worn bodies moves
+        _check_touch(between, "roller_profile" if roller else "guide_profile", guide_radius, less)
     return between
 
 
@@ -251,7 +258,7 @@ def _check_touch(between: Gap, body: str, guide_radius: float, more: str = "") -
 def has_details(text: str) -> bool:
     """Return True if a profile in canonical JSON is more than one arc or parabola without edges."""
     profile = _parsed(text) if text else {}
-    return bool(profile.keys() - {"arc", "parabola"})
+    return bool(profile.keys() - {"arc", "parabola", "worn"})
 
 
 def treats_sides_alike(text: str) -> bool:
@@ -263,6 +270,32 @@ def treats_sides_alike(text: str) -> bool:
         Profile in canonical JSON; "" for the circle.
     """
     profile = _parsed(text) if text else {}
+    if len(profile.get("worn", {}).get("depth", ())) > 1:
+        return False
     if profile.get("frame") != "section":
         return True
     return sum(p[0] <= 0 for p in profile["points"]) < FEWEST
+
+
+def with_wear(guide: str, roller: str, radii: tuple[float, float], worn: list[dict[str, Any]]) -> tuple[str, str]:
+    """Return the profiles of guide and roller with other entries `worn`, in canonical JSON.
+
+    Parameters
+    ----------
+    guide, roller : str
+        Profiles in canonical JSON; "" for the circle. An entry `worn` in them is replaced.
+    radii : tuple of float
+        Profile radii r_C,G and r_C,TR [mm].
+    worn : list of dict
+        Entries `worn` of guide and roller, see `profiles.canonical`.
+    """
+    form = "parabola" if '"parabola"' in guide + roller else "arc"  # `gap` chooses so, too
+    own = [dict(_parsed(text)) if text else {form: radius} for text, radius in zip((guide, roller), radii, strict=True)]
+    one, two = (json.dumps(profile | {"worn": loss}, sort_keys=True) for profile, loss in zip(own, worn, strict=True))
+    return one, two
+
+
+def inclined(guide: str) -> tuple[float, float]:
+    """Return the angles by which wear has turned the contact normals outward, from the guide's profile [rad]."""
+    turned = _parsed(guide).get("worn", {}).get("inclined", [0.0]) if guide else [0.0]
+    return turned[0], turned[-1]

@@ -29,7 +29,8 @@ from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.numerics.numbers import number_in
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
-KEYS = (*FORMS, "frame", "smooth", "edge", "width")
+KEYS = (*FORMS, "frame", "smooth", "edge", "width", "worn")
+WORN_KEYS = ("start", "step", "depth", "moved", "inclined")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
 FARTHEST = 1e300  # mm; largest finite length
@@ -73,6 +74,12 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     Every form may have `edge: {inner: mm, outer: mm, chamfer: mm}` or `width: mm`. `edge` gives the distances from the
     nominal contact along the tangent plane at which the material ends, and the radius of the rounded edge. `width` is
     the width of the whole groove or guide along the axis of the roller.
+
+    Every form may also have `worn: {start: mm, step: mm, depth: [[mm, ...]]}`, the depth that wear took off, as
+    `trackroller wear` writes it. `depth` has one list for both contacts or one for each, with the mean depth of equal
+    cells outward of the nominal contact; `start` is the middle of the first cell. `moved: [mm]` gives the distances by
+    which the body has moved outward, `inclined: [rad]` at the guide the angles by which the contact
+    normals have turned outward.
     """
     if not value:
         return {}
@@ -92,6 +99,8 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
         out["edge"] = _edge(value["edge"], f"{field}.edge")
     if "width" in value:
         out["width"] = _number(value["width"], f"{field}.width", positive=True)
+    if "worn" in value:
+        out["worn"] = _worn(value["worn"], f"{field}.worn")
     return out
 
 
@@ -175,3 +184,20 @@ def _edge(value: Any, field: str) -> dict[str, float]:
         raise InputError(field, value, "a mapping with one or more of " + ", ".join(EDGE_KEYS))
     check_names(f"{field} entry", value, EDGE_KEYS)
     return {key: _number(value[key], f"{field}.{key}", positive=True) for key in EDGE_KEYS if key in value}
+
+
+def _worn(value: Any, field: str) -> dict[str, Any]:
+    allowed = "a mapping with start, step > 0 and depth, lists of numbers >= 0 [mm] for one or both contacts"
+    try:
+        start, step = float(value["start"]), float(value["step"])
+        depth = np.atleast_2d(np.asarray(value["depth"], float))
+        turned = {key: np.broadcast_to(np.asarray(value.get(key, 0.0), float), len(depth)) for key in WORN_KEYS[3:]}
+    except (TypeError, ValueError, KeyError):
+        raise InputError(field, value if len(str(value)) < 200 else "...", allowed) from None
+    check_names(f"{field} entry", value, WORN_KEYS)
+    fits = step > 0 and depth.ndim == 2 and 1 <= len(depth) <= 2 and 1 <= depth.shape[1] <= MOST and np.all(depth >= 0)
+    if not (
+        fits and np.isfinite([start, step, *np.concatenate([*turned.values()])]).all() and np.isfinite(depth).all()
+    ):
+        raise InputError(field, "...", allowed)
+    return {"start": start, "step": step, "depth": depth.tolist()} | {k: v.tolist() for k, v in turned.items()}

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions
+from trackroller.contact.drawn_profiles import treats_sides_alike
 from trackroller.parameters import MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.roller.case import CaseTable
 
@@ -27,8 +28,8 @@ def is_mirror_symmetric(table: CaseTable) -> np.ndarray:
 
     They have no axial force and the same cross-section on both sides.
     """
-    drawn = (table.guide_profile != "") | (table.roller_profile != "")
-    return (table.axial_force == 0.0) & ~drawn
+    alike = [list(map(treats_sides_alike, texts)) for texts in (table.guide_profile, table.roller_profile)]
+    return (table.axial_force == 0.0) & np.logical_and.reduce(np.array(alike, bool).reshape(2, -1))
 
 
 def is_frictionless(table: CaseTable) -> np.ndarray:

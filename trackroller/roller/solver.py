@@ -175,7 +175,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     """Solve checked cases with the same options."""
     _check_cases(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
-    ds = with_reasons(_assemble(join(windows), options, single), table, options)
+    ds = with_reasons(assemble(join(windows), options, single), table, options)
     _tell_errors(ds, table, options)
     told = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     if told or of_mechanics(options.outputs, options.life_criterion):
@@ -246,7 +246,12 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
 
 def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
-    results = Results.start(scene, balance(scene))
+    return block_of(Results.start(scene, balance(scene)), options)
+
+
+def block_of(results: Results, options: Options) -> Block:
+    """Return the results of balanced rollers with the stages that the outputs need."""
+    scene = results.scene
     wanted = set(options.outputs)
     wanted |= {need for limit in computed(wanted, options.life_criterion) for need in limit.needs}
     stages.forces(results)
@@ -264,11 +269,12 @@ def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
         stages_stress.subsurface(results, options)
     stages.settle(results)
     stages_case.patch_limits(results, options)
-    model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(len(table))], dtype=np.int8)
+    model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
 
 
-def _assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
+def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
+    """Return a block of finished cases as a labelled data set; `single` drops the dimension `case`."""
     keep = [
         name
         for name in block.values

@@ -80,10 +80,12 @@ class Family:
         Number of elements along the rolling direction of the box.
     across : int
         Factor on this number for the elements across, see `finer_across`.
+    near : Box, optional
+        Box of a similar patch, from which the search for the box starts.
     """
 
-    def __init__(self, gap: Gap, elements: int, across: int = 1) -> None:
-        self.gap = gap
+    def __init__(self, gap: Gap, elements: int, across: int = 1, near: Box | None = None) -> None:
+        self.gap, self._near = gap, near
         self.shape = elements, elements * across
         self.limits = gap.limits
         self._nodes: dict[int, Node] = {}
@@ -151,6 +153,8 @@ class Family:
 
     def _start(self, load: float) -> Box:
         """Return a first box by Hertz's theory, with the mean curvature of the gap over the width of the patch."""
+        if self._near is not None:
+            return self._clipped(self._near.low, self._near.high, self._near.half)
         centre = float(self._samples[np.argmin(self._lateral)])
         lowest = float(self._lateral.min())
         k_y = float(self.gap.curvature(np.array(centre)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, fields
 
 import numpy as np
@@ -11,11 +11,13 @@ from trackroller.contact.common import SurfaceTractions
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.grid_patch import GridPatch, rim_means
 from trackroller.contact.normal.family import Family, Node
+from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.pressure import lift
 from trackroller.contact.slip import contour_over_tangent
 from trackroller.errors import ShapeError
 
 GapOf = Callable[[int, int], tuple[tuple, Callable[[], Gap]]]
+Boxes = Sequence[Box]
 SCALARS = tuple(field.name for field in fields(GridPatch) if field.name not in ("normal_force", "pressure"))
 
 
@@ -64,6 +66,8 @@ class Patches:
         Number of elements along the rolling direction of the box around a patch.
     across : int
         Factor on this number for the elements across.
+    near : sequence of Box, optional
+        Boxes of similar patches of contacts 1 and 2, from which the search for the boxes starts.
 
     Raises
     ------
@@ -71,7 +75,9 @@ class Patches:
         If no roller has both gaps. If some rollers have both gaps, the patches of the other rollers are NaN.
     """
 
-    def __init__(self, gaps: GapOf, modulus: np.ndarray, elements: int, across: int = 1) -> None:
+    def __init__(
+        self, gaps: GapOf, modulus: np.ndarray, elements: int, across: int = 1, near: Boxes | None = None
+    ) -> None:
         self.modulus, self.elements = modulus, elements
         families: dict[tuple, Family | None] = {}
         self._places: dict[tuple[int, int], Family | None] = {}
@@ -81,7 +87,7 @@ class Patches:
                 key, make = gaps(row, side)
                 if key not in families:
                     try:
-                        families[key] = Family(make(), elements, across)
+                        families[key] = Family(make(), elements, across, None if near is None else near[side - 1])
                     except ShapeError as error:
                         families[key], problem = None, error
                 self._places[row, side] = families[key]

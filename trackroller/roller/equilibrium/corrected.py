@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from trackroller.contact.common import Resultants
-from trackroller.roller.equilibrium.newton import Bounds, digits_of_forces, newton_polish
+from trackroller.roller.equilibrium.newton import Bounds, digits_of_forces, newton_polish, settled
 from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
 from trackroller.roller.equilibrium.solution import FAILED, ROLLING, Equilibrium, solve_equilibrium
 
@@ -68,7 +68,8 @@ def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, balance: Equi
     """Return `balance` with the rollers `rows` balanced again; the search starts from their last balance."""
     roller = Roller(loads, law, rows)
     bounds = Bounds(roller.w_of(-roller.radius), np.full(rows.size, LAST_SLIP))
-    near = newton_polish(roller, roller.w_of(balance.shift[rows]), balance.normal_force[rows].T.copy(), bounds)
+    start = roller.w_of(balance.shift[rows]), balance.normal_force[rows].T.copy()
+    near = newton_polish(roller, *start, bounds, settled(roller))
     with np.errstate(invalid="ignore"):
         good = (near.residual <= loads.converged) & ~roller.lifts(near.normal)
         good &= roller.wedged(near.normal, near.forces)

@@ -10,17 +10,19 @@ from trackroller.contact.common import Resultants
 from trackroller.contact.protocol import Patch
 from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
-from trackroller.roller.equilibrium.corrected import merged, solve_corrected, solve_some
+from trackroller.roller.equilibrium.corrected import balance_again, merged, solve_corrected, solve_some
 from trackroller.roller.stages.scene import Scene
 
 
-def balance(scene: Scene) -> eq.Equilibrium:
-    """Return the equilibrium of the cases of a scene, arrays (n,).
+def balance(scene: Scene, near: eq.Equilibrium | None = None) -> eq.Equilibrium:
+    """Return the equilibrium of the cases of a scene, arrays (n,); `near` is one from which the search can start.
 
     A model that offers a corrected law is solved with it. Rollers that do not settle so are solved with the law itself.
     Where the law itself finds no balance, the last corrected one is kept, with its last correction as residual.
     """
     correction = scene.model.correction
+    if correction is None and near is not None:
+        return balance_again(scene.loads, scene.mirror.law(scene.law), np.arange(scene.n), near)
     if correction is None:
         return eq.solve_equilibrium(scene.loads, scene.mirror.law(scene.law))
 

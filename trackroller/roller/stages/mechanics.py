@@ -10,8 +10,10 @@ from dataclasses import replace
 import numpy as np
 
 from trackroller.contact.common import Elastic
+from trackroller.contact.drawn_profiles import inclined
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
+from trackroller.contact.normal.patches import Boxes
 from trackroller.contact.slip import pole_rolling, turning_of
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
@@ -29,14 +31,14 @@ MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 FINITE = {"normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure", "peak_stress"}
 
 
-def prepare(table: CaseTable, options: Options, across: int = 1) -> Scene:
+def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | None = None) -> Scene:
     """Compute curvatures, Hertz shape, contact model and loads of a block.
 
     Parameters
     ----------
     table : n cases that share their friction law
     options : contact model, normal problem, slip terms, accuracy and shortcuts
-    across : factor on the elements across solved patches, see `models.finer_across`
+    across, near : factor on the elements across solved patches and boxes to start from, see `models.model_of`
     """
     alpha, r_a, k_x, k_y = contact_geometry(vars(table))
     hertz = shape(k_x, k_y, contact_modulus(*bodies(table)), options.hertz)
@@ -46,7 +48,7 @@ def prepare(table: CaseTable, options: Options, across: int = 1) -> Scene:
         # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(table.friction_law[0] if len(table) else None)
-    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across)
+    model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
     loads = eq.Loads(
         table.radial_force,
         table.axial_force,
@@ -63,7 +65,8 @@ def prepare(table: CaseTable, options: Options, across: int = 1) -> Scene:
     )
     bare = options.shortcuts and bool(is_frictionless(table).all())
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
-    return Scene(table, loads, model, Mirror(twins), bare, len(table), turning)
+    turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [1.0, -1.0]
+    return Scene(table, loads, model, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
 
 
 def forces(results: Results) -> None:
@@ -76,6 +79,8 @@ def forces(results: Results) -> None:
     offset = results.by_contact(results.patch.pressure_centre)
     slides = (results.regime == eq.FULL_SLIP)[:, None]
     v["normal_force"], v["lateral_force"] = b.normal_force, f.lateral_force
+    if results.scene.inclined is not None:
+        v["lateral_force"] = f.lateral_force - b.normal_force * results.scene.inclined
     v["driving_force"] = f.driving_force
     v["spin_moment"] = np.where(slides, offset * f.driving_force, f.spin_moment)
     v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius

@@ -10,7 +10,7 @@ from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
 from trackroller.contact.normal.family import Family, nearest_lattice
-from trackroller.contact.normal.patches import GapOf, Patches
+from trackroller.contact.normal.patches import Boxes, GapOf, Patches
 from trackroller.contact.protocol import ContactModel
 from trackroller.errors import ShapeError
 from trackroller.roller.case import CaseTable
@@ -31,6 +31,7 @@ def model_of(
     law: FrictionLaw,
     travel_speed: np.ndarray,
     across: int = 1,
+    near: Boxes | None = None,
 ) -> ContactModel:
     """Make the contact model that the options ask for.
 
@@ -42,9 +43,10 @@ def model_of(
     law : friction law that the cases share
     travel_speed : of the rollers, (n,) [mm/s]
     across : factor on the elements across solved patches, see `finer_across`
+    near : boxes around similar patches of both contacts, from which the normal problem starts
     """
     elastic = Elastic.of_pair(*bodies(table))
-    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius, across)
+    patches = None if options.normal == "hertz" else _patches(table, options, rolling_radius, across, near)
     name, settings, terms = options.contact_model, options.settings, options.slip_terms
     return contact_model(name, settings, elastic, options.spin_model, law, travel_speed, terms, patches)
 
@@ -68,10 +70,12 @@ def _elements(options: Options) -> int:
     return 2 * -(-options.settings.on_grids // 2)
 
 
-def _patches(table: CaseTable, options: Options, rolling_radius: np.ndarray, across: int) -> Patches:
+def _patches(
+    table: CaseTable, options: Options, rolling_radius: np.ndarray, across: int, near: Boxes | None
+) -> Patches:
     """Return the solver of the normal problem. It solves contacts with the same gap only once."""
     gaps = _gaps(table, rolling_radius)
-    return Patches(gaps, contact_modulus(*bodies(table)), _elements(options), across)
+    return Patches(gaps, contact_modulus(*bodies(table)), _elements(options), across, near)
 
 
 def finer_across(table: CaseTable, options: Options) -> np.ndarray:

@@ -32,6 +32,7 @@ class Scene:
     frictionless : True if all cases have zero friction, so that no tractions are computed
     n : number of cases
     turning : turning of the rollers with the guide's curve, (n,) [1/mm]; None if it does not count
+    inclined : turning of the contact normals towards +x_C by wear, (n, 2) [rad]; None without wear
     """
 
     table: CaseTable
@@ -41,6 +42,7 @@ class Scene:
     frictionless: bool
     n: int
     turning: np.ndarray | None = None
+    inclined: np.ndarray | None = None
 
     def kinematics(self, slip: Slip, rows: np.ndarray) -> Slip:
         """Return the slip with the turning of the rollers `rows`, if the turning counts."""
@@ -54,7 +56,12 @@ class Scene:
 
     def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         """Return the resultants on the roller; this is the contact law of the equilibrium."""
-        return self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
+        found = self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
+        if self.inclined is None:
+            return found
+        # the pressure of a worn patch has a lateral part
+        lateral = patch.normal_force * self.inclined[rows, (slip.sine < 0).astype(int)]
+        return replace(found, lateral_force=found.lateral_force + lateral)
 
 
 @dataclass

@@ -1,0 +1,136 @@
+"""Depth that wear takes off a patch in one implicit step.
+
+The rate of wear at the lateral place x is W(x) = int p |s| dy, with the local slip |s| per distance travelled. Wear
+changes the pressure: a wave of wave number q and depth d changes it by E* q d/2, so that an explicit step of more than
+about a tenth of a micrometre turns the groove into noise. The pressure at the end of the step is therefore an unknown
+of the step. In each column of elements, along the rolling direction, its distribution and the slip stay those of the
+start; the load Q of the column changes. With the influence matrix A of the columns and the depth c s Q of the step
+
+    A (Q - Q_0) + c s Q + gap = closing,   Q >= 0,   sum Q = sum Q_0,
+
+where c is the rate of wear times the travel and s the mean slip of a column. Columns beside the patch take part, with
+the gap that is left there, so that the patch can grow within the step.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from trackroller.contact.cross_sections import Gap
+from trackroller.contact.influence import displacements
+
+BESIDE = 0.25  # columns added on each side of the patch, over the columns of the grid
+LOADED = 1e-5  # share of the largest column load from which a column counts as loaded
+ROUNDS = 60  # limit of changes of the loaded columns
+
+
+class WearingPatch:
+    """One patch whose columns of elements wear.
+
+    Parameters
+    ----------
+    gap : Gap
+        Gap of the bodies at the start of the step; x counts outward.
+    x, y : numpy.ndarray, shape (M,) and (N,)
+        Element centres [mm].
+    pressure, slip : numpy.ndarray, shape (N, M)
+        Pressure [MPa] and local slip |s| per distance travelled [1].
+    modulus : float
+        Contact modulus E* [MPa].
+
+    Attributes
+    ----------
+    edges : numpy.ndarray, shape (m + 1,)
+        Ends of the columns, those beside the patch included [mm].
+    rate : numpy.ndarray, shape (m,)
+        W = int p |s| dy of each column at the start [N/mm].
+    """
+
+    def __init__(
+        self, gap: Gap, x: np.ndarray, y: np.ndarray, pressure: np.ndarray, slip: np.ndarray, modulus: float
+    ) -> None:
+        hx, hy = x[1] - x[0], y[1] - y[0]
+        beside = int(np.ceil(BESIDE * x.size))
+        low = min(beside, int((x[0] - 0.5 * hx - gap.limits[0]) / hx + 1e-6))
+        high = min(beside, int((gap.limits[1] - x[-1] - 0.5 * hx) / hx + 1e-6))
+        low, high = max(low, 0), max(high, 0)
+        wide = x[0] + hx * np.arange(-low, x.size + high)
+        p, s = (np.pad(field, ((0, 0), (low, high))) for field in (pressure, slip))
+        load, work = p.sum(axis=0), (p * s).sum(axis=0)
+        self.loaded = load > LOADED * load.max()
+        inside = np.flatnonzero(self.loaded)
+        first, last = int(inside[0]), int(inside[-1])
+        # a column without load takes the distribution of the nearest loaded one
+        near = inside[np.argmin(np.abs(np.arange(wide.size)[:, None] - inside), axis=1)]
+        shape = p[:, near] / load[near]
+        self.edges = wide[0] + hx * (np.arange(wide.size + 1) - 0.5)
+        self.rate = hy * work
+        self.width, self._hy = hx, hy
+        self._load = np.where(self.loaded, load, 0.0)
+        self._slip = _continued(np.where(self.loaded, work / np.where(self.loaded, load, 1.0), 0.0), first, last)
+        self._matrix = _column_matrix(shape, hx, hy) / modulus
+        apart = self._matrix @ self._load + (shape * gap.field(wide, y)).sum(axis=0)
+        closing = float((apart * self._load).sum() / self._load.sum())
+        self._gap = np.where(self.loaded, 0.0, np.maximum(apart - closing, 0.0))
+
+    def worn(self, factor: float) -> tuple[np.ndarray, float]:
+        """Return the depth of each column after an implicit step (m,), and how far it lets the bodies close [mm].
+
+        `factor` is the rate of wear of both bodies times the travel: depth over W [mm2/N].
+        """
+        c = factor * self._hy * self._slip
+        start = self._matrix @ self._load - self._gap
+        active, load, closing = self.loaded.copy(), self._load, 0.0
+        for _ in range(ROUNDS):
+            at = np.flatnonzero(active)
+            system = np.zeros((at.size + 1, at.size + 1))
+            system[:-1, :-1] = self._matrix[np.ix_(at, at)] + np.diag(c[at])
+            system[:-1, -1], system[-1, :-1] = -1.0, 1.0
+            answer = np.linalg.solve(system, np.concatenate([start[at], [self._load.sum()]]))
+            load, closing = np.zeros(active.size), float(answer[-1])
+            load[at] = answer[:-1]
+            apart = self._matrix @ load - start - closing
+            wrong = (load < 0.0) | (~active & (apart < -1e-12 * abs(start).max()))
+            if not wrong.any():
+                break
+            active = (active & (load > 0.0)) | (~active & wrong)
+        load = np.maximum(load, 0.0)
+        depth = c * load
+        # columns that hold nearly no load wear as at the start
+        return np.where(self.loaded | active, depth, 0.0), closing
+
+
+def _continued(slip: np.ndarray, first: int, last: int) -> np.ndarray:
+    """Return the mean slip of columns, continued beyond the loaded columns `first` to `last` along straight lines."""
+    out, places = slip.copy(), np.arange(slip.size)
+    for end, inward in ((first, 1), (last, -1)):
+        span = min(3, last - first)
+        slope = (slip[end] - slip[end + inward * span]) / span if span else 0.0
+        beyond = (places - end) * inward < 0
+        out[beyond] = np.maximum(slip[end] + np.maximum(slope, 0.0) * np.abs(places[beyond] - end), 0.0)
+    return out
+
+
+def _column_matrix(shape: np.ndarray, hx: float, hy: float) -> np.ndarray:
+    """Return the displacement of columns by unit loads of columns for E* = 1, both weighted by `shape` (N, m)."""
+    rows, columns = shape.shape
+    influence = displacements(hx, hy, 0.0, rows, columns, 0, 0)[0]
+    along = np.arange(rows)
+    apart = rows - 1 + along[:, None] - along[None, :]
+    out = np.empty((columns, columns))
+    for step in range(columns):
+        moved = influence[apart, columns - 1 + step] @ shape
+        place = np.arange(columns - step)
+        out[place, place + step] = out[place + step, place] = (shape[:, : columns - step] * moved[:, step:]).sum(axis=0)
+    return out
+
+
+def on_cells(edges: np.ndarray, depth: np.ndarray, cells: np.ndarray) -> np.ndarray:
+    """Return the mean of depths (m,), constant between `edges` (m + 1,), in other cells with the edges `cells`.
+
+    The cumulative volume is interpolated, so that no volume is lost and no depth is negative.
+    """
+    from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 - heavy, and for worn profiles only
+
+    volume = PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(depth * np.diff(edges))]))
+    return np.maximum(np.diff(volume(np.clip(cells, edges[0], edges[-1]))) / np.diff(cells), 0.0)

@@ -1,0 +1,302 @@
+"""Follow the groove of one roller while it wears: states along the travel, which do not depend on where one looks.
+
+ASSUME: every place of the roller's circumference is overrolled once in 2 pi r_A of travel, and every place of the guide
+`guide_overrollings_per_hour` times in the travel of an hour. A guide without this number does not wear.
+ASSUME: debris and plastic flow play no part, and the wear coefficients do not change with the travel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from trackroller.contact.common import Resultants
+from trackroller.contact.cross_sections import Gap
+from trackroller.contact.drawn_profiles import gap, treats_sides_alike, with_wear
+from trackroller.contact.hertz import contact_modulus
+from trackroller.contact.normal.measure import Box
+from trackroller.contact.normal.wearing import WearingPatch, on_cells
+from trackroller.damage.limit import roller_overrollings
+from trackroller.damage.wear import KM_PER_HOUR
+from trackroller.errors import InputError
+from trackroller.parameters import REGIMES
+from trackroller.roller import equilibrium as eq
+from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.options import Options
+from trackroller.roller.stages.balance import balance
+from trackroller.roller.stages.mechanics import prepare
+from trackroller.roller.stages.models import bodies, finer_across
+from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.table import CaseTable
+
+REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
+TOLERANCE = 0.01  # largest error of the depth in a step over the elastic approach of the new bodies
+FIRST = 0.05  # depth of the first step over the elastic approach of the new bodies
+LEAST = 1e-3  # least step over the first step
+GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
+STEPS = 2000  # largest number of steps
+ENDS = {
+    "travel": "the travel asked for is reached",
+    "permissible": "the permissible wear depth is reached",
+    "lift_off": "a contact has lifted off",
+    "full_slip": "friction can no longer transmit the motor force, so that wear per travel has no limit",
+    "failed": "no balance of the forces was found",
+    "steps": "the groove changes too fast for the least step",
+    "wide": f"the patch has grown beyond {REACH:g} times the new one",
+}
+
+
+@dataclass(frozen=True)
+class Groove:
+    """The worn state of one roller and its guide, and where the search for its balance starts.
+
+    Attributes
+    ----------
+    travel : float
+        Travel since the bodies were new [km].
+    depth : numpy.ndarray, shape (m, 2, cells)
+        Mean depth that wear took off the cells of roller and guide, outward from the first cell [mm]; m is 1 if both
+        contacts are mirror images, otherwise 2.
+    closing : numpy.ndarray, shape (m,)
+        How far wear let the bodies close along the contact normal [mm].
+    inclined : numpy.ndarray, shape (m,)
+        Angle by which the contact normal has turned outward [rad].
+    error : float
+        Sum of the estimated errors of the depth in all steps [mm].
+    balance : numpy.ndarray, shape (3,), optional
+        Rolling radius shift [mm] and normal forces [N] of a similar state.
+    boxes : numpy.ndarray, shape (m, 3), optional
+        Ends and half length of the boxes around the patches of that state [mm].
+    """
+
+    travel: float
+    depth: np.ndarray
+    closing: np.ndarray
+    inclined: np.ndarray
+    error: float = 0.0
+    balance: np.ndarray | None = None
+    boxes: np.ndarray | None = None
+
+
+def between(one: Groove, two: Groove, travel: float) -> Groove:
+    """Return the state at a travel [km] between two states of a march, by linear interpolation."""
+    part = (travel - one.travel) / (two.travel - one.travel)
+    names = ("depth", "closing", "inclined", "error")
+    mixed = {name: (1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in names}
+    return Groove(travel, **mixed)
+
+
+def travel_to_depth(one: Groove, two: Groove, depth: float) -> float:
+    """Return the travel [km] at which the deepest place reaches `depth` [mm] between two states; inf if it does not."""
+    grown = two.depth - one.depth
+    with np.errstate(divide="ignore", invalid="ignore"):
+        part = np.where(two.depth >= depth, (depth - one.depth) / grown, np.inf)
+    return float(one.travel + max(np.min(part, initial=np.inf), 0.0) * (two.travel - one.travel))
+
+
+class Wearing:
+    """One roller whose groove wears.
+
+    Parameters
+    ----------
+    table : CaseTable
+        The case, one row.
+    options : Options
+        Options of the solution, with `normal: halfspace`.
+
+    Raises
+    ------
+    InputError
+        For Hertzian patches, or if neither body has a wear coefficient and overrollings.
+    """
+
+    def __init__(self, table: CaseTable, options: Options) -> None:
+        self.table, self.options = table, options
+        self.alpha, self.radius, *_ = contact_geometry(vars(table))
+        self.modulus = float(contact_modulus(*bodies(table))[0])
+        hourly = np.array([roller_overrollings(table.velocity, self.radius)[0], table.guide_overrollings_per_hour[0]])
+        self.per_km = hourly / (KM_PER_HOUR * table.velocity[0])  # overrollings of a place of roller and guide
+        self.rates = _rates(table, options, self.per_km)
+        self._texts = str(table.guide_profile[0]), str(table.roller_profile[0])
+        self.contacts = 1 if table.axial_force[0] == 0.0 and all(map(treats_sides_alike, self._texts)) else 2
+        self._across = int(finer_across(table, options)[0])
+        none = np.zeros(self.contacts)
+        self.start = Groove(0.0, np.zeros((self.contacts, 2, 2)), none, none)
+        self.new = self.solve(self.start)
+        self.cells, self.scale, self._lean = np.array([-1.0, 0.0, 1.0]), np.nan, none
+        if self.end(self.new):
+            return
+        patch: Any = self.new.patch
+        wide, (low, high) = float(np.min(patch.semi_axis_lateral)), self._gap(table, 1).limits
+        step = 2.0 * wide / patch.shape[1]
+        self.cells = step * np.arange(
+            np.floor(max(low / step, -REACH * wide / step)), np.ceil(min(high, REACH * wide) / step) + 1
+        )
+        self.scale = float(np.mean(patch.approach))
+        self.start = replace(self.start, depth=np.zeros((self.contacts, 2, self.cells.size - 1)))
+        self._lean = self._leaning(self.new, table)
+
+    @property
+    def places(self) -> np.ndarray:
+        """Return the middles of the cells outward of the nominal contact, (cells,) [mm]."""
+        return 0.5 * (self.cells[1:] + self.cells[:-1])
+
+    def _moved(self, closing: np.ndarray) -> np.ndarray:
+        """Return how far the roller has moved outward along the tangent planes, (m,) [mm]: it sinks by the closing."""
+        tangent, sides = np.tan(self.alpha[0]), np.broadcast_to(closing, 2)
+        sunk, apart = sides.mean() * tangent, 0.5 * (sides[1] - sides[0]) / tangent
+        return np.array([sunk + apart, sunk - apart])[: self.contacts]
+
+    def worn_table(self, state: Groove) -> CaseTable:
+        """Return the case with the worn profiles of a state; the case itself if nothing was worn off."""
+        if not state.depth.any():
+            return self.table
+        radii = float(self.table.guide_profile_radius[0]), float(self.table.roller_profile_radius[0])
+        common = {"start": float(self.places[0]), "step": float(self.places[1] - self.places[0])}
+        guide = common | {"depth": state.depth[:, 1].tolist(), "inclined": state.inclined.tolist()}
+        roller = common | {"depth": state.depth[:, 0].tolist(), "moved": self._moved(state.closing).tolist()}
+        texts = with_wear(*self._texts, radii, [guide, roller])
+        guide_text, roller_text = (np.array([text], dtype=object) for text in texts)
+        profiles: Any = {"guide_profile": guide_text, "roller_profile": roller_text}
+        return replace(self.table, **profiles)
+
+    def solve(self, state: Groove) -> Results:
+        """Return balance and patches of a state."""
+        if state.balance is None or state.boxes is None:
+            scene = prepare(self.worn_table(state), self.options, self._across)
+            return Results.start(scene, balance(scene))
+        nan, boxes = np.full((3, 1, 2), np.nan), np.broadcast_to(state.boxes, (2, 3)).tolist()
+        shift, normal, rolls = state.balance[:1], state.balance[None, 1:], np.full(1, eq.ROLLING, np.int8)
+        near = eq.Equilibrium(rolls, rolls > 0, nan[0, :, 0], rolls > 0, shift, normal, Resultants(*nan))
+        scene = prepare(self.worn_table(state), self.options, self._across, [Box(*row) for row in boxes])
+        return Results.start(scene, balance(scene, near))
+
+    def end(self, results: Results) -> str:
+        """Return why the groove cannot be followed beyond these results; "" if it can."""
+        name = REGIMES[int(results.regime[0])]
+        if name == "rolling":
+            return "" if results.converged[0] else "failed"
+        return name
+
+    def turned(self, state: Groove, results: Results) -> Groove:
+        """Return a solved state with its own inclination, balance and boxes, from which the next state starts."""
+        patch: Any = results.patch
+        side = np.array([1.0, -1.0])[: self.contacts]
+        middle, wide = side * patch.centre[: self.contacts], patch.semi_axis_lateral[: self.contacts]
+        return replace(
+            state,
+            inclined=self._lean - self._leaning(results, self.worn_table(state)),
+            balance=np.concatenate([results.balance.shift, results.balance.normal_force[0]]),
+            boxes=np.stack([middle - wide, middle + wide, patch.semi_axis_rolling[: self.contacts]], axis=1),
+        )
+
+    def _gap(self, table: CaseTable, side: int) -> Gap:
+        columns = table.guide_profile_radius, table.roller_profile_radius, self.alpha, self.radius
+        g, r, alpha, radius = (float(column[0]) for column in columns)
+        texts = str(table.guide_profile[0]), str(table.roller_profile[0])
+        return gap(*texts, g, r, alpha, radius, float(table.guide_curve_radius[0]), side)
+
+    def _patches(self, results: Results, table: CaseTable) -> list[WearingPatch]:
+        t, out = surface_tractions(results), []
+        slip = np.hypot(t.slip_lateral, t.slip_rolling)
+        for k in range(self.contacts):
+            outward = slice(None, None, 1 - 2 * k)  # x counts outward in a gap
+            x = (1 - 2 * k) * t.x[k, outward]
+            out.append(
+                WearingPatch(
+                    self._gap(table, k + 1), x, t.y[k], t.pressure[k][:, outward], slip[k][:, outward], self.modulus
+                )
+            )
+        return out
+
+    def _leaning(self, results: Results, table: CaseTable) -> np.ndarray:
+        """Return the mean slope of the guide under the pressure, (m,) [1]; elastic slopes have no mean."""
+        patch: Any = results.patch
+        out = []
+        for k in range(self.contacts):
+            load = patch.pressure[k].sum(axis=0)
+            slope = self._gap(table, k + 1).guide.slope((1 - 2 * k) * patch.x[k])
+            out.append(float((slope * load).sum() / load.sum()))
+        return np.array(out)
+
+    def _advanced(self, state: Groove, patches: list[WearingPatch], travel: float) -> Groove:
+        """Return the state after an implicit step of `travel` [km]."""
+        depth, closing, moved = state.depth.copy(), state.closing.copy(), self._moved(state.closing)
+        share = self.rates / self.rates.sum()
+        for k, patch in enumerate(patches):
+            worn, closes = patch.worn(float(self.rates.sum()) * travel)
+            depth[k, 0] += share[0] * on_cells(patch.edges - moved[k], worn, self.cells)
+            depth[k, 1] += share[1] * on_cells(patch.edges, worn, self.cells)
+            closing[k] += closes
+        return replace(state, travel=state.travel + travel, depth=depth, closing=closing)
+
+    def _two_ways(self, at: Groove, patches: list[WearingPatch], step: float) -> tuple[Groove | None, float, str]:
+        """Return the state after a step, its error over the allowed one, and why there is none."""
+        full, half = (self._advanced(at, patches, part * step) for part in (1.0, 0.5))
+        middle = self.solve(half)
+        if reason := self.end(middle):
+            return None, np.inf, reason
+        two = self._advanced(self.turned(half, middle), self._patches(middle, self.worn_table(half)), 0.5 * step)
+        apart = np.abs(two.depth - full.depth).sum(axis=1)
+        wore = np.any(two.depth > at.depth, axis=1)
+        squares = [float(np.mean(one[cells] ** 2)) for one, cells in zip(apart, wore, strict=True) if cells.any()]
+        error = max(squares, default=0.0) ** 0.5
+        depth = np.maximum(2.0 * two.depth - full.depth, at.depth)
+        new = replace(two, depth=depth, closing=2.0 * two.closing - full.closing, error=at.error + error)
+        return new, error / (TOLERANCE * self.scale), ""
+
+    def march(self, state: Groove | None = None, step: float = 0.0) -> Iterator[tuple[Groove, Results, float, str]]:
+        """Yield states with their results, the next step [km], and at the last one why it cannot go on.
+
+        A state and its next step determine all that follows, so that a march that goes on has the same bits. Without
+        wear the new groove is the only state.
+
+        Parameters
+        ----------
+        state : Groove, optional
+            State from which the march goes on; default: the new groove.
+        step : float
+            Next step of a march that goes on [km].
+        """
+        at = self.start if state is None else state
+        results, reason = (self.new if state is None else self.solve(at)), self.end(self.new)
+        yield at, results, step, reason
+        for _ in range(0 if reason else STEPS):
+            patches, at = self._patches(results, self.worn_table(at)), self.turned(at, results)
+            if any(p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width for p in patches):
+                yield at, results, step, "wide"
+                return
+            fastest = max(float(patch.rate.max()) for patch in patches) * float(self.rates.sum())
+            if not fastest > 0.0:
+                return
+            step = step or FIRST * self.scale / fastest
+            least = LEAST * FIRST * self.scale / fastest
+            while True:
+                new, ratio, reason = self._two_ways(at, patches, step)
+                if new is not None and ratio <= 1.0:
+                    after = self.solve(new)
+                    reason = self.end(after)
+                    if not reason:
+                        break
+                step *= SHRINK if reason else max(SHRINK, 0.9 / np.sqrt(ratio))
+                if step < least:
+                    yield at, results, step, reason or "steps"
+                    return
+            at, results, step = new, after, step * min(GROWTH, 0.9 / np.sqrt(max(ratio, 1e-12)))
+            yield at, results, step, ""
+
+
+def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:
+    """Return the depth per km of roller and guide over int p |s| dy, (2,) [mm2/N]; 0 where it is not known."""
+    if options.normal != "halfspace":
+        raise InputError("normal", options.normal, "halfspace, because a worn groove is no circle", "Leave it out.")
+    if getattr(options, "wear_law", "archard") != "archard":
+        raise InputError("wear_law", options.wear_law, "archard while the groove changes", "Leave it out.")
+    k = np.array([body.wear_coefficient[0] for body in (table.roller, table.guide)]) * table.wear_coefficient_factor[0]
+    if np.isnan(k).all():
+        remedy = "Give it: roller_material: {like: NAME, wear_coefficient: NUMBER}."
+        raise InputError("wear_coefficient", None, "a number [mm3/(N m)] of roller or guide", remedy)
+    return np.nan_to_num(1e-3 * k * per_km)

@@ -1,0 +1,258 @@
+"""Solve one roller while its groove wears: results along the travel as a labelled data set (`tr.wear`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from trackroller.damage.limit import variables
+from trackroller.errors import InputError
+from trackroller.materials import load_database
+from trackroller.roller.case import Case, to_table
+from trackroller.roller.groove import ENDS, Groove, Wearing, between, travel_to_depth
+from trackroller.roller.options import Options
+from trackroller.roller.record import CASE, MATERIALS, with_inputs
+from trackroller.roller.reflection import handed, reflect
+from trackroller.roller.solver import assemble, block_of
+from trackroller.roller.stages import case as stages_case
+from trackroller.roller.stages.scene import Results
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.materials import MaterialDatabase
+
+OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life")
+_C, _CB = ("contact",), ("contact", "body")
+VARIABLES = variables(
+    "groove",
+    ("groove_depth", _CB, "mm", "d", "depth of the deepest worn place"),
+    ("groove_depth_error", (), "mm", "delta(d)", "estimated error of the depth, summed over the steps"),
+    ("groove_volume", _CB, "mm3", "V", "worn volume of the roller's circumference, and of a metre of the guide"),
+    ("worn_depth", (*_CB, "place"), "mm", "d(x)", "depth that wear took off normal to the contact plane"),
+    ("contact_angle", _C, "degree", "alpha", "inclination of the resultant of the pressure"),
+    ("closing", _C, "mm", "", "distance by which wear let the bodies close"),
+    ("next_step", (), "km", "", "next step of a run that goes on; missing at the end, which lies between two steps"),
+    ("start_inclination", _C, "rad", "", "turning of the contact normal outward, from which the solution started"),
+    (
+        "start_balance",
+        ("unknown",),
+        "1",
+        "",
+        "rolling radius shift [mm] and forces [N] from which the solution started",
+    ),
+    ("start_box", ("contact", "side"), "mm", "", "ends and half length of the patch from which the solution started"),
+)
+Tell = Callable[["xr.Dataset", float], None]
+
+
+def wear(
+    case: Case | dict[str, Any],
+    to: float,
+    outputs: Iterable[str] | str | None = None,
+    *,
+    resume: xr.Dataset | None = None,
+    tell: Tell | None = None,
+    database: MaterialDatabase | None = None,
+    **options: Any,
+) -> xr.Dataset:
+    """Follow roller and guide while their profiles wear, and return the results along the travel.
+
+    The case has to give wear coefficients by its materials. Both profiles, the balance of the roller, the pressures and
+    the contact angles are solved anew after each step.
+
+    Parameters
+    ----------
+    case : Case or mapping
+        The new roller and its guide.
+    to : float
+        Travel at which to end, > 0 [km]. The travel also ends at `permissible_wear_depth`, and where a contact is lost;
+        the attribute `end` says which.
+    outputs : str or iterable of str
+        Groups of results as of `solve`; by default "forces", "contact", "friction_work", "peak_stress" and "life".
+    resume : xarray.Dataset, optional
+        Result of the same case to a shorter travel, from which the run goes on. The result has the same bits.
+    tell : callable, optional
+        Function that receives the results so far and the goal `to` after each step.
+    database : MaterialDatabase, optional
+        The materials; by default the built-in ones with the user's own over them.
+    **options
+        Options of `solve`; `normal` is "halfspace".
+
+    Returns
+    -------
+    xarray.Dataset
+        Results of `solve` along `travel` [km], and in addition depth, volume and worn profiles along `place` [mm],
+        contact angles, the damage sum of the S-N curve, and the estimated error of the depth.
+
+    Raises
+    ------
+    InputError
+        For bad input, a material without wear coefficient, or `resume` of another roller.
+
+    Notes
+    -----
+    A step is implicit in the pressure, and is taken once whole and once in two halves. Both results extrapolate the
+    depth, and their difference controls the step. To 50 km it takes some seconds of processor time.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> steel = {"like": "1.7225-quenched-tempered", "wear_coefficient": 1e-5}
+    >>> case = tr.Case(motor_force=0, axial_force=0, friction_coefficient=0.2, roller_material=steel)
+    >>> ds = tr.wear(case, to=10, contact_model="sliding", accuracy="preview")
+    >>> float(ds.travel[-1]), ds.attrs["end"]
+    (10.0, 'travel')
+    """
+    known = load_database() if database is None else database
+    case = case if isinstance(case, Case) else Case.from_dict(case)
+    if not (np.isfinite(to) and to > 0):
+        raise InputError("to", to, "a travel > 0 [km]")
+    given = Options(**{"normal": "halfspace", "outputs": tuple(OUTPUTS if outputs is None else outputs)} | options)
+    record = _Record(case, given, known, tell or (lambda ds, goal: None), float(to))
+    return record.run(resume)
+
+
+class _Record:
+    """The run of one roller: its march, and the results that were made of its states."""
+
+    def __init__(self, case: Case, options: Options, database: MaterialDatabase, tell: Tell, to: float) -> None:
+        self.case, self.options, self.database, self.tell, self.to = case, options, database, tell, to
+        self.table, self.mirrored = handed(to_table(case, database))
+        self.wearing = Wearing(self.table, options)
+        self.rows: list[xr.Dataset] = []
+
+    def run(self, resume: xr.Dataset | None) -> xr.Dataset:
+        """Return the results up to the end."""
+        state, step = (None, 0.0) if resume is None else self._taken_up(resume)
+        before: Groove | None = None
+        for at, results, onward, reason in self.wearing.march(state, step):
+            if reason and (before is None or at.travel == before.travel):
+                if before is None and state is None:
+                    self._add(at, at, results, np.nan)
+                return self._joined(reason)
+            turned = self.wearing.turned(at, results)
+            if before is not None and (goal := self._goal(before, turned)):
+                end, place = goal
+                self._add(place, place, self.wearing.solve(place), np.nan)
+                return self._joined(end)
+            if before is not None or state is None:  # a state that is taken up has its row
+                self._add(at, turned, results, onward)
+            before = turned
+        # nothing wears
+        self._add(replace(self.wearing.start, travel=self.to), before or self.wearing.start, self.wearing.new, np.nan)
+        return self._joined("travel")
+
+    def _goal(self, one: Groove, two: Groove) -> tuple[str, Groove] | None:
+        """Return the first goal between two states, and the state there."""
+        permissible = float(self.table.permissible_wear_depth[0])
+        deep = travel_to_depth(one, two, permissible) if permissible > 0.0 else np.inf
+        travel = min(deep, self.to)
+        if travel > two.travel:
+            return None
+        place = between(one, two, travel)
+        return ("permissible" if deep < self.to else "travel"), place
+
+    def _add(self, state: Groove, turned: Groove, results: Results, onward: float) -> None:
+        """Add the row of a solved state; `turned` has the inclination by its own pressure."""
+        block = block_of(results, self.options)
+        stages_case.finish(self.table, block, self.options)
+        reflect(block.values, self.mirrored)
+        row = assemble(block, self.options, single=True)
+        values = self._values(state, turned, onward)
+        for v in VARIABLES:
+            if v.name in values:
+                array = np.asarray(values[v.name])
+                row[v.name] = v.dims, self._seen(array, v.dims), {"units": v.units, "long_name": v.long_name}
+        self.rows.append(row.assign_coords(travel=state.travel))
+        self.tell(self._joined("running"), self.to)
+
+    def _seen(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
+        """Return an array with contacts 1 and 2 swapped if the mirror image of the roller was solved, and back."""
+        return array[::-1] if self.mirrored[0] and dims[:1] == ("contact",) else array
+
+    def _values(self, state: Groove, turned: Groove, onward: float) -> dict[str, Any]:
+        w = self.wearing
+        both = (2, *state.depth.shape[1:])
+        depth, step = np.broadcast_to(state.depth, both), w.places[1] - w.places[0]
+        around = 2.0 * np.pi * (w.radius[0] + w.places * np.sin(w.alpha[0]))
+        return {
+            "groove_depth": depth.max(axis=2),
+            "groove_depth_error": state.error,
+            "groove_volume": np.stack([(depth[:, 0] * around).sum(axis=1), 1e3 * depth[:, 1].sum(axis=1)], 1) * step,
+            "worn_depth": depth,
+            "contact_angle": np.broadcast_to(np.degrees(w.alpha[0] + turned.inclined), 2),
+            "closing": np.broadcast_to(state.closing, 2),
+            "next_step": onward,
+            "start_inclination": np.broadcast_to(state.inclined, 2),
+            "start_balance": np.full(3, np.nan) if state.balance is None else state.balance,
+            "start_box": np.broadcast_to(np.full(3, np.nan) if state.boxes is None else state.boxes, (2, 3)),
+        }
+
+    def _joined(self, end: str) -> xr.Dataset:
+        """Return the rows along `travel` with the damage sum, and say why the travel ends."""
+        import xarray as xr  # noqa: PLC0415 - heavy
+
+        ds = xr.concat(self.rows, "travel", coords="minimal", compat="override", combine_attrs="override")
+        ds = ds.assign_coords(place=("place", self.wearing.places, {"units": "mm", "long_name": "place outward"}))
+        ds["travel"].attrs |= {"units": "km", "long_name": "travel since the bodies were new"}
+        if "life_cycles" in ds:
+            ds = ds.assign(_of_lives(ds, self.wearing.per_km))
+        ds.attrs |= {"title": "A roller and its guide while they wear", "end": end, "to": self.to}
+        ds.attrs |= {"wear_per_km": self.wearing.rates.tolist(), "end_meaning": ENDS.get(end, "")}
+        return with_inputs(ds, self.case, self.database)
+
+    def _taken_up(self, ds: xr.Dataset) -> tuple[Groove | None, float]:
+        """Take over the rows of a shorter travel, and return the last state and its next step [km]."""
+        own = with_inputs(ds.isel(travel=0).copy(), self.case, self.database).attrs
+        stated = self.options.attributes() | {name: own[name] for name in (CASE, MATERIALS)}
+        for name, value in stated.items():
+            if str(ds.attrs.get(name)) != str(value):
+                remedy = "Give the same case and options, or start anew in another file."
+                raise InputError("resume", name, "results of the same case with the same options", remedy)
+        states = np.flatnonzero(np.isfinite(ds.next_step.values) & (ds.travel.values < self.to))
+        if states.size == 0:
+            return None, 0.0
+        derived = [name for name in ("fatigue_damage", "life_travel", "life_travel_new") if name in ds]
+        self.rows = [ds.drop_vars([*derived, "place"]).isel(travel=int(i)) for i in states]
+        last, m = self.rows[-1], self.wearing.contacts
+        known = {v.name: self._seen(last[v.name].values, v.dims) for v in VARIABLES if v.name in last}
+        new = bool(np.isnan(known["start_balance"]).any())
+        state = Groove(
+            float(last.travel),
+            known["worn_depth"][:m],
+            known["closing"][:m],
+            known["start_inclination"][:m],
+            float(known["groove_depth_error"]),
+            None if new else known["start_balance"],
+            None if new else known["start_box"][:m],
+        )
+        return state, float(last.next_step)
+
+
+def _of_lives(ds: xr.Dataset, per_km: np.ndarray) -> dict[str, Any]:
+    """Return the damage sum along the travel, and the travel at which it reaches 1, with and without wear."""
+    travel, cycles = ds["travel"].values, ds["life_cycles"].transpose("travel", "contact", "body").values
+    with np.errstate(divide="ignore", invalid="ignore"):
+        rate = per_km / cycles
+        one, two = rate[:-1], rate[1:]
+        # between two states the damage rate follows a power of the stress, so that its logarithm is interpolated
+        mean = np.where((one > 0) & (two > 0) & (one != two), (two - one) / np.log(two / one), 0.5 * (one + two))
+    grown = mean * np.diff(travel)[:, None, None]
+    damage = np.concatenate([np.zeros_like(rate[:1]), np.cumsum(grown, axis=0)]) + 0.0 * rate
+    life = np.full(rate.shape[1:], np.nan)
+    for place in np.ndindex(*life.shape):
+        own = damage[(slice(None), *place)]
+        if np.isfinite(own).all() and own[-1] >= 1.0:
+            life[place] = np.interp(1.0, own, travel)
+    with np.errstate(divide="ignore"):
+        new = 1.0 / rate[0]
+    words = "travel at which the damage sum reaches 1"
+    return {
+        "fatigue_damage": (("travel", *_CB), damage, {"units": "1", "long_name": "damage sum of the S-N curve"}),
+        "life_travel": (_CB, life, {"units": "km", "long_name": f"{words}; missing if it lies beyond the end"}),
+        "life_travel_new": (_CB, new, {"units": "km", "long_name": f"{words} under the stress of the new groove"}),
+    }
