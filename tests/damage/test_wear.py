@@ -264,13 +264,16 @@ def test_wear_without_friction_is_the_limit_of_little_friction():
 def test_placeholders_and_missing_values_are_told():
     guessed = solved(roller_material="POM", radial_force=-60, axial_force=5, motor_force=0).attrs["limits_notes"]
     assert "wear: placeholders of material 'POM': wear_coefficient (on 1.7225-normalised, expected from" in guessed
-    assert "limits_notes" not in solved(("wear",), roller_material=steel(K), guide_material=steel(K)).attrs or (
-        "wear" not in solved(("wear",), roller_material=steel(K), guide_material=steel(K)).attrs["limits_notes"]
-    )
+    measured = solved(("wear",), roller_material=steel(K), guide_material=steel(K))
+    assert measured.attrs["limits_notes"] == ""
     unknown = {"like": QUENCHED, "family": "PEEK"}
     ds = solved(("wear", "limits"), roller_material=unknown | {"name": "mine"}, friction_coefficient=0.2)
     assert "wear: material 'mine' has no wear_coefficient." in ds.attrs["limits_notes"]
     assert ds.wear_life_hours.sel(body="roller").isnull().all() and np.isnan(float(ds.run_in_distance))
+    energy = solved(("wear", "limits"), wear_law="energy", roller_material=steel(K), guide_material=steel(K))
+    assert "wear: the case gives no wear_table." in energy.attrs["limits_notes"]
+    assert "density" in energy.attrs["limits_notes"] and "wear_coefficient" not in energy.attrs["limits_notes"]
+    assert energy.wear_volume_per_km.isnull().all()
     bare = solved(("wear", "limits"), permissible_wear_depth=None)
     assert "wear: the case gives no permissible_wear_depth." in bare.attrs["limits_notes"]
 

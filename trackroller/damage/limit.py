@@ -132,6 +132,8 @@ class Limit:
         Fields of a case that are mappings and belong to this limit.
     requires : tuple of str
         Fields of a case and values of a material without which there is no verdict.
+    requires_by : mapping of str to mapping of str to tuple of str
+        What else is required, by option and by the value of the option.
     bodies : tuple of str
         Bodies that the limit concerns.
     ends_at_once : bool
@@ -160,12 +162,17 @@ class Limit:
     materials: tuple[Parameter, ...] = ()
     mappings: tuple[MappingField, ...] = ()
     requires: tuple[str, ...] = ()
+    requires_by: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     bodies: tuple[str, ...] = BODIES
     ends_at_once: bool = True
     distribution: str = "none"
     compares: tuple[str, str] = ("", "")
     standard: str = ""
     assumes: tuple[str, ...] = ()
+
+    def required(self, options: Mapping[str, Any]) -> tuple[str, ...]:
+        """Return the fields of a case and values of a material that a verdict requires under options of a solution."""
+        return self.requires + tuple(name for key, own in self.requires_by.items() for name in own[options[key]])
 
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:
@@ -225,7 +232,7 @@ def lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) 
     """
     out = []
     scatter = ("scatter_in_cycles",) if limit.distribution == SN_SCATTER else ()
-    for name in limit.requires + (scatter if solved.options["failure_probability"] != 0.5 else ()):
+    for name in limit.required(solved.options) + (scatter if solved.options["failure_probability"] != 0.5 else ()):
         if name in solved.cases:
             column = solved.cases[name]
             if np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):

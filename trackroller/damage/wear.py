@@ -274,7 +274,8 @@ LIMIT = Limit(
     ),
     materials=(optional("wear_coefficient", "k_W", "mm3/(N m)", "wear coefficient", 0.0, 1.0, closed=True),),
     mappings=(TABLE,),
-    requires=("wear_coefficient", "permissible_wear_depth", "guide_overrollings_per_hour"),
+    requires=("permissible_wear_depth", "guide_overrollings_per_hour"),
+    requires_by={"wear_law": {"archard": ("wear_coefficient",), "energy": ("wear_table", "density")}},
     ends_at_once=False,
     compares=("wear_depth_per_km", "permissible wear depth over the required travel"),
     assumes=(

@@ -32,10 +32,12 @@ GIVEN: dict[str, Any] = {
     "guide_overrollings_per_hour": 100.0,
     "heat_transfer_coefficient": 20.0,
     "cooled_area": 5000.0,
+    "permissible_wear_depth": 0.05,
 }
 RESULTS = {
     "shakedown": ("elastic_utilisation", "shakedown_utilisation"),
     "heat": ("flash_temperature_rise", "heat_partition", "hysteresis_moment"),
+    "wear": ("wear_depth_per_overrolling", "wear_volume_per_km"),
     "multiaxial": ("von_mises_amplitude", "findley_stress", "dang_van_stress"),
 }
 

@@ -93,7 +93,7 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     for limit in computed(options.outputs, options.life_criterion):
         out += lacks(limit, solved, names)
         for material, placeholders in guesses:
-            guessed = [f"{name} ({words})" for name, words in placeholders if name in limit.requires]
+            guessed = [f"{name} ({words})" for name, words in placeholders if name in limit.required(solved.options)]
             if guessed:
                 out.append(f"{limit.name}: placeholders of material '{material}': {', '.join(guessed)}.")
     return list(dict.fromkeys(out))

@@ -1,0 +1,72 @@
+"""What the report of a study says of wear: placeholders, run-in, the error of full sliding, the best whatever k is."""
+
+import pytest
+import yaml
+
+import trackroller as tr
+from trackroller.report.explorer.rows import collect
+from trackroller.report.words.accuracy import wear_of_sliding
+from trackroller.report.words.in_short import in_short
+from trackroller.report.words.limits import best_whatever, guesses, worn
+
+STUDY = """
+name: dry
+base:
+  motor_force: 0
+  axial_force: 5
+  radial_force: -30
+  guide_curve_radius: .inf
+  guide_overrollings_per_hour: 60
+  permissible_wear_depth: 0.05
+factors:
+  material_pair: {values: [[POM, 1.7225-quenched-tempered], [PA6, 1.7225-quenched-tempered]]}
+  roller_profile_radius: {values: [-6.3, -8]}
+  friction_coefficient: {values: [0.1, 0.2]}
+  wear_coefficient_factor: {values: [0.5, 2]}
+outputs: [forces, contact, peak_stress, life, wear, limits]
+contact_model: sliding
+accuracy: preview
+analysis: {outputs: [run_in_distance, roller_wear_life_hours, guide_wear_life_hours]}
+pareto: {roller_wear_life_hours: max, max_pressure: min}
+chunk_size: 8
+"""
+
+
+@pytest.fixture(scope="module")
+def study(tmp_path_factory):
+    return tr.run(yaml.safe_load(STUDY), progress=False, results=tmp_path_factory.mktemp("results"))
+
+
+def test_sentences_on_wear(study):
+    view = study.view
+    told = guesses(view)
+    assert {name.split(" on ")[0] for name in told.values["wear"]} == {"POM", "PA6", "1.7225-quenched-tempered"}
+    assert "decide wear (POM, " in told.text  # of both chunks
+    km = study.data.run_in_distance.values
+    beyond = worn(view)
+    assert beyond.values["count"] == 16 and beyond.values["least"] == pytest.approx(km.min())
+    assert "41 % in the median" in wear_of_sliding(view).text
+    best = best_whatever(view)
+    life = view.table.assign(life=view.column("pair_life_to_first_limit_hours"))
+    by_design = life.groupby(["material_pair", "roller_profile_radius"])["life"].min()
+    assert set(best.values["designs"]) and best.values["of"] == len(by_design) == 4
+    assert by_design.idxmax()[0].split(" /")[0] in best.text
+    said = [sentence.text for _, own in in_short(view, []) for sentence in own]
+    assert {told.text, beyond.text, wear_of_sliding(view).text, best.text} <= set(said)
+
+
+def test_run_in_and_wear_life_are_axes_goals_and_analysed(study):
+    columns = {column.name: column for column in collect(study.view)}
+    for name in ("run_in_distance", "roller_wear_life_hours", "guide_wear_life_hours"):
+        assert columns[name].role == "output" and columns[name].log
+        assert name in study.indices().output.values
+    assert "roller_wear_life_hours:beyond" not in columns  # no S-N data behind it
+    assert len(study.pareto()) > 0
+
+
+def test_a_study_without_wear_says_nothing_of_it(tmp_path):
+    plain = yaml.safe_load(STUDY) | {"outputs": ["forces", "contact", "peak_stress", "life"], "name": "plain"}
+    plain = {key: value for key, value in plain.items() if key not in ("analysis", "pareto")}
+    plain["factors"] = plain["factors"] | {"wear_coefficient_factor": {"values": [1]}}
+    view = tr.run(plain, progress=False, results=tmp_path).view
+    assert guesses(view) is worn(view) is wear_of_sliding(view) is best_whatever(view) is None
