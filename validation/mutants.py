@@ -95,13 +95,13 @@ FORMULAS = {
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("analysis/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
-    "converged": ("analysis/convergence.py", 'converged." if times <= 1', 'converged." if times <= 4', CONVERGENCE),
+    "converged": ("report/words/indices.py", 'converged." if times <= 1', 'converged." if times <= 4', CONVERGENCE),
     "interval-of-a-step": ("analysis/effects.py", "a - low_a))", "high_a - a))", WORDS),
     "rising": ("analysis/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
     "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("analysis/designs.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
     "median-case": ("analysis/designs.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
-    "beyond-data": ("analysis/lives.py", "> limit) | endless", "> limit) & endless", DESIGNS),
+    "beyond-data": ("analysis/lives.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
     "class-of-a-value": ("analysis/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
     "target-met": ("analysis/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
     "all-targets": ("analysis/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
@@ -111,7 +111,7 @@ DECISIONS = {
     "rounded-outwards": ("analysis/events.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
     "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
     "pareto-end": (
-        "report/words/pareto.py",
+        "analysis/pareto.py",
         '-1.0 if way == "max" else 1.0',
         '1.0 if way == "max" else -1.0',
         WORDS,

@@ -27,7 +27,7 @@ def first_limit(view: StudyView) -> np.ndarray:
 
 
 def deciding(view: StudyView, names: np.ndarray, most: int = 2) -> list[str]:
-    """Return the factors that tell most about the first limit of the valid cases, the strongest first.
+    """Return the factors on which the first limit of the valid cases depends most, the strongest first.
 
     Parameters
     ----------
@@ -37,8 +37,8 @@ def deciding(view: StudyView, names: np.ndarray, most: int = 2) -> list[str]:
 
     Notes
     -----
-    Factors are ranked by the mutual information of their levels and the first limit; those that tell nothing are left
-    out, and those with more than `MOST_LEVELS` levels, because the table would not be readable.
+    Factors are ranked by the mutual information of their levels and the first limit. Factors without mutual
+    information are left out, and so are factors with more than `MOST_LEVELS` levels, whose table would be too long.
     """
     information: dict[str, float] = {}
     for factor in (f for f in view.factors if len(view.levels(f)) <= MOST_LEVELS):

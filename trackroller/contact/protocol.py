@@ -139,7 +139,7 @@ class ContactModel:
         return patch
 
     def stick(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray | None:
-        """Return the share of the adhesion area in each rolling patch, (m,) [1]; None if `surface` tells it."""
+        """Return the share of the adhesion area in each rolling patch, (m,) [1]; None if `surface` returns it."""
         return None
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:

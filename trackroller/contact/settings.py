@@ -1,4 +1,4 @@
-"""Settings that one accuracy gives to each stage of a solution, and what a contact model knows of its rollers."""
+"""Settings of each stage of a solution at one accuracy, and the data of the rollers that a contact model gets."""
 
 from __future__ import annotations
 

@@ -115,8 +115,8 @@ def _composed(name: str, tolerance: float, forces: Rung, peak: Rung, elements: i
 
 # Errors of the peak and of the forces that a preset keeps in full sliding in 99 % of the measured designs.
 PROMISES = {"preview": (2e-2, 5e-3), "standard": (4e-3, 2e-5), "reference": (3e-4, 1e-7)}
-# Elements of `kalker` across a patch. They are set, because too few designs are measured to tell neighbouring numbers
-# of elements apart: chosen from the ladder, they would change with the sample.
+# Elements of `kalker` across a patch. They are fixed, because too few designs are measured to distinguish neighbouring
+# numbers of elements. A choice from the ladder would change with the sample.
 ELEMENTS = {"preview": 12, "standard": 28, "reference": 56}
 # Elements of FASTSIM and of solved patches, which do not interpolate between their elements.
 GRID_ELEMENTS = {"preview": 20, "standard": 40, "reference": 80}

@@ -167,7 +167,7 @@ def check_spin_model(spin_models: Sequence[str], contact_models: Sequence[str]) 
 
 
 def model_in_use(options: Options, friction_law: str) -> str:
-    """Return the contact model that solves a case, which may differ from the one asked for.
+    """Return the contact model that solves a case, which may differ from the wanted one.
 
     Parameters
     ----------
@@ -196,7 +196,7 @@ def model_in_use(options: Options, friction_law: str) -> str:
 
 
 def _suffices(contact_model: str, options: Options) -> bool:
-    """Return whether a model whose forces alone were measured is as exact as asked for."""
+    """Return whether a model whose forces alone were measured is as exact as wanted."""
     settings = options.settings
     if settings.name in PRESETS:
         return settings.name == "preview"

@@ -11,8 +11,6 @@ curvatures are fixed (`load_study` of samples.py).
 
 from __future__ import annotations
 
-# Only the standard library up here: on Linux the peak memory of a process starts with that of the process it was
-# started from, so the one that starts the others must stay small.
 import json
 import math
 import resource
@@ -21,6 +19,8 @@ import sys
 import time
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 import trackroller as tr
 from trackroller.numerics.threads import thread_count
@@ -89,11 +89,8 @@ def exponent(rows: list[dict[str, Any]]) -> float:
 
     A slope of 1 is linear growth.
     """
-    points = [(math.log(r["cases"]), math.log(r["over_yardstick"] * r["cases"])) for r in rows if r["cases"] >= 100]
-    if len(points) < 2:
-        return math.nan
-    x0, y0 = (sum(c) / len(points) for c in zip(*points, strict=True))
-    return sum((x - x0) * (y - y0) for x, y in points) / sum((x - x0) ** 2 for x, _ in points)
+    points = np.log([(r["cases"], r["over_yardstick"] * r["cases"]) for r in rows if r["cases"] >= 100])
+    return float(np.polyfit(*points.T, 1)[0]) if len(points) > 1 else math.nan
 
 
 def draw(by_size: list[dict[str, Any]], by_accuracy: list[dict[str, Any]], folder: Path) -> tuple[Path, Path]:

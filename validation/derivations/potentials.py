@@ -30,6 +30,7 @@ each with its known partial derivatives (a differential ring). The algebra is ex
 from __future__ import annotations
 
 from functools import cache
+from math import gcd
 from typing import Any
 
 from sympy import QQ
@@ -57,18 +58,6 @@ _DERIVATIVES: dict[str, dict[Element, Element]] = {
         Ax: -y * iR * iS + y * z * iR * iP,
         Ay: y * iR * iS,
     },
-    "y": {
-        y: _RING(1),
-        R: y * iR,
-        iR: -y * iR**3,
-        iS: -y * iR * iS**2,
-        iQ: -2 * y * iQ**2,
-        Ly: iR,
-        Lx: -x * y * iR * iQ,
-        Lz: y * iR * iS,
-        Ay: -x * iR * iS + x * z * iR * iQ,
-        Ax: x * iR * iS,
-    },
     "z": {
         z: _RING(1),
         R: z * iR,
@@ -83,6 +72,8 @@ _DERIVATIVES: dict[str, dict[Element, Element]] = {
         Ay: -x * y * iR * iQ,
     },
 }
+_EXCHANGED = list(zip((x, y, iP, iQ, Lx, Ly, Ax, Ay), (y, x, iQ, iP, Ly, Lx, Ay, Ax), strict=True))
+_DERIVATIVES["y"] = {f.compose(_EXCHANGED): df.compose(_EXCHANGED) for f, df in _DERIVATIVES["x"].items()}
 
 # Rewriting rules (factors to find, replacement), applied in this order as long as one of them applies.
 _RULES: list[tuple[dict[int, int], Element]] = [
@@ -146,23 +137,12 @@ def _monomials(degree: int, parity_x: int, parity_y: int) -> list[Element]:
 
 # Points with rational R, so that the equations for the coefficients are exact.
 _QUADRUPLES = [
-    (1, 2, 2, 3),
-    (2, 3, 6, 7),
-    (1, 4, 8, 9),
-    (4, 4, 7, 9),
-    (2, 6, 9, 11),
-    (6, 6, 7, 11),
-    (3, 4, 12, 13),
-    (2, 5, 14, 15),
-    (2, 10, 11, 15),
-    (1, 12, 12, 17),
-    (8, 9, 12, 17),
-    (1, 6, 18, 19),
-    (6, 6, 17, 19),
-    (6, 10, 15, 19),
-    (4, 5, 20, 21),
-    (4, 8, 19, 21),
-    (4, 13, 16, 21),
+    (a, b, c, r)
+    for r in range(3, 22)
+    for a in range(1, r)
+    for b in range(a, r)
+    for c in range(b, r)
+    if a * a + b * b + c * c == r * r and gcd(a, b, c) == 1
 ]
 
 

@@ -20,7 +20,7 @@ from trackroller.parameters.contact_models import DECLARED
 class FastsimModel(ContactModel):
     """Kalker's simplified theory; NaN where the ellipse is more slender than its coefficients reach.
 
-    The field knows this model, and many studies were made with it: it stays as a step between `sliding` and `kalker`.
+    Many published studies use this theory. Its accuracy and its cost lie between those of `sliding` and `kalker`.
     """
 
     declaration = DECLARED["fastsim"]

@@ -216,7 +216,7 @@ class Correction:
         return Works(work * (1.0 + lost), solution.pressure_work)
 
     def forget(self, rows: np.ndarray) -> None:
-        """Drop the solutions of the rollers `rows`, so that their patches are solved again when asked for."""
+        """Drop the solutions of the rollers `rows`, so that their patches are solved again when needed."""
         slots = np.concatenate([2 * rows, 2 * rows + 1])
         self.store.known[slots] = self.finer.known[slots] = False
         self.error[rows] = np.nan

@@ -79,7 +79,7 @@ def extrapolated(
 
     Returns
     -------
-    The weight (n,) and what the resultants lack (n, 3) [N, N, N mm].
+    The weight (n,) and the correction of the resultants (n, 3) [N, N, N mm].
     """
     unlike = elastic.coupling / np.where(friction > 0.0, friction, np.inf)
     share = weight(subgrid.fields_of(ellipse, solution).used, _ratio(ellipse), unlike)

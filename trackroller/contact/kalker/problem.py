@@ -25,7 +25,7 @@ class KalkerSettings:
     extrapolate : bool
         Extrapolate the resultants from two grids, with `elements` and with half of them.
     between : bool
-        Integrate resultants and adhesion area between the elements too. False, where tractions alone are asked for,
+        Integrate resultants and adhesion area between the elements too. False, where only the tractions are wanted,
         adds up the elements.
     profile_slip : bool
         Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.

@@ -1,7 +1,7 @@
 """Patches of one gap under any load, from solutions of the normal problem on a fixed lattice of loads.
 
 The equilibrium asks for a patch at tens of slightly different loads. The loads of a geometric lattice, F/E* =
-LATTICE^k, are solved from scratch. The lattice does not depend on the loads asked for, so that no result depends on
+LATTICE^k, are solved from scratch. The lattice does not depend on the wanted loads, so that no result depends on
 earlier ones. Between lattice loads the box around the patch and the pressures over their load are interpolated. This
 interpolation is exact for Hertz's gap and starts the solution for other gaps.
 """

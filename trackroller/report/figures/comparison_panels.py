@@ -110,7 +110,7 @@ def label_axis(axes: Axes, x: Groups, letters: int) -> None:
 
 
 def line(axes: Axes, x: Groups, values: np.ndarray, model: str, shade: bool, **more: Any) -> Any:
-    """Draw the median of a model over the groups, and its band where asked for."""
+    """Draw the median of a model over the groups, and its band if it is wanted."""
     look = {"markersize": 2.8, "markeredgewidth": 0.7, **LOOKS[model], **more}
     at = x.at if x.ordered else x.at + 0.1 * (list(LOOKS).index(model) - 1.5)
     return band(axes, at, values, look, x.ordered, shade)

@@ -25,7 +25,7 @@ from trackroller.report.words.regimes import occurrence
 
 FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 MAX_TICKS = 9
-MOST_LETTERS = 80  # below an axis; more letters stand slanted
+MOST_LETTERS = 80  # of all labels below an axis; longer labels are slanted
 MOST_WRITTEN = 72  # cells of a map with its values written in
 Pair = tuple[str, str]
 

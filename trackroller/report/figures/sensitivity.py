@@ -25,7 +25,7 @@ WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 
 
 def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
-    """Name the outputs most asked for that have an index."""
+    """Name at most `count` outputs that have an index, the most important first."""
     index = headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
     usual = list(DEFAULTS)  # lives first
@@ -129,7 +129,7 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
 
 
 def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
-    """Draw sigma over mu*: a factor to the right matters, and above the line its effect differs from place to place.
+    """Draw sigma over mu*: effects grow to the right; above the line they depend on the other factors.
 
     It answers: which factors can be left out of a further study, and which act only together with others?
     """

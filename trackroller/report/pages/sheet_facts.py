@@ -160,7 +160,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
 
 
 def _used(ds: xr.Dataset, option: str) -> str:
-    """Name the contact model that solved the case if it is not the one asked for; an empty text for other options."""
+    """Name the contact model that solved the case if it is not the chosen one; an empty text for other options."""
     used = CONTACT_MODELS[int(ds["contact_model_used"])]
     return f" (solved by {used})" if option == "contact_model" and used != ds.attrs[option] else ""
 

@@ -113,15 +113,15 @@ def warnings(ds: xr.Dataset) -> list[str]:
     for i, name in enumerate(ds["block"].values if "validity" in ds else ()):
         for flag in flags_of(ds.isel(block=i)):
             blocks_of_flag.setdefault(f"{flag.sentence} {flag.remedy}", []).append(f"'{name}'")
-    told = [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
-    return told + str(ds.attrs.get("limits_notes", "")).splitlines()
+    flagged = [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
+    return flagged + str(ds.attrs.get("limits_notes", "")).splitlines()
 
 
 def assumed(ds: xr.Dataset) -> list[str]:
     """Return what was not given, and a question about a drive that is not given."""
     given = json.loads(ds.attrs.get(NOT_GIVEN, "{}"))
-    told = [not_given_text(given), drive_question(given, set(PARAMETERS) - set(given))]
-    return [capital(text) for text in told if text]
+    texts = [not_given_text(given), drive_question(given, set(PARAMETERS) - set(given))]
+    return [capital(text) for text in texts if text]
 
 
 @lives_in_years

@@ -176,7 +176,7 @@ def _option_text(value: Any) -> str:
 
 
 def models_used(ds: xr.Dataset) -> list[Row]:
-    """Say how many cases each contact model solved, where another model than the one asked for solved some of them."""
+    """Say how many cases each contact model solved, where another model than the chosen one solved some of them."""
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
     names = str(ds["contact_model_used"].attrs.get("flag_meanings", "")).split()

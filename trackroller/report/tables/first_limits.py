@@ -13,9 +13,9 @@ from trackroller.report.words.limits import title
 
 
 def first_limit_table(view: StudyView) -> Table | None:
-    """Count the first limits of the valid cases over the two factors that tell most about them.
+    """Count the first limits of the valid cases over the two factors that decide most about them.
 
-    None for a study that does not ask for limits, or in which no factor tells anything.
+    None for a study without limits, or if the first limit depends on no factor.
     """
     if view.life != FIRST_LIMIT:
         return None

@@ -136,7 +136,7 @@ def margins(
 
 
 def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str, str]) -> list[Margin]:
-    """Return the margins of the limits asked for, for the bodies that they concern."""
+    """Return the margins of the limits of a result, for the bodies that they concern."""
     out = []
     compared = {one for limit in LIMITS.values() for one in limit.compares[0].split()}
     needed = {"utilisation", "life_hours_by_limit"} | compared
@@ -218,7 +218,7 @@ def first_limits(listed: list[Margin]) -> list[str]:
 
 
 def not_checked(ds: xr.Dataset) -> list[str]:
-    """Return what was not checked: limits that lack a value, and limits not asked for."""
+    """Return what was not checked: limits without a value, and limits that the user did not choose."""
     asked = str(ds.attrs.get("limits", "")).split()
     missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
     lacking: dict[str, list[str]] = {}

@@ -53,9 +53,9 @@ def guesses(view: StudyView) -> Sentence | None:
     for note in placeholders(view.data):
         name, _, rest = note.partition(GUESSES)
         found.setdefault(name, []).append(rest.split("'")[1])
-    told = [f"{title(name)} ({listing(list(dict.fromkeys(own)))})" for name, own in found.items()]
-    text = f"Placeholders of materials, guesses without a source, decide {listing(told)}: measure them."
-    return Sentence("guesses", text, found) if told else None
+    placed = [f"{title(name)} ({listing(list(dict.fromkeys(own)))})" for name, own in found.items()]
+    text = f"Placeholders of materials, guesses without a source, decide {listing(placed)}: measure them."
+    return Sentence("guesses", text, found) if placed else None
 
 
 def worn(view: StudyView) -> Sentence | None:

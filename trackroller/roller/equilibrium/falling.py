@@ -18,7 +18,7 @@ POINTS = 24  # slips of the search
 FIRST, LAST = -1.5, 3.5  # decades of slip over its scale between which the search looks
 GOLDEN, REFINEMENTS = 0.381966011250105, 12
 SWEEPS = 16  # largest number of steps with the fine law; where its forces jump, more steps do not help
-NEAR = 0.1  # torque over its scale that the coarse law may lack where the fine law is in balance
+NEAR = 0.1  # torque over its scale by which the coarse law may fall short where the fine law has a balance
 
 
 def first_balance(roller: Roller, whole: Bounds, fine: bool = False) -> tuple[Bounds, np.ndarray, np.ndarray]:

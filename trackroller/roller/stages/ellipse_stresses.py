@@ -72,7 +72,7 @@ class EllipseStresses(PatchStresses):
         return not (self.results.scene.model.full_sliding or self.results.scene.frictionless)
 
     def _shares(self, flat: np.ndarray, ask: Callable[..., Any]) -> Any:
-        """Return what `ask`, a method of the contact model, tells of the tractions of the existing patches `flat`."""
+        """Return the tractions of the existing patches `flat` by `ask`, a method of the contact model."""
         results = self.results
         own = results.scene.mirror.source(flat)
         slides = results.slides_along[own] != 0
@@ -86,7 +86,7 @@ class EllipseStresses(PatchStresses):
     def fields(self, flat: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
         """Return the traction over its bound on grids over the existing patches `flat` (m,), and on coarser grids.
 
-        The first is None where full sliding needs no grid, the second where the model knows no coarser grid.
+        The first is None where full sliding needs no grid, the second where the model has no coarser grid.
         """
         results = self.results
         if not self._gridded:

@@ -55,7 +55,7 @@ class GridStresses(PatchStresses):
         """Return the peak stresses.
 
         Where the slip turns within an element (its pole in a slender patch), the element size limits the accuracy. If
-        the model knows the tractions on finer elements, the patch is searched again with more elements, until the
+        the model computes the tractions on finer elements, the patch is searched again with more elements, until the
         estimated error is as small as that of other patches.
         """
         results, options = self.results, self.options

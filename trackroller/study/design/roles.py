@@ -60,9 +60,9 @@ def roles_of(
 
     Parameters
     ----------
-    names : the factors asked for; options of the calculation have no role and are left out
+    names : the wanted factors; options of the calculation have no role and are left out
     factors : all factors of the study, whose expressions may use others; empty for a table
-    given : the key `roles` of the study file, which overrides what the program knows
+    given : the key `roles` of the study file, which overrides the roles of the program
     design : the design of the study; in `inner_outer` the inner array holds the conditions
 
     Returns

@@ -44,15 +44,15 @@ def _option(option: Option) -> dict[str, Any]:
 
 def schema() -> dict[str, Any]:
     """Return the schema: pydantic's, with the names and bounds of the parameters and options filled in."""
-    found = StudyFile.model_json_schema()
-    properties = found["properties"]
+    whole = StudyFile.model_json_schema()
+    properties = whole["properties"]
     properties["name"]["pattern"] = f"^{NAME.pattern}$"
     base: dict[str, Any] = {}
     for name, parameter in PARAMETERS.items():
         base[name] = {"description": f"{parameter.allowed()}; {parameter.meaning}"}
     pair = {"type": "array", "items": {"type": "string"}, "minItems": 2, "maxItems": 2}
     base |= {name: {"type": "string"} for name in MATERIAL_FIELDS} | {"material_pair": pair}
-    base |= {name: {"type": ["object", "string", "null"], "description": told} for name, told in MAPPING_FIELDS.items()}
+    base |= {name: {"type": ["object", "string", "null"], "description": text} for name, text in MAPPING_FIELDS.items()}
     properties["base"] |= {"properties": base, "additionalProperties": False}
     named = {
         name: _factor() | ({"description": PARAMETERS[name].allowed()} if name in PARAMETERS else {})
@@ -62,7 +62,7 @@ def schema() -> dict[str, Any]:
     properties["design"]["enum"] = list(METHODS)
     for option in IN_STUDY:
         properties[option.name] |= _option(option)
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **found}
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", **whole}
 
 
 def text() -> str:

@@ -77,8 +77,8 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
 def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     """Open a file, and yield it with its fingerprints, shape (n,).
 
-    Raise `CorruptFile` unless the file is as it was written and holds the cases that its name tells: a chunk and its
-    list are named by the hash of their cases.
+    Raise `CorruptFile` if the file was altered or holds other cases than its name says: the name of a chunk and of its
+    list is the hash of their cases.
     """
     content = path.read_bytes()
     if hashlib.sha256(content[:-32]).digest() != content[-32:]:
@@ -119,5 +119,5 @@ def read_sound(
             yield path, how(path)
         except CorruptFile as exc:
             corrupt[path] = str(exc)
-        except FileNotFoundError:  # a running process has just forgotten the failed cases of this file
+        except FileNotFoundError:  # a running process has just removed this file, to solve its failed cases again
             continue

@@ -120,7 +120,7 @@ def collect(
 
 
 def _room(shape: tuple[int, ...], dtype: np.dtype, folder: Path) -> np.ndarray:
-    """Return an array of missing values: NaN, 0 or ''. A large one lies in a temporary file."""
+    """Return an array of missing values: NaN, 0 or ''. A large array lies in a temporary file."""
     size = math.prod(shape) * dtype.itemsize
     if dtype.kind in "OUT":
         return np.full(shape, "", dtype=object)

@@ -46,7 +46,7 @@ class Plan:
     Attributes
     ----------
     study : Study
-        The study; a grown Latin hypercube knows its earlier sizes.
+        The study; that of a grown Latin hypercube holds its earlier sizes.
     folder : StudyFolder
         Files of the study.
     chunks : dict

@@ -124,13 +124,13 @@ def digest_file(folder: str | Path, *modules: str) -> str:
     Returns
     -------
     str
-        Path of the file. It keeps its date as long as the code says the same, so that it can be an input of a rule.
+        Path of the file. The file keeps its date while the code does the same, so that it can be an input of a rule.
     """
     path = Path(folder) / f"{modules[0].removeprefix('trackroller.')}.txt"
-    told = code_digest(modules) + "\n"
-    if not path.is_file() or path.read_text(encoding="utf-8") != told:
+    digest = code_digest(modules) + "\n"
+    if not path.is_file() or path.read_text(encoding="utf-8") != digest:
         path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(told, encoding="utf-8")
+        path.write_text(digest, encoding="utf-8")
     return str(path)
 
 
