@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names, unknown_name
-from trackroller.numerics.numbers import number_in
+from trackroller.numerics.numbers import number_in, number_or_nan
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
 KEYS = (*FORMS, "frame", "smooth", "edge", "width", "worn")
@@ -160,7 +160,7 @@ def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
 
 def _points(rows: Any, field: str) -> list[list[float]]:
     try:
-        points = np.asarray([[float(v) for v in row] for row in rows], dtype=float)
+        points = np.asarray([[number_or_nan(v, "mm", field) for v in row] for row in rows], dtype=float)
     except (TypeError, ValueError):
         raise InputError(field, rows if len(str(rows)) < 200 else "...", "rows of two numbers x, z [mm]") from None
     if points.ndim != 2 or points.shape[1] != 2 or not FEWEST <= len(points) <= MOST:

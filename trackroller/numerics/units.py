@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
+from collections.abc import Callable
 from typing import Any
 
 from trackroller.errors import InputError
@@ -13,11 +14,51 @@ _FACTOR = r"[A-Za-z°µμ%]{1,20}(?:\^?-?\d|[²³])?"
 _UNIT = rf"(?:1/)?{_FACTOR}(?:[ *·/()]{{1,3}}{_FACTOR}){{0,5}}\)?"  # no powers of numbers, which could fill the memory
 _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})\s*", re.ASCII)
 
+PLAIN = ("-", "1", "")  # ways to write that a number has no unit
+_COMPARED = re.compile(
+    rf"([A-Za-z_]\w*(?:\[[\w, ]*\])?)(\s*[<>=!]=?\s*)({_NUMBER})\s*({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))", re.ASCII
+)
+
 
 def split_quantity(value: Any) -> tuple[str, str] | None:
     """Return the number and the unit of a text such as '70 GPa', or None for anything else."""
     parts = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
     return (parts[1], parts[2]) if parts else None
+
+
+def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -> str:
+    """Return comparisons of names with quantities as comparisons with numbers in the units of the names.
+
+    Parameters
+    ----------
+    text : str
+        Such as 'max_pressure < 1.5 GPa or slip > 5 %'; other parts of the text stay as they are.
+    unit_of : callable
+        Returns the unit of a name, None for an unknown name.
+    field : str
+        Name of the field, for messages.
+
+    Raises
+    ------
+    InputError
+        If a unit is unknown or measures something else than the name.
+
+    Examples
+    --------
+    >>> without_units("max_pressure < 1.5 GPa", {"max_pressure": "MPa"}.get, "constraints")
+    'max_pressure < 1500'
+    """
+
+    def plain(found: re.Match[str]) -> str:
+        name, sign, number, unit = found.groups()
+        end = ")" * (unit.endswith(")") and "(" not in unit)  # of the comparison, not of the unit
+        unit = unit.removesuffix(end)
+        wanted = unit_of(name.split("[")[0])
+        if wanted is None:  # whoever reads the text refuses the name
+            return f"{name}{sign}{number}{end}"
+        return f"{name}{sign}{in_unit(float(number), unit, wanted, field):.15g}{end}"
+
+    return _COMPARED.sub(plain, text) if isinstance(text, str) else text
 
 
 def in_unit(number: float, unit: str, wanted: str, field: str, difference: bool = False) -> float:
@@ -61,7 +102,7 @@ def _registry() -> Any:
 
 @functools.lru_cache(maxsize=256)
 def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float]:
-    own = wanted.replace("-", "") if wanted == "-" else wanted
+    own = "" if wanted in PLAIN else wanted
     remedy = f"Write a number in {own}, or with a unit such as '5 {own}'." if own else "Write a number without unit."
     try:
         if not re.fullmatch(_UNIT, unit.strip(), re.ASCII):
@@ -80,5 +121,5 @@ def _factor_and_offset(unit: str, wanted: str, field: str) -> tuple[float, float
 
 def _spelt(unit: str) -> str:
     """Return a unit as pint reads it: 'N/mm2' as 'N/mm^2', 'Nmm' as 'N*mm'."""
-    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", "" if unit == "-" else unit.replace("·", "*"))
+    unit = re.sub(r"(?<=[A-Za-z])(-?\d)", r"^\1", "" if unit in PLAIN else unit.replace("·", "*"))
     return re.sub(r"\b([kM]?)N(mm|cm|m)\b", r"\1N*\2", unit)

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters.contact_models import DECLARED, MEANINGS
 from trackroller.parameters.declared import declared
 
@@ -100,6 +102,9 @@ class Option:
                 raise InputError(where, value, self.allowed())
             words = [self._word(word, where) for word in ([value] if isinstance(value, str) else value)]
             return tuple(dict.fromkeys(words)) if self.required else tuple(w for w in self.values if w in words)
+        if self.kind in ("accuracy", "number") and isinstance(value, str) and value not in self.values:
+            number = number_or_nan(value, "-", where)  # a text such as 10 %
+            value = value if math.isnan(number) else number
         if self.kind == "word" or (self.kind == "accuracy" and isinstance(value, str)):
             return self._word(value, where)
         if self.kind == "condition" and not isinstance(value, (str, type(None))):

@@ -19,7 +19,7 @@ from typing import Any
 from trackroller.contact.settings import Accuracy
 from trackroller.errors import InputError, unknown_name
 from trackroller.halfspace.peak_settings import PeakSettings
-from trackroller.numerics.numbers import read_number
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
 from trackroller.parameters.contact_models import DECLARED
 
@@ -179,10 +179,10 @@ def accuracy_settings(
     if isinstance(accuracy, str):
         if accuracy in PRESETS:
             return _preset_of(contact_model, accuracy)
-        try:
-            accuracy = read_number(accuracy)
-        except ValueError:
-            raise unknown_name("accuracy", str(accuracy), (*ACCURACIES, "a relative tolerance such as 1e-3")) from None
+        number = number_or_nan(accuracy, "-", "accuracy")  # of a text such as 1 %
+        if math.isnan(number):
+            raise unknown_name("accuracy", accuracy, (*ACCURACIES, "a relative tolerance such as 1e-3"))
+        accuracy = number
     if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InputError("accuracy", accuracy, f"one of {', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
     return _for_tolerance(float(accuracy), contact_model, frozenset(outputs))

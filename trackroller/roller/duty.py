@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST = {"hours_per_day": 24.0, "days_per_year": 366.0}
+UNITS = {"hours_per_day": "h", "days_per_year": "day"}
 EXAMPLE = "Write duty: {hours_per_day: 16, days_per_year: 250}."
 ATTRIBUTE = "duty"  # of the result of one case: JSON
 
@@ -30,7 +31,9 @@ def checked_duty(value: Any) -> dict[str, float]:
             if name not in value:
                 raise InputError(f"duty.{name}", None, "a number for each of hours_per_day and days_per_year", EXAMPLE)
             least = math.nextafter(0.0, 1.0)
-            duty[name] = number_in(value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most)
+            duty[name] = number_in(
+                value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most, UNITS[name]
+            )
     wrong.check()
     return duty
 

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
+from trackroller.numerics.units import without_units
 from trackroller.parameters import PARAMETERS, REGIMES
 from trackroller.parameters.expressions import Comparison, comparisons, condition, names
 from trackroller.roller.dataset import VARIABLES
@@ -29,6 +30,10 @@ BEFORE_STRESSES = (
 PEAK = "peak_stress"
 
 
+def _unit_of(name: str) -> str | None:
+    return VARIABLES[name].units if name in VARIABLES else None
+
+
 @lru_cache(maxsize=64)
 def parse_condition(text: str) -> tuple[Comparison, ...]:
     """Return the comparisons of a condition.
@@ -36,7 +41,7 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
     Parameters
     ----------
     text : str
-        Value of the option `stop_if`.
+        Value of the option `stop_if`; a number may have a unit, such as `peak_stress > 0.5 GPa`.
 
     Returns
     -------
@@ -53,7 +58,7 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
     >>> [part.name for part in parse_condition("peak_stress > R_m or slip > 0.1")]
     ['peak_stress', 'slip']
     """
-    parts = comparisons(text, "stop_if")
+    parts = comparisons(without_units(text, _unit_of, "stop_if"), "stop_if")
     for part in parts:
         check_names("stop_if: left side", [part.name], (*BEFORE_STRESSES, PEAK))
         if part.name == PEAK and part.symbol not in (">", ">="):

@@ -25,6 +25,8 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 
 from trackroller.damage import judged
 from trackroller.errors import InputError, unknown_name
+from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.units import split_quantity, without_units
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
@@ -46,18 +48,35 @@ def targets(value: Any) -> dict[str, dict[str, float]]:
         raise InputError("analysis.target", value, "outputs, each with min or max", example)
     if value and set(value) <= {"min", "max"}:
         value = {DEFAULT_TARGET: value}
+    numbers: dict[str, dict[str, float]] = {}
     for name, limits in value.items():
         where, allowed = f"analysis.target.{name}", "min, max or both, each a number"
         if not isinstance(limits, Mapping) or not limits or not set(limits) <= {"min", "max"}:
             raise InputError(where, limits, allowed, example)
-        for number in limits.values():
-            if isinstance(number, bool) or not isinstance(number, (int, float)) or not math.isfinite(number):
-                raise InputError(where, number, allowed, example)
-            if "life" in str(name) and number <= 0:
-                raise InputError(where, number, "a life above 0")
-        if limits.get("min", -math.inf) >= limits.get("max", math.inf):
+        numbers[name] = {str(key): _limit(str(name), given, f"{where}.{key}") for key, given in limits.items()}
+        if numbers[name].get("min", -math.inf) >= numbers[name].get("max", math.inf):
             raise InputError(where, dict(limits), "min below max")
-    return {str(name).replace(" ", ""): {str(k): float(v) for k, v in limits.items()} for name, limits in value.items()}
+    return {str(name).replace(" ", ""): limits for name, limits in numbers.items()}
+
+
+def _limit(name: str, given: Any, where: str) -> float:
+    """Return the number of a limit in the unit of its output; a life in years is refused."""
+    unit = unit_of(name)
+    if unit == "h" and (parts := split_quantity(given)) and parts[1].strip() not in ("h", "hour", "hours"):
+        raise InputError(where, given, "hours of travel, h", "Multiply years by the hours of a year of the duty.")
+    number = number_or_nan(given, unit, where)
+    if not math.isfinite(number):
+        raise InputError(where, given, "a number", f"It may have a unit that can be converted to {unit or 'its own'}.")
+    if "life" in name and number <= 0:
+        raise InputError(where, given, "a life above 0")
+    return number
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit of a result with or without its places, or of a parameter; None for any other name."""
+    name = name.split("[")[0].strip()
+    name = DEFAULTS[name][0] if name in DEFAULTS else name
+    return VARIABLES[name].units if name in VARIABLES else PARAMETERS[name].unit if name in PARAMETERS else None
 
 
 _ENDS: dict[str, Any] = {"type": "object", "additionalProperties": {"type": "number"}}
@@ -140,9 +159,10 @@ def comparisons(value: Any) -> list[str]:
     """Check the key `constraints`: a list of comparisons."""
     if not isinstance(value, (list, tuple)) or not all(isinstance(text, str) for text in value):
         raise InputError("constraints", value, "a list of comparisons", "For example ['max_pressure < 1500'].")
-    for text in value:
+    plain = [without_units(text, unit_of, "constraints") for text in value]
+    for text in plain:
         names_in(text)
-    return list(value)
+    return plain
 
 
 def names_in(constraint: str) -> set[str]:
