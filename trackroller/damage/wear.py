@@ -255,7 +255,7 @@ LIMIT = Limit(
         ("wear_place", _CB, "mm", "x_C", "lateral place of the largest wear depth", {"odd": True}),
         ("wear_volume_per_km", _CB, "mm3 km-1", "V", "volume that is worn off per km of travel"),
         ("wear_error_estimate", ("contact",), "1", "", "estimated relative error of the wear depth"),
-        ("run_in_distance", (), "km", "", "travel until the wear equals the gap at the edge", {"shown": True}),
+        ("run_in_distance", (), "km", "", "run-in distance, until wear equals the gap at the edge", {"shown": True}),
         ("wear_life_hours", _CB, "h", "L_h,W", "hours to the permissible wear depth at the rate of new profiles"),
     ),
     parameters=(
