@@ -22,7 +22,7 @@ function rows(list) {
 }
 
 function lines(list) {
-  const head = el("tr", {}, ["quantity", "contact 1", "contact 2", ""].map((text) => el("th", { scope: "col" }, text)));
+  const head = el("tr", {}, ["quantity", "contact 1", "contact 2", "unit"].map((text) => el("th", { scope: "col" }, text)));
   const body = list.map(([words, one, two, unit]) => el("tr", {}, el("th", { scope: "row" }, symbol(words)), el("td", {}, one), el("td", {}, two), el("td", { class: "unit" }, unit)));
   return el("table", { class: "lines" }, el("thead", {}, head), el("tbody", {}, body));
 }

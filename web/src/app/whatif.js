@@ -62,12 +62,12 @@ export function whatIf(state, offered, { rows }) {
     let group = "";
     for (const name of names) {
       const [head, words] = name.split("|");
-      const cells = columns.map((column) => column.get(name) ?? "–");
-      const differs = new Set(cells).size > 1;
+      const cells = columns.map((column) => (column.size ? (column.get(name) ?? "–") : "…"));
+      const differs = new Set(cells.filter((text) => text !== "…")).size > 1;
       if (only.checked && !differs) continue;
       if (head !== group) body.push(el("tr", { class: "group" }, el("th", { scope: "colgroup", colSpan: columns.length + 1 }, head)));
       group = head;
-      body.push(el("tr", { class: differs ? "differs" : "" }, el("th", { scope: "row" }, symbol(words)), cells.map((text, i) => el("td", { class: i && text !== cells[0] ? "other" : "" }, text))));
+      body.push(el("tr", { class: differs ? "differs" : "" }, el("th", { scope: "row" }, symbol(words)), cells.map((text, i) => el("td", { class: differs && text !== cells[0] && text !== "…" ? "other" : "" }, text))));
     }
     const head = el("tr", {}, el("th", { scope: "col" }, "quantity"), heads, el("th", { scope: "col" }, "on the screen"));
     replace(table, el("table", { class: "variants" }, el("thead", {}, head), el("tbody", {}, body)));

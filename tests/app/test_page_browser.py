@@ -1,0 +1,210 @@
+"""The live page in a real browser: what a designer does, by pointer and by keyboard, at three widths."""
+
+from __future__ import annotations
+
+import json
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+from browser import CHROMIUM, Browser, Page
+from live_page import LivePage
+
+pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")]
+
+AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
+SETTLED = "document.querySelector('.stage')?.dataset.stage === 'complete'"
+STORED = """name: markup
+description: "<img src=x onerror=document.title='broken'>"
+factors: {friction_coefficient: {values: [0.1, 0.2]}}
+contact_model: sliding
+accuracy: preview
+"""
+
+
+@pytest.fixture(scope="module")
+def browser():
+    running = Browser()
+    yield running
+    running.close()
+
+
+@pytest.fixture
+def page(browser, live):
+    with closing(Page(browser, live.address, width=1280, height=800)) as shown:
+        shown.until(SETTLED)
+        yield shown
+        assert [c for c in shown.complaints if "422" not in c] == []  # a wrong value is an answer with this status
+        assert all(url.startswith(f"http://{live.host}/") for url in shown.requests)
+
+
+def verdict(page):
+    return page.run("document.querySelector('.verdict').textContent")
+
+
+def type_into(page, field, text):
+    page.run(f"""(() => {{ const f = document.querySelector('[data-field={field}]'); f.value = {json.dumps(text)};
+        document.querySelector('.stage').dataset.stage = 'old'; f.dispatchEvent(new Event('change')); }})()""")
+
+
+def show(page, tab):
+    page.run(f"document.querySelector('#tab-{tab}').click()")
+
+
+def test_a_slider_moves_the_picture_first_in_preview_then_in_standard(page):
+    stages = page.run("""(async () => { const seen = []; const stage = document.querySelector('.stage');
+        new MutationObserver(() => seen.at(-1) !== stage.dataset.stage && seen.push(stage.dataset.stage))
+          .observe(stage, {attributes: true});
+        const slider = document.querySelector('[aria-label="Axial force, slider"]');
+        for (const value of [35, 40, 50, 60, 70]) { slider.value = value; slider.dispatchEvent(new Event('input'));
+          await new Promise((done) => setTimeout(done, 60)); }
+        slider.dispatchEvent(new Event('change'));
+        while (stage.dataset.stage !== 'complete') await new Promise((done) => setTimeout(done, 50));
+        return seen; })()""")
+    assert stages == ["preview", "standard", "complete"]
+    assert page.run("location.hash") == "#axial_force=70"
+    assert "lifts off with" in verdict(page)
+    page.run("[...document.querySelectorAll('header button')].find((b) => b.textContent === 'Undo').click()")
+    page.until("!location.hash.includes('axial_force')")  # one movement is one step
+    page.until(SETTLED)
+
+
+def test_a_wrong_value_is_named_beside_its_field_and_the_last_picture_stays(page):
+    before = page.run("document.querySelector('.drawing').outerHTML")
+    type_into(page, "contact_angle", "95")
+    page.until("document.querySelector('.stage').dataset.stage === 'refused'")
+    said = page.run("document.querySelector('#field-contact_angle-said').textContent")
+    assert "contact_angle = 95" in said and "< 90" in said
+    assert page.run("document.querySelector('[data-field=contact_angle]').getAttribute('aria-invalid')") == "true"
+    assert page.run("document.querySelector('.drawing').outerHTML") == before
+    type_into(page, "contact_angle", "35")
+    page.until(SETTLED)
+    assert page.run("document.querySelector('#field-contact_angle-said').textContent") == ""
+
+
+def test_the_address_repeats_what_is_on_the_screen(page, browser, live):
+    type_into(page, "roller_material", "PA6")
+    type_into(page, "guide_curve_radius", "inf")
+    page.until(SETTLED)
+    page.run("[...document.querySelectorAll('header button')].find((b) => b.textContent === 'Pin').click()")
+    page.until("location.hash.includes('pin=')")
+    told = verdict(page)
+    with closing(Page(browser, live.address + page.run("location.hash"), width=1280, height=800)) as again:
+        again.until(SETTLED)
+        assert verdict(again) == told
+        show(again, "whatif")
+        again.until("document.querySelectorAll('.variants tbody tr').length > 20")
+        assert again.run("document.querySelectorAll('.variants .other').length") == 0
+
+
+def test_variants_show_their_differences_and_a_curve_follows(page):
+    page.run("[...document.querySelectorAll('header button')].find((b) => b.textContent === 'Pin').click()")
+    type_into(page, "axial_force", "60")
+    page.run("document.querySelector('[aria-label=\"Curve over Axial force\"]').click()")
+    page.until("document.querySelectorAll('.variants .other').length > 5")
+    page.until("!document.querySelector('.variants').textContent.includes('…')")
+    marked = page.run("[...document.querySelectorAll('.variants tr.differs th')].map((th) => th.textContent)")
+    assert "axial force Fax" in marked and "radial force Frad" not in marked
+    page.until("document.querySelectorAll('.whatif details tbody tr').length === 21")
+    page.until("document.querySelector('.whatif pre').textContent.includes('axial_force=60')")
+
+
+def test_a_study_is_made_by_clicks_and_by_text(page):
+    type_into(page, "axial_force", "45")
+    page.run("document.querySelector('[aria-label=\"Make Friction coefficient a factor of the study\"]').click()")
+    page.until("!document.querySelector('button.main').disabled")
+    text = page.run("document.querySelector('textarea').value")
+    assert "friction_coefficient" in text and "axial_force: 45" in text
+    assert "3, 0 of them solved" in page.run("document.querySelector('.plan').textContent")
+    page.run("""(() => { const area = document.querySelector('textarea');
+        area.value += 'design: lhs\\nsamples: seven\\n'; area.focus(); area.dispatchEvent(new Event('input')); })()""")
+    page.until("document.querySelector('.study .warnings').textContent.includes('samples')")
+    assert page.run("document.querySelector('button.main').disabled")
+    page.run("""(() => { const area = document.querySelector('textarea');
+        area.value = area.value.replace('seven', '7').replace(/values:[^b]*/, 'uniform: [0.1, 0.3]\\n');
+        area.dispatchEvent(new Event('input')); })()""")
+    page.until("!document.querySelector('button.main').disabled")
+    fields = page.run("[...document.querySelectorAll('.study select, .study input')].map((f) => f.value)")
+    assert {"lhs", "7", "uniform", "0.1, 0.3"} <= set(fields)
+
+
+def test_names_with_markup_stay_text(page, live):
+    assert live.ask("start", text=STORED)[0] == 200
+    show(page, "results")
+    page.until("document.querySelector('.studies').textContent.includes('<img src=x')")
+    live.until("markup", "done")
+    page.until("document.querySelector('[aria-label=\"Report of markup\"]') !== null")
+    assert page.run("document.title") == "trackroller – one roller, live"
+    assert page.run("document.querySelectorAll('.studies img').length") == 0
+    page.until("document.querySelector('[aria-label=\"Delete markup\"]') !== null")
+    page.run("document.querySelector('[aria-label=\"Delete markup\"]').click()")
+    assert live.entry("markup")["state"] == "done"  # the question stands on the page
+    page.run("document.querySelector('dialog .danger').click()")
+    page.until("!document.querySelector('.studies').textContent.includes('markup')")
+
+
+def test_two_pages_disturb_each_other_not(page, browser, live):
+    with closing(Page(browser, live.address + "#axial_force=20", width=800, height=600)) as other:
+        type_into(page, "axial_force", "55")
+        other.until(SETTLED)
+        page.until(SETTLED)
+        forces = [p.run("document.querySelector('.drawing').textContent") for p in (page, other)]
+        assert "55 N" in forces[0] and "20 N" in forces[1]
+
+
+@pytest.mark.skipif(not AXE.is_file(), reason="needs axe-core: npm ci in web/")
+@pytest.mark.parametrize("tab", ["roller", "whatif", "study", "results"])
+@pytest.mark.parametrize("width, scheme", [(1280, "light"), (1280, "dark"), (400, "light")])
+def test_axe_finds_nothing(page, tab, width, scheme):
+    page.resize(width, 800)
+    page.media(prefers_color_scheme=scheme)
+    show(page, tab)
+    page.run("document.querySelectorAll('details').forEach((d) => (d.open = true))")
+    if tab == "whatif":
+        page.run("trackroller.state.pin()")
+        page.until("document.querySelectorAll('.variants tbody tr').length > 20")
+    page.call("Page.setBypassCSP", enabled=True)
+    page.run(AXE.read_text(encoding="utf-8") + "; 0")
+    found = page.run("axe.run().then((r) => r.violations.map((v) => [v.id, v.nodes.map((n) => n.html.slice(0, 90))]))")
+    assert found == []
+
+
+@pytest.mark.parametrize("width", [400, 800, 1280])
+def test_no_width_scrolls_sideways(page, width):
+    page.resize(width, 800)
+    for tab in ("roller", "whatif", "study", "results"):
+        show(page, tab)
+        assert page.run("document.documentElement.scrollWidth") <= width, tab
+
+
+def test_everything_is_reached_by_the_keyboard(page):
+    page.run("document.querySelector('#tab-roller').focus()")
+    page.key("ArrowRight")
+    assert page.run("trackroller.state.tab") == "whatif"
+    page.key("ArrowLeft")
+    reached = []
+    for _ in range(70):
+        page.key("Tab")
+        reached.append(page.run("document.activeElement.getAttribute('aria-label') ?? document.activeElement.id"))
+    assert {"Axial force, slider", "field-axial_force", "field-roller_material", "Curve over Axial force"} <= set(
+        reached
+    )
+    page.run("document.querySelector('[aria-label=\"Axial force, slider\"]').focus()")
+    page.key("ArrowRight", "ArrowRight")
+    page.until("document.querySelector('#field-axial_force').value === '34'")
+    page.until(SETTLED)
+
+
+def test_the_notebook_shows_the_case_in_a_frame(tmp_path, monkeypatch):
+    import trackroller as tr
+
+    monkeypatch.chdir(tmp_path)
+    shown = tr.app(tr.Case(axial_force=70, guide_curve_radius=float("inf")))
+    try:
+        frame = shown._repr_html_()
+        assert frame.startswith("<iframe") and "#guide_curve_radius=inf&amp;axial_force=70.0" in frame
+        live = LivePage.__new__(LivePage)
+        live.address = shown.address.partition("#")[0]
+        assert "http://localhost:*" in live.get("")[2]["Content-Security-Policy"].partition("frame-ancestors")[2]
+    finally:
+        shown.close()
