@@ -147,11 +147,19 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
         known = {"probability": ("probability", list(levels), {"units": "1", "long_name": "failure probability"})}
         variables["life_shifts_at_probability"] = xr.DataArray(lives, known, ("probability", *_CB), attrs=meta)
-    found = _labelled(spectrum, variables, solved, rule)
-    roller = {name: value for name, value in plain_inputs(case).items() if name not in LOAD_FIELDS}
-    told = {NOT_GIVEN: json.dumps(spectrum.not_given), DOUBTS: json.dumps(doubts_of_spectrum(spectrum, database))}
-    found = found.assign_attrs(roller=json.dumps(roller), materials=json.dumps(material_values(case, database)), **told)
-    return with_duty(found, spectrum.duty)
+    labelled = _labelled(spectrum, variables, solved, rule).assign_attrs(_inputs(spectrum, database))
+    return with_duty(labelled, spectrum.duty)
+
+
+def _inputs(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, str]:
+    """Return the attributes that hold the inputs: roller, materials, values that were not given, and doubts."""
+    case = spectrum.blocks[0].case
+    return {
+        "roller": json.dumps({name: v for name, v in plain_inputs(case).items() if name not in LOAD_FIELDS}),
+        "materials": json.dumps(material_values(case, database)),
+        NOT_GIVEN: json.dumps(spectrum.not_given),
+        DOUBTS: json.dumps(doubts_of_spectrum(spectrum, database)),
+    }
 
 
 def doubts_of_spectrum(spectrum: Spectrum, database: MaterialDatabase) -> list[str]:
