@@ -27,9 +27,9 @@ def solved(monkeypatch, case, accuracy="standard", **options):
     searched = []
     plain = ellipse_stresses.find_peaks
 
-    def recorded(patches, ratios, settings, fields=None, coarse=None):
+    def recorded(patches, ratios, settings, fields, *more):
         searched.append(fields.shape[-1])
-        return plain(patches, ratios, settings, fields, coarse)
+        return plain(patches, ratios, settings, fields, *more)
 
     monkeypatch.setattr(ellipse_stresses, "find_peaks", recorded)
     found = tr.solve(case, OUTPUTS, accuracy=accuracy, **({"contact_model": "kalker"} | options))

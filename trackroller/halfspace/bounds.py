@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import fields_of, refinement, unit_rule
-from trackroller.halfspace.peak_climb import Patches
+from trackroller.halfspace.ellipse import Room, fields_of, refinement, unit_rule
+from trackroller.halfspace.peak_climb import Target, lengths, scan
+from trackroller.numerics.compiled import compiled
+from trackroller.numerics.threads import share_rows
 
 # Depths over the smaller semi-axis: the surface, and the depths of the frictionless peak for nu from 0 to 0.5, between
 # the circle (0.38 to 0.55) and the line contact (0.70 to 0.79).
@@ -35,11 +37,27 @@ def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndar
     numpy.ndarray, shape (n, 2)
         Lower bounds for roller and guide [1].
     """
-    finer, ratios = refinement(patches), np.ascontiguousarray(poisson_ratio, dtype=float)
+    patches, ratios = np.ascontiguousarray(patches), np.ascontiguousarray(poisson_ratio, dtype=float)
+    finer = refinement(patches)
     out = np.empty((len(patches), 2))
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
-        some = Patches(np.ascontiguousarray(patches[group]), fields_of(fields, group), ratios[group], slender=False)
-        points = np.broadcast_to(_POINTS, (group.size, *_POINTS.shape))
-        out[group] = some.scan(points, unit_rule(int(_ORDER * factor))).max(axis=1)
+        some = patches[group], fields_of(fields, group), ratios[group], lengths(patches[group])
+        rule, found = unit_rule(int(_ORDER * factor)), np.empty((group.size, 2))
+
+        def work(first: int, last: int, some=some, rule=rule, found=found) -> None:
+            _largest(first, last, some, rule, Room.empty(), found)
+
+        share_rows(work, group.size, 2, 64)
+        out[group] = found
     return out
+
+
+@compiled
+def _largest(first, last, patches, rule, room, out):
+    """Write the largest stresses at the points of patches `first` to `last` into `out` (n, 2)."""
+    rows, fields, ratios, units = patches
+    for i in range(first, last):
+        values = scan(Target(rows[i], fields[i], ratios[i], units[i], False, room), _POINTS, (rule, rule))
+        for body in range(2):
+            out[i, body] = values[body].max()

@@ -39,7 +39,7 @@ from trackroller.halfspace.ellipse_rays import chord_angles, rays_of_chords, rou
 from trackroller.halfspace.influence import add_load
 from trackroller.halfspace.kernels import point_kernel
 from trackroller.halfspace.rigid_slip import pole_lateral, pole_line, pole_rolling
-from trackroller.numerics.compiled import fast, inner
+from trackroller.numerics.compiled import compiled, fast, inner
 from trackroller.numerics.quadrature import clustered_rule
 from trackroller.numerics.threads import share_rows
 
@@ -47,13 +47,17 @@ FIELD = np.float32  # of traction fields: gathering their values takes most of t
 NO_FIELD = np.zeros((2, 1, 1), FIELD)  # stands for a traction field in full sliding
 
 
-class Points(NamedTuple):
-    """Points (m, 3) [mm], the numbers of their patches `rows` (m,), patches (n,) and fields (n, 2, ny, nx)."""
+class Room(NamedTuple):
+    """Work space of one thread: rays in double and in single precision, and numbers of elements."""
 
-    patches: np.ndarray
-    fields: np.ndarray
-    rows: np.ndarray
-    points: np.ndarray
+    rays: np.ndarray
+    single: np.ndarray
+    places: np.ndarray
+
+    @classmethod
+    def empty(cls) -> Room:
+        """Return work space for one thread."""
+        return cls(np.empty(SCRATCH), np.empty(SCRATCH, FIELD), np.empty(STRIDE, np.int32))
 
 
 @inner
@@ -73,47 +77,68 @@ def _far_field(patch, field, x, y, z, rule, out):
 
 
 @fast
-def _add_hertzian(at, rule, directions, out):
+def _add_hertzian(patch, field, points, rule, room, directions, out):
     """Add the pressure, and the friction in its direction at the point, which is stored in `directions`."""
-    work = np.empty(SCRATCH)
-    for i in range(len(at.points)):
-        row = at.rows[i]
-        patch, x, y, z = at.patches[row], at.points[i, 0], at.points[i, 1], at.points[i, 2]
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
         px, py = x / patch.a, y / patch.b
         d_x = d_y = 0.0
         if patch.friction > 0.0:
             shrink = 1.0 / math.sqrt(max(px * px + py * py, 1.0))
-            d_x, d_y = direction(patch, at.fields[row], x * shrink, y * shrink)
+            d_x, d_y = direction(patch, field, x * shrink, y * shrink)
         directions[i, 0], directions[i, 1] = d_x, d_y
-        count = wave_angles(patch, px, py, rule, work)
-        sum_waves(patch, Place(x, y, z, d_x, d_y), count, work, out[i])
+        count = wave_angles(patch, px, py, rule, room.rays)
+        sum_waves(patch, Place(x, y, z, d_x, d_y), count, room.rays, out[i])
 
 
 @fast
-def _add_other_directions(at, rule, directions, out):
+def _add_other_directions(patch, field, points, rule, room, directions, out):
     """Add the friction less that in its direction at the point; under traction fields in their precision."""
-    work, single, places = np.empty(SCRATCH), np.empty(SCRATCH, FIELD), np.empty(STRIDE, np.int32)
-    gridded = at.fields.shape[2] > 1
-    for i in range(len(at.points)):
-        row = at.rows[i]
-        patch, x, y, z = at.patches[row], at.points[i, 0], at.points[i, 1], at.points[i, 2]
-        if patch.friction > 0.0 and patch.fixed == 0.0:
-            px, py = x / patch.a, y / patch.b
-            count = rays_of_chords(patch, px, py, chord_angles(patch, px, py, rule, work), work)
-            place = Place(x, y, z, directions[i, 0], directions[i, 1])
-            if gridded:
-                rounded_rays(patch, count, work, single)
-                sum_rays(patch, at.fields[row], place, count, rule, single, places, out[i])
-            else:
-                sum_rays(patch, None, place, count, rule, work, places, out[i])
+    if not (patch.friction > 0.0 and patch.fixed == 0.0):
+        return
+    for i in range(len(points)):
+        x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        px, py = x / patch.a, y / patch.b
+        count = rays_of_chords(patch, px, py, chord_angles(patch, px, py, rule, room.rays), room.rays)
+        place = Place(x, y, z, directions[i, 0], directions[i, 1])
+        if field.shape[1] > 1:
+            rounded_rays(patch, count, room.rays, room.single)
+            sum_rays(patch, field, place, count, rule, room.single, room.places, out[i])
+        else:
+            sum_rays(patch, None, place, count, rule, room.rays, room.places, out[i])
+
+
+@compiled
+def near_parts(patch, field, points, rules, room):
+    """Compute stress parts at points in or near their patch, on the calling thread.
+
+    Parameters
+    ----------
+    patch, field : record and numpy.ndarray, shape (2, ny, nx)
+        Record of `patch_rows`, and traction field as in `stress_parts`.
+    points : numpy.ndarray, shape (m, 3)
+        x_C, y_C and depth [mm].
+    rules : tuple of numpy.ndarray
+        `unit_rule` of the plane waves, and of both directions of the friction integral.
+    room : Room
+        Work space of the thread.
+
+    Returns
+    -------
+    numpy.ndarray, shape (m, 4, 6)
+        Stress parts per unit p_max.
+    """
+    out, directions = np.zeros((len(points), 4, 6)), np.empty((len(points), 2))
+    _add_hertzian(patch, field, points, rules[0], room, directions, out)
+    _add_other_directions(patch, field, points, rules[1], room, directions, out)
+    return out
 
 
 @fast
-def _add_far_field(at, rule, out):
-    """Add the stresses at points far from their patches."""
-    for i in range(len(at.points)):
-        row = at.rows[i]
-        _far_field(at.patches[row], at.fields[row], at.points[i, 0], at.points[i, 1], at.points[i, 2], rule, out[i])
+def _add_far_field(patch, field, points, rule, out):
+    """Add the stresses at points far from their patch."""
+    for i in range(len(points)):
+        _far_field(patch, field, points[i, 0], points[i, 1], points[i, 2], rule, out[i])
 
 
 def unit_rule(order: int) -> np.ndarray:
@@ -144,32 +169,6 @@ def fields_of(fields: np.ndarray | None, group: np.ndarray) -> np.ndarray:
     return np.ascontiguousarray(fields[group], dtype=FIELD)
 
 
-def near_parts(patches, fields, rows, points, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
-    """Compute stress parts at points in or near their patches, on the calling thread.
-
-    Parameters
-    ----------
-    patches, fields : numpy.ndarray, shape (n,) and (n, 2, ny, nx)
-        Records of `patch_rows`, and traction fields as in `stress_parts`.
-    rows : numpy.ndarray of int, shape (m,)
-        Number of the patch of each point.
-    points : numpy.ndarray, shape (m, 3)
-        x_C, y_C and depth [mm].
-    waves, rule : numpy.ndarray
-        `unit_rule` of the plane waves, and of both directions of the friction integral.
-
-    Returns
-    -------
-    numpy.ndarray, shape (m, 4, 6)
-        Stress parts per unit p_max.
-    """
-    at = Points(patches, fields, rows, points)
-    out, directions = np.zeros((len(points), 4, 6)), np.empty((len(points), 2))
-    _add_hertzian(at, waves, directions, out)
-    _add_other_directions(at, rule, directions, out)
-    return out
-
-
 def stress_parts(
     patch: np.ndarray, points: np.ndarray, waves: int = 24, nodes: int = 24, field: np.ndarray = NO_FIELD
 ) -> np.ndarray:
@@ -197,7 +196,7 @@ def stress_parts(
         For more quadrature points than the kernels hold.
     """
     points = np.ascontiguousarray(points, dtype=float)
-    patches, fields = np.atleast_1d(patch), np.ascontiguousarray(field, dtype=FIELD)[None]
+    record, field = np.atleast_1d(patch)[0], np.ascontiguousarray(field, dtype=FIELD)
     waves_rule, rule = unit_rule(waves), unit_rule(nodes)
     out = np.zeros((len(points), 4, 6))
     far = np.sum(points * points, axis=1) > 9.0 * max(patch["a"], patch["b"]) ** 2
@@ -205,12 +204,12 @@ def stress_parts(
 
     def work(first: int, last: int) -> None:
         some = near[first:last]
-        out[some] = near_parts(patches, fields, np.zeros(some.size, np.int64), points[some], waves_rule, rule)
+        out[some] = near_parts(record, field, points[some], (waves_rule, rule), Room.empty())
 
     share_rows(work, near.size, 32)
     if far.any():  # the far field is compiled at its first use only
         stresses = np.zeros((int(far.sum()), 4, 6))
-        _add_far_field(Points(patches, fields, np.zeros(len(stresses), np.int64), points[far]), rule, stresses)
+        _add_far_field(record, field, points[far], rule, stresses)
         out[far] = stresses
     return out
 

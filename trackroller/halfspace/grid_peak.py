@@ -181,8 +181,8 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: f
 
 
 def _highest(value, summits: list[tuple[np.ndarray, float]], coarse: GridLoad) -> tuple[float, ...]:
-    """Return stress, x, y, z and relative error of the highest summit, extrapolated from the coarse grid."""
-    best, possible = (-math.inf, math.nan, math.nan, math.nan, math.nan), -math.inf
+    """Return stress, x, y, z, relative error and change of the highest summit, extrapolated from the coarse grid."""
+    best, possible = (-math.inf, *[math.nan] * 5), -math.inf
     for place, top in summits:
         change = (top - float(value(place[None], grid=coarse)[0])) / top
         smooth = abs(change) < SMOOTH
@@ -190,9 +190,9 @@ def _highest(value, summits: list[tuple[np.ndarray, float]], coarse: GridLoad) -
         error = (ERROR_SHARE if smooth else 1.0) * abs(change)
         possible = max(possible, extrapolated * (1.0 + error))
         if extrapolated > best[0]:
-            best = extrapolated, *place, error
-    *peak, error = best
-    return *peak, max(error, possible / best[0] - 1.0) + ERROR_FLOOR
+            best = extrapolated, *place, error, abs(change)
+    *peak, error, change = best
+    return *peak, max(error, possible / best[0] - 1.0) + ERROR_FLOOR, change
 
 
 def find_grid_peaks(

@@ -13,33 +13,94 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import FIELD, fields_of, refinement, unit_rule
-from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Patches, lengths
+from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement, unit_rule
+from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Target, lengths, scan, standing, stress_at, sweep
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, ridge_points, scan_points, spike
 from trackroller.halfspace.peak_settings import PeakSettings
+from trackroller.numerics.compiled import compiled
 from trackroller.numerics.rows import Rows
+from trackroller.numerics.threads import share_rows
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
 RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
+# The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than 18.
+LEAST_WAVES = 8
+MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion beyond those below the surface
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
 
 
 class Rules(NamedTuple):
-    """Quadrature rules of the steps of a search; `waves` is that of the plane waves in the polish."""
+    """Quadrature rules of the steps of a search, each for the plane waves and for the rays.
 
-    scan: np.ndarray
-    climb: np.ndarray
-    polish: np.ndarray
-    summit: np.ndarray
-    waves: np.ndarray
+    `ridge` is that of the polish on the surface, where tractions with adhesion have ridges of stress.
+    """
+
+    scan: tuple[np.ndarray, np.ndarray]
+    climb: tuple[np.ndarray, np.ndarray]
+    polish: tuple[np.ndarray, np.ndarray]
+    ridge: tuple[np.ndarray, np.ndarray]
+    summit: tuple[np.ndarray, np.ndarray]
+
+    @classmethod
+    def of(cls, settings: PeakSettings, factor: int, quick: bool) -> Rules:
+        """Return the rules of patches whose rules are refined by a factor."""
+        scan, climb, polish, summit = settings.scan, settings.climb, settings.polish, settings.summit
+        orders = (
+            (max(scan, LEAST_WAVES * quick), scan),
+            (climb, climb),
+            (max(polish, 12), polish),
+            (max(polish, 12), polish + MORE_RAYS * quick),
+            (summit, summit),
+        )
+        return cls(*((unit_rule(waves * factor), unit_rule(rays * factor)) for waves, rays in orders))
+
+
+class Patches(NamedTuple):
+    """The n patches of a search.
+
+    Attributes
+    ----------
+    rows : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
+    fields, rough, coarse : numpy.ndarray, shape (n, 2, ny, nx)
+        Traction fields; those of few elements for the first climbs; those of a coarser grid for the estimated error.
+    poisson_ratio : numpy.ndarray, shape (n, 2)
+        Poisson's ratios of roller and guide [1].
+    units : numpy.ndarray, shape (n, 3)
+        See `lengths`.
+    points : numpy.ndarray, shape (n, m, 3)
+        Points of the scans.
+    """
+
+    rows: np.ndarray
+    fields: np.ndarray
+    rough: np.ndarray
+    coarse: np.ndarray
+    poisson_ratio: np.ndarray
+    units: np.ndarray
+    points: np.ndarray
+
+
+class Effort(NamedTuple):
+    """Effort of a search: seeds and finalists of each body, distance of seeds, smallest step, kind of the patches."""
+
+    seeds: int
+    finalists: int
+    apart: float
+    smallest: float
+    slender: bool
+    gridded: bool
+    adhesion: bool
+    quick: bool
 
 
 @dataclass(frozen=True)
 class Peak(Rows):
     """Peak von Mises stress and its place; arrays (n, 2), second axis roller and guide.
 
-    `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error.
+    `stress` per unit p_max (in MPa below solved patches), `x`, `y`, `z` [mm], `error` the estimated relative error, and
+    `change` its part by the elements: the relative change of the stress with tractions on a coarser grid.
     """
 
     stress: np.ndarray
@@ -47,6 +108,7 @@ class Peak(Rows):
     y: np.ndarray
     z: np.ndarray
     error: np.ndarray
+    change: np.ndarray
 
     @classmethod
     def empty(cls, n: int) -> Peak:
@@ -59,68 +121,85 @@ class Peak(Rows):
             getattr(self, field.name)[rows] = getattr(peak, field.name)
 
 
-def _search(patches: Patches, rules: Rules, settings: PeakSettings, smallest: float) -> Peak:
-    """Return the peaks of both bodies of each patch, in normalised coordinates."""
-    n, slender = len(patches.rows), patches.slender
-    climbs = _seeded(patches, rules, settings)
+@compiled
+def _search_rows(first, last, patches, rules, effort, room, out):
+    """Write stress, place and relative error of the peaks of patches `first` to `last` into `out` (n, 2, 6)."""
+    for i in range(first, last):
+        row, nu, unit = patches.rows[i], patches.poisson_ratio[i], patches.units[i]
+        fine = Target(row, patches.fields[i], nu, unit, effort.slender, room)
+        rough = Target(row, patches.rough[i], nu, unit, effort.slender, room)
+        _search(fine, rough, patches.points[i], rules, effort, out[i])
+        if effort.gridded:
+            coarse = Target(row, patches.coarse[i], nu, unit, effort.slender, room)
+            for body in range(2):
+                other = stress_at(coarse, body, out[i, body, 1:4], rules.summit)
+                out[i, body, 5] = abs(other / out[i, body, 0] - 1.0)
+                out[i, body, 4] += out[i, body, 5]
+
+
+@compiled
+def _search(fine, rough, points, rules, effort, out):
+    """Write the peaks of both bodies of a patch, in normalised coordinates, into `out` (2, 6)."""
+    climbs = _seeded(fine, rough, points, rules, effort)
     # Tractions on a grid are less smooth than sliding ones, so that a finer rule gains little in the first sweep.
     # the scan is rough: climbs that fall behind with better quadrature are given up, and sooner with every sweep
-    finalists = settings.finalists + 2 * slender
-    most = max(finalists, 2)
-    for k, gap in enumerate(GAPS):
+    most = max(effort.finalists, 2)
+    for k in range(0 if effort.quick else len(GAPS)):
         if k == 1:
             climbs.step[:] = 0.08 * PROPORTIONS
-        rows = climbs.standing(max(1.0 - gap * most, 1e-9), 0.15 if k > 0 else 0.0, most)
-        rule = rules.scan if k == 0 and patches.gridded else rules.climb
-        climbs.sweep(rows, rule, rule, 0.06, k > 1)
-    climbs.patches = patches
-    rows = climbs.standing(0.97, 0.1, finalists)
-    climbs.f[rows] = climbs.values(rows, climbs.u[rows], rules.waves, rules.polish)
-    climbs.step[:] = max(3.0 * smallest, 0.01) * PROPORTIONS
-    for k in range(12 + 12 * slender):
-        if rows.size > 0:
-            rows = climbs.sweep(rows, rules.waves, rules.polish, smallest, k > 0)
-    count = len(climbs.f) // (2 * n)
-    best = np.arange(2 * n) * count + climbs.f.reshape(2 * n, count).argmax(axis=1)
-    summit = climbs.values(best, climbs.u[best], rules.summit, rules.summit)
-    error = 4.0 * (np.abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
-    return Peak(*(v.reshape(n, 2) for v in (summit, *climbs.u[best].T, error)))
+        rule = rules.scan if k == 0 and effort.gridded else rules.climb
+        stand = standing(climbs, max(1.0 - GAPS[k] * most, 1e-9), 0.15 if k > 0 else 0.0, most)
+        for climb in np.flatnonzero(stand):
+            sweep(rough, climbs, climb, rule, 0.06, k > 1)
+    climbs.step[:] = max(3.0 * effort.smallest, 0.01) * PROPORTIONS
+    for climb in np.flatnonzero(standing(climbs, 0.97, 0.1, effort.finalists)):
+        rule = rules.ridge if climbs.u[climb, 2] == 0.0 else rules.polish
+        climbs.f[climb] = stress_at(fine, climb // effort.seeds, climbs.u[climb], rule)
+        for k in range(24 if effort.slender else 12):
+            if not sweep(fine, climbs, climb, rule, effort.smallest, k > 0):
+                break
+    for body in range(2):
+        start = body * effort.seeds
+        best = start + climbs.f[start : start + effort.seeds].argmax()
+        summit = stress_at(fine, body, climbs.u[best], rules.summit)
+        out[body, 0], out[body, 1:4] = summit, climbs.u[best]
+        out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
 
 
-def _seeded(fine: Patches, rules: Rules, settings: PeakSettings) -> Climbs:
-    """Scan the patches and return climbs from the highest places, below few elements at first."""
-    patches = dataclasses.replace(fine, fields=_rough(fine.fields))
-    n, count = len(patches.rows), settings.seeds + 5 * patches.slender
-    points = scan_points(patches.rows, patches.slender, patches.adhesion)
-    values = patches.scan(points, rules.scan)
-    if patches.adhesion:
-        points, values = _with_ridges(fine, points, values, rules.scan)
-    apart = APART[patches.slender]
-    chosen = np.stack([best_seeds(points, values[:, :, body], count, apart) for body in (0, 1)], axis=1).ravel()
-    of, body, _ = (index.ravel() for index in np.indices((n, 2, count)))
-    m, u = of.size, points[of, chosen]
-    steps, along = 0.12 * PROPORTIONS * np.ones((m, 3)), along_turn(patches.rows[of], u)
-    climbs = Climbs(patches, of, body, u, np.full(m, -1.0), np.zeros(m), steps, along)
-    rows = np.flatnonzero(chosen >= 0)
-    if patches.gridded:  # the first sweep takes the rule of the scan, see `_search`
-        climbs.f[rows] = values[of, chosen, body][rows]
-    else:
-        climbs.f[rows] = climbs.values(rows, u[rows], rules.climb, rules.climb)
+@compiled
+def _seeded(fine, rough, points, rules, effort):
+    """Scan the patch and return climbs from the highest places, below few elements at first."""
+    count, values = effort.seeds, scan(rough, points, rules.scan)
+    if effort.adhesion and _has_ridges(fine, points, values):
+        line = ridge_points(fine.field)
+        points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
+    steps = 0.12 * PROPORTIONS * np.ones((2 * count, 3))
+    u, f = np.zeros((2 * count, 3)), np.full(2 * count, -1.0)
+    climbs = Climbs(u, f, np.zeros(2 * count), steps, np.zeros((2 * count, 2)))
+    for body in range(2):
+        k = body * count
+        for best in best_seeds(points, values[body], count, effort.apart):
+            u[k], f[k] = points[best], values[body, best]
+            if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_search`
+                f[k] = stress_at(rough, body, u[k], rules.climb)
+            along_turn(fine.patch, u[k], climbs.along[k])
+            k += 1
     return climbs
 
 
-def _with_ridges(patches: Patches, points: np.ndarray, values: np.ndarray, rule: np.ndarray) -> tuple[np.ndarray, ...]:
-    """Return scan points (n, m, 3) and their stresses (n, m, 2) with points where sliding begins.
-
-    These are scanned in patches with a stress at the surface that is not far below the largest.
-    """
-    surface = np.where(points[..., 2:] == 0.0, values, 0.0).max(axis=1)
-    worth = (surface > RIDGE_WORTH * values.max(axis=1)).any(axis=1) & (patches.rows["friction"] > LITTLE_FRICTION)
-    line = ridge_points(patches.fields[worth])
-    more = np.full((len(points), *line.shape[1:]), np.nan)
-    more[worth] = line
-    at_ridges = patches.scan(more, rule)
-    return np.concatenate([points, np.nan_to_num(more)], axis=1), np.concatenate([values, at_ridges], axis=1)
+@compiled
+def _has_ridges(target, points, values):
+    """Return whether a stress at the surface is not far below the largest in one of the bodies."""
+    if target.patch.friction <= LITTLE_FRICTION:
+        return False
+    for body in range(2):
+        surface = 0.0
+        for k in range(len(points)):
+            if points[k, 2] == 0.0:
+                surface = max(surface, values[body, k])
+        if surface > RIDGE_WORTH * values[body].max():
+            return True
+    return False
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:
@@ -141,21 +220,13 @@ def _merged(fields: np.ndarray) -> np.ndarray:
     return sum(blocks) / np.maximum(inside, 1)
 
 
-def _change_by_elements(patches: Patches, peak: Peak, rule: np.ndarray, fields: np.ndarray) -> np.ndarray:
-    """Return the relative change of the peaks (n, 2) with the tractions `fields` of a coarser grid."""
-    n = len(patches.rows)
-    coarse = dataclasses.replace(patches, fields=np.ascontiguousarray(fields, dtype=FIELD))
-    of, body = (index.ravel() for index in np.indices((n, 2)))
-    places = np.stack([peak.x, peak.y, peak.z], axis=2).reshape(2 * n, 3)
-    return np.abs(coarse.stress(of, body, places, rule, rule).reshape(n, 2) / peak.stress - 1.0)
-
-
 def find_peaks(
     patches: np.ndarray,
     poisson_ratio: np.ndarray,
     settings: PeakSettings,
     fields: np.ndarray | None = None,
     coarse: np.ndarray | None = None,
+    quick: bool = False,
 ) -> Peak:
     """Find the peak von Mises stress of roller and guide below n ellipses.
 
@@ -172,6 +243,9 @@ def find_peaks(
     coarse : numpy.ndarray, optional
         The same on a coarser grid, for the estimated error; only tractions of the exact theory, which have adhesion,
         come with it. Means over 2 x 2 elements if not given.
+    quick : bool
+        Polish the best seeds at once, without climbs below few elements. On 12 elements across, whose own error is
+        larger, the peaks err as much as after climbs.
 
     Returns
     -------
@@ -188,20 +262,45 @@ def find_peaks(
     finer = refinement(patches)
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
-        orders = (settings.scan, settings.climb, settings.polish, settings.summit, max(settings.polish, 12))
-        rules = Rules(*(unit_rule(int(order * factor)) for order in orders))
         chosen = fields_of(fields, group)
-        ratios = np.ascontiguousarray(poisson_ratio[group], dtype=float)
-        some = Patches(patches[group], chosen, ratios, bool(factor > 1), coarse is not None)
-        peak = _search(some, rules, settings, settings.step / factor)
-        if fields is not None:
-            other = _merged(chosen) if coarse is None else coarse[group]
-            peak.error[:] += _change_by_elements(some, peak, rules.summit, other)
-        out.put(group, peak)
+        other = _merged(chosen) if coarse is None else coarse[group]
+        slender, adhesion = bool(factor > 1), coarse is not None
+        some = Patches(
+            patches[group],
+            chosen,
+            _rough(chosen),
+            np.ascontiguousarray(other, dtype=FIELD),
+            np.ascontiguousarray(poisson_ratio[group], dtype=float),
+            lengths(patches[group]),
+            np.ascontiguousarray(scan_points(patches[group], slender, adhesion)),
+        )
+        rules = Rules.of(settings, int(factor), quick)
+        effort = Effort(
+            settings.seeds + 5 * slender,
+            settings.finalists + 2 * slender,
+            APART[slender],
+            settings.step / factor,
+            slender,
+            fields is not None,
+            adhesion,
+            quick,
+        )
+        out.put(group, _found(some, rules, effort))
     out.error[:] += _hidden_error(patches, settings, out.stress, fields is None)
     for place, length in zip((out.x, out.y, out.z), lengths(patches).T, strict=True):
         place *= length[:, None]
     return out
+
+
+def _found(patches: Patches, rules: Rules, effort: Effort) -> Peak:
+    """Return the peaks of patches with the same rules, in normalised coordinates."""
+    found = np.zeros((len(patches.rows), 2, 6))
+
+    def work(first: int, last: int) -> None:
+        _search_rows(first, last, patches, rules, effort, Room.empty(), found)
+
+    share_rows(work, len(found), 2, 64)
+    return Peak(*np.moveaxis(found, 2, 0))
 
 
 def _hidden_error(patches: np.ndarray, settings: PeakSettings, stress: np.ndarray, slides: bool) -> np.ndarray:

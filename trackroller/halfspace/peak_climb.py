@@ -1,116 +1,57 @@
-"""Climb from seeds to the highest von Mises stress below ellipses by a pattern search with parabolas.
+"""Climb from seeds to the highest von Mises stress below an ellipse by a pattern search with parabolas.
 
-Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis. Stresses are per unit p_max.
+Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis. Stresses are per unit p_max. All
+functions are compiled and treat one patch; with NumPy the arrays of a few points cost more than their stresses.
 """
 
 from __future__ import annotations
 
-import functools
-from dataclasses import dataclass
+import math
+from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import near_parts
+from trackroller.halfspace.ellipse import Room, near_parts
 from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
-from trackroller.numerics.threads import share_rows
+from trackroller.numerics.compiled import compiled
 
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
 
 
-@dataclass(frozen=True)
-class Patches:
-    """The n patches of a search.
+class Target(NamedTuple):
+    """The patch of a search.
 
     Attributes
     ----------
-    rows : numpy.ndarray, shape (n,)
-        Records of `ellipse.patch_rows`.
-    fields : numpy.ndarray, shape (n, 2, ny, nx)
-        Traction fields.
-    poisson_ratio : numpy.ndarray, shape (n, 2)
+    patch : record
+        Record of `ellipse.patch_rows`.
+    field : numpy.ndarray, shape (2, ny, nx)
+        Traction field.
+    poisson_ratio : numpy.ndarray, shape (2,)
         Poisson's ratios of roller and guide [1].
+    unit : numpy.ndarray, shape (3,)
+        Units of normalised points [mm], see `lengths`.
     slender : bool
-        True if the quadrature rules of these patches are refined.
-    adhesion : bool
-        True if the fields are known to have areas of adhesion.
+        True if the quadrature rules of the patch are refined.
+    room : Room
+        Work space of the thread.
     """
 
-    rows: np.ndarray
-    fields: np.ndarray
+    patch: np.void
+    field: np.ndarray
     poisson_ratio: np.ndarray
+    unit: np.ndarray
     slender: bool
-    adhesion: bool = False
-
-    @property
-    def gridded(self) -> bool:
-        """Return whether there are traction fields."""
-        return self.fields.shape[-1] > 1
-
-    @functools.cached_property
-    def sizes(self) -> np.ndarray:
-        """Return the `lengths` of the patches."""
-        return lengths(self.rows)
-
-    def parts(self, of: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
-        """Return stress parts (m, 4, 6) of patches `of` at normalised points u (m, 3)."""
-        points = u * self.sizes[of]
-        return near_parts(self.rows, self.fields, of, points, waves, rule)
-
-    def stress(self, of: np.ndarray, body: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray):
-        """Return the von Mises stress (m,) in `body` of patches `of` at normalised points u (m, 3), on all threads."""
-        out, nu, signs = np.empty(len(u)), self.poisson_ratio[of, body], np.take(FRICTION_SIGNS, body)
-
-        def work(first: int, last: int) -> None:
-            some = slice(first, last)
-            von_mises_of_parts(self.parts(of[some], u[some], waves, rule), nu[some], signs[some], out[some])
-
-        share_rows(work, len(u), 64, 1024)
-        return out
-
-    def scan(self, u: np.ndarray, rule: np.ndarray) -> np.ndarray:
-        """Return the von Mises stress (n, m, 2) in both bodies at normalised points u (n, m, 3); 0 at points of NaN."""
-        of, place = np.nonzero(np.isfinite(u[..., 0]))
-        points, stress = u[of, place], np.empty((2, of.size))
-        nu, signs = np.ascontiguousarray(self.poisson_ratio[of].T), np.repeat(FRICTION_SIGNS, of.size).reshape(2, -1)
-
-        def work(first: int, last: int) -> None:
-            some = slice(first, last)
-            parts = self.parts(of[some], points[some], rule, rule)
-            for body in (0, 1):
-                von_mises_of_parts(parts, nu[body, some], signs[body, some], stress[body, some])
-
-        share_rows(work, of.size, 64, 1024)
-        out = np.zeros((*u.shape[:2], 2))
-        out[of, place] = stress.T
-        return out
+    room: Room
 
 
-def lengths(rows: np.ndarray) -> np.ndarray:
-    """Return the units of normalised points, (n, 3) [mm]: a, b, and the smaller semi-axis for the depth."""
-    a, b = rows["a"], rows["b"]
-    return np.stack([a, b, np.minimum(a, b)], axis=1)
-
-
-def _project(u: np.ndarray) -> np.ndarray:
-    """Move points u (m, 3) to the nearest points of the closed half-space below the patch."""
-    r = np.sqrt(u[:, 0] ** 2 + u[:, 1] ** 2)
-    u[:, :2] /= np.maximum(r, 1.0)[:, None]
-    u[:, 2] = np.maximum(u[:, 2], 0.0)
-    return u
-
-
-@dataclass
-class Climbs:
-    """Points that climb towards the highest stress.
+class Climbs(NamedTuple):
+    """Points that climb towards the highest stress in one patch; those of the roller come first.
 
     Attributes
     ----------
-    patches : Patches
-        The patches.
-    of, body : numpy.ndarray of int, shape (m,)
-        Patch and body of each climb.
     u, f : numpy.ndarray, shape (m, 3) and (m,)
-        Normalised points and their stress.
+        Normalised points and their stress; -1 for a climb that was given up.
     gained : numpy.ndarray, shape (m,)
         Increase of the stress in the last sweep.
     step : numpy.ndarray, shape (m, 3)
@@ -119,109 +60,159 @@ class Climbs:
         Direction of the first axis.
     """
 
-    patches: Patches
-    of: np.ndarray
-    body: np.ndarray
     u: np.ndarray
     f: np.ndarray
     gained: np.ndarray
     step: np.ndarray
     along: np.ndarray
 
-    def values(self, i: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
-        """Return the stress of climbs `i` at the points u (len(i), 3)."""
-        return self.patches.stress(self.of[i], self.body[i], u, waves, rule)
 
-    def try_points(self, i: np.ndarray, u: np.ndarray, waves: np.ndarray, rule: np.ndarray) -> np.ndarray:
-        """Move climbs `i` to u (len(i), 3) where the stress is higher; return the stress there."""
-        value = self.values(i, u, waves, rule)
-        better = value > self.f[i]
-        self.u[i[better]], self.f[i[better]] = u[better], value[better]
-        return value
+def lengths(rows: np.ndarray) -> np.ndarray:
+    """Return the units of normalised points, (n, 3) [mm]: a, b, and the smaller semi-axis for the depth."""
+    a, b = rows["a"], rows["b"]
+    return np.stack([a, b, np.minimum(a, b)], axis=1)
 
-    def sweep(self, rows: np.ndarray, waves, rule, smallest: float, ridge: bool) -> np.ndarray:
-        """Search along radius, circumference and depth in turn; return the climbs of `rows` that still move.
 
-        With `ridge` a further step repeats the whole move of this sweep, which follows ridges oblique to the axes.
-        """
-        before, start = self.f[rows], self.u[rows]
-        axes = self._axes(rows)
-        moved = np.zeros(rows.size)
-        for k in range(3):
-            moved = np.maximum(moved, self._along(rows, axes[k], self.step[:, k], waves, rule))
-        if ridge:
-            far = ((self.u[rows] - start) ** 2).sum(axis=1) > 1e-8
-            self.try_points(rows[far], _project(2.0 * self.u[rows[far]] - start[far]), waves, rule)
-        if self.patches.slender:
-            self._turn(rows, start)
-        self.gained[rows] = self.f[rows] - before
-        widest = self.step[rows].max(axis=1)
-        still = (self.gained[rows] < 1e-6 * self.f[rows]) & (moved < 1e-9) & (widest < 4.0 * smallest)
-        return rows[~((widest < smallest) | still)]
+@compiled
+def stresses_at(target, body, u, rules):
+    """Return the von Mises stresses (m,) in `body` (0 or 1) at normalised points u (m, 3)."""
+    parts = near_parts(target.patch, target.field, u * target.unit, rules, target.room)
+    out = np.empty(len(u))
+    for k in range(len(u)):
+        out[k] = von_mises_of_parts(parts[k], target.poisson_ratio[body], FRICTION_SIGNS[body])
+    return out
 
-    def _axes(self, rows: np.ndarray) -> np.ndarray:
-        """Return the axes (3, m, 3) of the pattern: radius, circumference and depth.
 
-        Slender patches have narrow ridges; inside the rim the first axis lies along the ridge.
-        """
-        x, y, _ = self.u[rows].T
-        r = np.sqrt(x**2 + y**2)
-        off = r > 1e-9
-        c, s = np.where(off, x, 1.0), np.where(off, y, 0.0)
-        r = np.where(off, r, 1.0)
-        c, s, zero = c / r, s / r, np.zeros_like(r)
-        if self.patches.slender:
-            inner = x**2 + y**2 < 0.998
-            ridge_x, ridge_y = self.along[rows].T
-            c, s = np.where(inner, ridge_x, c), np.where(inner, ridge_y, s)
-        return np.stack([np.stack([c, s, zero], 1), np.stack([-s, c, zero], 1), np.stack([zero, zero, zero + 1.0], 1)])
+@compiled
+def stress_at(target, body, u, rules):
+    """Return the von Mises stress in `body` (0 or 1) at a normalised point u (3,)."""
+    return stresses_at(target, body, u.reshape(1, 3), rules)[0]
 
-    def _turn(self, rows: np.ndarray, start: np.ndarray) -> None:
-        """Turn the first axis of climbs `rows` into the direction of their move from `start` (Rosenbrock)."""
-        gone = self.u[rows, :2] - start[:, :2]
-        length = np.sqrt(gone[:, 0] ** 2 + gone[:, 1] ** 2)
-        far = length > 1e-5
-        self.along[rows[far]] = gone[far] / length[far, None]
 
-    def standing(self, share: float, gap: float, most: int) -> np.ndarray:
-        """Return up to `most` climbs of each body and give up the others.
+@compiled
+def scan(target, points, rules):
+    """Return the von Mises stresses of both bodies at normalised points (m, 3), as (2, m)."""
+    parts = near_parts(target.patch, target.field, points * target.unit, rules, target.room)
+    out = np.empty((2, len(points)))
+    for body in range(2):
+        for k in range(len(points)):
+            out[body, k] = von_mises_of_parts(parts[k], target.poisson_ratio[body], FRICTION_SIGNS[body])
+    return out
 
-        The highest climb and those above its `share` remain. Of points closer than `gap` only the highest remains.
-        """
-        of_a_body = len(self.f) // (2 * len(self.patches.rows))
-        f, u = self.f.reshape(-1, of_a_body), self.u.reshape(-1, of_a_body, 3)
-        every = np.arange(len(f))
-        left, enough = f.copy(), share * f.max(axis=1)
-        rows = []
-        for _ in range(min(most, of_a_body)):
-            best = left.argmax(axis=1)
-            good = left[every, best] >= enough
-            rows.append((every * of_a_body + best)[good])
-            left[every, best] = -1.0
-            left = np.where(((u - u[every, best][:, None, :]) ** 2).sum(axis=2) < gap * gap, -1.0, left)
-        standing = np.sort(np.concatenate(rows))
-        fallen = np.ones(len(self.f), bool)
-        fallen[standing] = False
-        self.f[fallen] = -1.0
-        return standing
 
-    def _along(self, rows: np.ndarray, axis: np.ndarray, h: np.ndarray, waves, rule) -> np.ndarray:
-        """Search along one axis (m, 3): both sides, then the top of the parabola; return the moves over the steps h."""
-        u_0, f_0, step = self.u[rows], self.f[rows], h[rows]
-        side = np.stack([_project(u_0 + step[:, None] * axis), _project(u_0 - step[:, None] * axis)])
-        fresh = np.abs(side - u_0).sum(axis=2) >= 1e-12
-        f_side = np.stack([f_0, f_0])
-        f_side[fresh] = self.values(np.concatenate([rows[fresh[0]], rows[fresh[1]]]), side[fresh], waves, rule)
-        for k in (0, 1):
-            better = f_side[k] > self.f[rows]
-            self.u[rows[better]], self.f[rows[better]] = side[k][better], f_side[k][better]
-        curve = f_side[0] - 2.0 * f_0 + f_side[1]
-        round_top = curve < 0.0
-        jump = 0.5 * step * (f_side[1] - f_side[0]) / np.where(round_top, curve, -1.0)
-        jump = np.minimum(np.maximum(jump, -2.0 * step), 2.0 * step)
-        worth = round_top & (np.abs(jump) > 0.05 * step) & (np.abs(np.abs(jump) - step) > 0.05 * step)
-        self.try_points(rows[worth], _project(u_0[worth] + jump[worth, None] * axis[worth]), waves, rule)
-        distance = np.abs(self.u[rows] - u_0).sum(axis=1)
-        longer = np.where(distance > 1.5 * step, 1.5 * step, step) if self.patches.slender else step
-        h[rows] = np.where(distance < 0.5 * step, 0.35 * step, longer)
-        return distance / step
+@compiled
+def _project(u):
+    """Move a point u (3,) to the nearest point of the closed half-space below the patch."""
+    r = math.sqrt(u[0] * u[0] + u[1] * u[1])
+    if r > 1.0:
+        u[0] /= r
+        u[1] /= r
+    u[2] = max(u[2], 0.0)
+
+
+@compiled
+def _try(target, climbs, k, u, rules):
+    """Move climb k to the point nearest to u (3,) if the stress is higher there."""
+    _project(u)
+    value = stress_at(target, 2 * k // climbs.f.size, u, rules)
+    if value > climbs.f[k]:
+        climbs.u[k], climbs.f[k] = u, value
+
+
+@compiled
+def _axes(target, climbs, k, axes):
+    """Write the axes (3, 3) of the pattern of climb k: radius, circumference and depth.
+
+    Slender patches have narrow ridges; inside the rim the first axis lies along the ridge.
+    """
+    x, y = climbs.u[k, 0], climbs.u[k, 1]
+    r = math.sqrt(x * x + y * y)
+    c, s = (x / r, y / r) if r > 1e-9 else (1.0, 0.0)
+    if target.slender and x * x + y * y < 0.998:
+        c, s = climbs.along[k, 0], climbs.along[k, 1]
+    axes[:] = 0.0
+    axes[0, 0], axes[0, 1], axes[1, 0], axes[1, 1], axes[2, 2] = c, s, -s, c, 1.0
+
+
+@compiled
+def _along(target, climbs, k, axis, d, rules):
+    """Search along axis d (3,): both sides, then the top of the parabola; return the move over the step."""
+    u_0, f_0, step = climbs.u[k].copy(), climbs.f[k], climbs.step[k, d]
+    sides, heights = np.empty((2, 3)), np.full(2, f_0)
+    sides[0], sides[1] = u_0 + step * axis, u_0 - step * axis
+    fresh = np.empty(2, np.bool_)
+    for side in range(2):
+        _project(sides[side])
+        fresh[side] = np.abs(sides[side] - u_0).sum() >= 1e-12
+    heights[fresh] = stresses_at(target, 2 * k // climbs.f.size, sides[fresh], rules)
+    for side in range(2):
+        if heights[side] > climbs.f[k]:
+            climbs.u[k], climbs.f[k] = sides[side], heights[side]
+    curve = heights[0] - 2.0 * f_0 + heights[1]
+    if curve < 0.0:
+        jump = min(max(0.5 * step * (heights[1] - heights[0]) / curve, -2.0 * step), 2.0 * step)
+        if abs(jump) > 0.05 * step and abs(abs(jump) - step) > 0.05 * step:
+            _try(target, climbs, k, u_0 + jump * axis, rules)
+    distance = np.abs(climbs.u[k] - u_0).sum()
+    if distance < 0.5 * step:
+        climbs.step[k, d] = 0.35 * step
+    elif target.slender and distance > 1.5 * step:
+        climbs.step[k, d] = 1.5 * step
+    return distance / step
+
+
+@compiled
+def _turn(climbs, k, start):
+    """Turn the first axis of climb k into the direction of its move from `start` (3,) (Rosenbrock)."""
+    x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
+    length = math.sqrt(x * x + y * y)
+    if length > 1e-5:
+        climbs.along[k, 0], climbs.along[k, 1] = x / length, y / length
+
+
+@compiled
+def sweep(target, climbs, k, rules, smallest, ridge):
+    """Search along radius, circumference and depth in turn; return whether climb k still moves.
+
+    With `ridge` a further step repeats the whole move of this sweep, which follows ridges oblique to the axes.
+    """
+    before, start, axes = climbs.f[k], climbs.u[k].copy(), np.empty((3, 3))
+    _axes(target, climbs, k, axes)
+    moved = 0.0
+    for d in range(3):
+        moved = max(moved, _along(target, climbs, k, axes[d], d, rules))
+    if ridge and ((climbs.u[k] - start) ** 2).sum() > 1e-8:
+        _try(target, climbs, k, 2.0 * climbs.u[k] - start, rules)
+    if target.slender:
+        _turn(climbs, k, start)
+    climbs.gained[k] = climbs.f[k] - before
+    widest = climbs.step[k].max()
+    still = climbs.gained[k] < 1e-6 * climbs.f[k] and moved < 1e-9 and widest < 4.0 * smallest
+    return not (widest < smallest or still)
+
+
+@compiled
+def standing(climbs, share, gap, most):
+    """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
+
+    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands.
+    """
+    count = climbs.f.size // 2
+    stand = np.zeros(climbs.f.size, np.bool_)
+    for body in range(2):
+        first = body * count
+        left = climbs.f[first : first + count].copy()
+        enough = share * left.max()
+        for _ in range(min(most, count)):
+            best = left.argmax()
+            if not left[best] >= enough:
+                break
+            stand[first + best] = True
+            left[best] = -1.0
+            for other in range(count):
+                if ((climbs.u[first + other] - climbs.u[first + best]) ** 2).sum() < gap * gap:
+                    left[other] = -1.0
+    for k in range(climbs.f.size):
+        if not stand[k]:
+            climbs.f[k] = -1.0
+    return stand

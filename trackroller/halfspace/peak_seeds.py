@@ -10,6 +10,7 @@ import math
 import numpy as np
 
 from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
+from trackroller.numerics.compiled import compiled
 
 Rings = tuple[tuple[float, int], ...]
 
@@ -39,6 +40,7 @@ SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3,
 MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for each OF_GRID points of the grid
 STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
 NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
+SEED_WORTH = 0.85  # least stress of a seed over the largest
 
 SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
 
@@ -73,36 +75,40 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
     return np.concatenate([np.broadcast_to(SCAN, (len(patches), *SCAN.shape)), turning], axis=1)
 
 
-def ridge_points(fields: np.ndarray) -> np.ndarray:
-    """Return surface points on the line where sliding begins, (n, m, 3); m grows with the grid.
-
-    A patch with fewer points than others has rows of NaN after them.
+@compiled
+def ridge_points(field):
+    """Return surface points on the line where sliding begins, (m, 3); at most MOST_ON_RIDGE for each OF_GRID elements.
 
     Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
     cusp there. Nearly all peaks that a coarse scan misses lie on this line.
 
     Parameters
     ----------
-    fields : numpy.ndarray, shape (n, 2, ny, nx)
-        Traction over its bound on grids.
+    field : numpy.ndarray, shape (2, ny, nx)
+        Traction over its bound on a grid.
     """
-    n, _, ny, nx = fields.shape
-    x, y = ((2.0 * np.arange(m) + 1.0) / m - 1.0 for m in (nx, ny))
-    slides = (fields**2).sum(axis=1) >= STICKS
-    beside = np.zeros_like(slides)
-    beside[:, 1:] |= slides[:, :-1]
-    beside[:, :-1] |= slides[:, 1:]
-    beside[:, :, 1:] |= slides[:, :, :-1]
-    beside[:, :, :-1] |= slides[:, :, 1:]
-    beside &= ~slides & (x**2 + y[:, None] ** 2 < NEAR_RIM**2)
-    lines = [np.flatnonzero(line) for line in beside]
-    most = min(max((places.size for places in lines), default=0), MOST_ON_RIDGE * max(1, nx // OF_GRID))
-    out = np.full((n, most, 3), np.nan)
-    for points, places in zip(out, lines, strict=True):
-        if places.size > most:
-            places = places[np.linspace(0, places.size - 1, most).astype(int)]
-        points[: places.size] = np.stack([x[places % nx], y[places // nx], np.zeros(places.size)], axis=1)
-    return out
+    _, ny, nx = field.shape
+    slides = np.empty((ny, nx), np.bool_)
+    for j in range(ny):
+        for i in range(nx):
+            slides[j, i] = field[0, j, i] ** 2 + field[1, j, i] ** 2 >= STICKS
+    line, count = np.empty((ny * nx, 3)), 0
+    for j in range(ny):
+        y = (2.0 * j + 1.0) / ny - 1.0
+        for i in range(nx):
+            x = (2.0 * i + 1.0) / nx - 1.0
+            if slides[j, i] or x * x + y * y >= NEAR_RIM**2:
+                continue
+            beside = (j > 0 and slides[j - 1, i]) or (j + 1 < ny and slides[j + 1, i])
+            if beside or (i > 0 and slides[j, i - 1]) or (i + 1 < nx and slides[j, i + 1]):
+                line[count, 0], line[count, 1], line[count, 2] = x, y, 0.0
+                count += 1
+    most = MOST_ON_RIDGE * max(1, nx // OF_GRID)
+    if count > most:
+        for k in range(most):
+            line[k] = line[int(k * ((count - 1) / (most - 1)))]
+        count = most
+    return line[:count]
 
 
 def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:
@@ -141,29 +147,34 @@ def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarra
     return [fold + shift for shift in shifts] + lines
 
 
-def along_turn(patch: np.ndarray, u: np.ndarray) -> np.ndarray:
-    """Return unit vectors (m, 2) along which the slip changes its direction least at points u (m, 3) of m patches.
+@compiled
+def along_turn(patch, u, out):
+    """Write the unit vector along which the slip changes its direction least at a point u (3,) into `out` (2,).
 
     In a patch long in x this is the direction of y; in a patch long in y it is the line without lateral slip.
     """
-    slope = np.where(u[:, 0] * patch["a"] < patch["pole_x"], patch["k1"], patch["k2"]) * patch["a"] / patch["b"]
-    wide = patch["a"] > patch["b"]
-    length = np.sqrt(1.0 + slope * slope)
-    return np.stack([np.where(wide, 0.0, 1.0 / length), np.where(wide, 1.0, slope / length)], axis=1)
+    out[0], out[1] = 0.0, 1.0
+    if patch.a <= patch.b:
+        slope = (patch.k1 if u[0] * patch.a < patch.pole_x else patch.k2) * patch.a / patch.b
+        length = math.sqrt(1.0 + slope * slope)
+        out[0], out[1] = 1.0 / length, slope / length
 
 
-def best_seeds(points: np.ndarray, values: np.ndarray, count: int, apart: float) -> np.ndarray:
-    """Return the indices (n, count) of scan points (n, m, 3) with the largest values; -1 if there are no more.
+@compiled
+def best_seeds(points, values, count, apart):
+    """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
 
-    The points are `apart` from each other; `values` (n, m) are the stresses at the points.
+    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
     """
-    left, every = values.copy(), np.arange(len(values))
-    enough = 0.85 * values.max(axis=1)
-    chosen = np.full((len(values), count), -1)
-    for k in range(count):
-        best = left.argmax(axis=1)
-        good = left[every, best] > enough
-        chosen[good, k] = best[good]
-        gap = ((points - points[every, best][:, None, :]) ** 2).sum(axis=2)
-        left = np.where(gap < apart * apart, 0.0, left)
-    return chosen
+    left, chosen, found = values.copy(), np.empty(count, np.int64), 0
+    enough = SEED_WORTH * values.max()
+    while found < count:
+        best = left.argmax()
+        if not left[best] > enough:
+            break
+        chosen[found] = best
+        found += 1
+        for k in range(left.size):
+            if ((points[k] - points[best]) ** 2).sum() < apart * apart:
+                left[k] = 0.0
+    return chosen[:found]

@@ -231,16 +231,19 @@ def _equivalent(sx, sy, sz, txy, tyz, txz):
     return np.sqrt(0.5 * normal + 3.0 * (txy * txy + tyz * tyz + txz * txz))
 
 
+@inner
+def _of_body(parts, poisson_ratio, sign, k):
+    """Return component k of `body_stress`."""
+    return parts[0, k] + poisson_ratio * parts[1, k] + sign * (parts[2, k] + poisson_ratio * parts[3, k])
+
+
 @fast
-def von_mises_of_parts(parts, poisson_ratio, signs, out):
-    """Write the von Mises stress of `body_stress` into `out` (m,), from parts (m, 4, 6), nu (m,) and signs (m,)."""
-    stress = np.empty(6)
-    for i in range(out.size):
-        nu, sign = poisson_ratio[i], signs[i]
-        for k in range(6):
-            p = parts[i, :, k]
-            stress[k] = p[0] + nu * p[1] + sign * (p[2] + nu * p[3])
-        out[i] = _equivalent(stress[0], stress[1], stress[2], stress[3], stress[4], stress[5])
+def von_mises_of_parts(parts, poisson_ratio, sign):
+    """Return the von Mises stress of `body_stress`, from stress parts (4, 6)."""
+    nu = poisson_ratio
+    sx, sy, sz = _of_body(parts, nu, sign, 0), _of_body(parts, nu, sign, 1), _of_body(parts, nu, sign, 2)
+    txy, tyz, txz = _of_body(parts, nu, sign, 3), _of_body(parts, nu, sign, 4), _of_body(parts, nu, sign, 5)
+    return _equivalent(sx, sy, sz, txy, tyz, txz)
 
 
 def principal_stresses(stress: ArrayLike) -> Array:

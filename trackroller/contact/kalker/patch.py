@@ -19,6 +19,7 @@ from trackroller.contact.kalker.cells import cells, unit_cells
 from trackroller.contact.kalker.columns import column_ranges
 from trackroller.contact.kalker.loops import row_means
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
+from trackroller.contact.linear import LARGEST_RATIO, creepage_coefficients
 from trackroller.contact.slip import Creepage
 
 BLOCK = 256  # patches that are solved together, to limit the memory for their tractions
@@ -60,6 +61,29 @@ def _level(
     return solution
 
 
+def _simplified(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
+    """Return tractions of Kalker's simplified theory (FASTSIM, 1982) over mu p_max, (n, 2, elements, elements).
+
+    Newton's method needs half the steps from them that it needs from zero. Elements without a finite value start at 0.
+    """
+    a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
+    c = creepage_coefficients(np.clip(b / a, 1.0 / LARGEST_RATIO, LARGEST_RATIO), elastic.poisson_ratio)
+    height, _ = cells(ellipse, elements)
+    places = (2.0 * np.arange(elements) + 1.0) / elements - 1.0
+    with np.errstate(all="ignore"):
+        length = 2.0 * b / (elements * friction * ellipse.max_pressure)  # of an element, over the bound
+        across = length * 4.0 * elastic.shear_modulus * c.c23 / (np.pi * b * np.sqrt(b / a))
+        lateral = across[:, None] * (creep.lateral[:, None] - creep.spin[:, None] * b[:, None] * places)
+        rolling = (length * 3.0 * elastic.shear_modulus * c.c11 / (8.0 * b))[:, None] * creep.along(a[:, None] * places)
+        out, traction = np.empty((friction.size, 2, elements, elements)), np.zeros((2, friction.size, elements))
+        for k in range(elements - 1, -1, -1):  # material enters at the leading edge
+            traction[0] -= lateral[:, k, None]
+            traction[1] -= rolling
+            traction *= np.fmin(height[k] / np.sqrt((traction * traction).sum(axis=0)), 1.0)
+            out[:, :, k] = np.moveaxis(traction, 0, 1)
+    return np.nan_to_num(out, copy=False, nan=0.0, posinf=0.0, neginf=0.0)
+
+
 def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool):
     """Solve on half the elements and, unless the iteration is `started`, fill its start `traction` from there."""
     n, half = friction.size, settings.elements // 2
@@ -98,6 +122,8 @@ def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSetting
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
     n, elements = friction.size, settings.elements
     traction = np.zeros((n, 2, elements, elements)) if start is None else np.array(start, float)
+    if start is None and not settings.extrapolate and ellipse.is_hertzian:
+        traction = _simplified(ellipse, creep, friction, elastic, elements)
     coarse = None
     if settings.extrapolate:
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)

@@ -22,11 +22,13 @@ from trackroller.roller.stages.scene import surface_tractions
 
 SECTION_ORDER = 24  # quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
 SEEDS, FINALISTS = 5, 2  # least effort of the search under tractions with adhesion
+QUICK_SEEDS = 3  # seeds of a quick search
 PIECE = 256  # patches whose tractions on grids are held at once
 # Estimated relative error of a peak above which the patch is solved again on twice the elements, and the number of
 # elements for which it holds; it falls with the area of an element. Stresses have narrow ridges where sliding begins,
 # which carry the peaks of such patches. Their search therefore takes finer rules and steps.
 REFINED_ERROR, REFINED_AT = 1.5e-2, 28
+CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
@@ -128,14 +130,17 @@ class EllipseStresses(PatchStresses):
         """
         results, settings, peak = self.results, self.options.settings.peak, Peak.empty(len(patches))
         # adhesion and the spin pole make several summits of nearly the same height
-        settings = replace(settings, seeds=max(settings.seeds, SEEDS), finalists=max(settings.finalists, FINALISTS))
-        for piece in _pieces(flat.size):
-            fields = [_mirrored(part, second[piece]) for part in self.fields(flat[piece])]
-            peak.put(piece, find_peaks(patches[piece], ratios[piece], settings, *fields))
         own = results.scene.model.peak_error
+        seeds = QUICK_SEEDS if own else max(settings.seeds, SEEDS)
+        settings = replace(settings, seeds=seeds, finalists=max(settings.finalists, FINALISTS))
+        for piece in _pieces(flat.size):
+            fields, coarse = (_mirrored(part, second[piece]) for part in self.fields(flat[piece]))
+            peak.put(piece, find_peaks(patches[piece], ratios[piece], settings, fields, coarse, bool(own)))
         worth = REFINED_SHARE * own * results.friction[flat]
         limit = np.maximum(refined_above(self.options.settings.elements), worth)
-        rough = np.flatnonzero((peak.error.max(axis=1) > limit) & (results.slides_along[flat] == 0))
+        # a model with an error of its own gains nothing from elements where the search alone is rough
+        doubt = CHANGE_WEIGHT * peak.change if own else peak.error
+        rough = np.flatnonzero((doubt.max(axis=1) > limit) & (results.slides_along[flat] == 0))
         if not own and settings.step > FINER_SEARCH["step"]:
             settings = replace(settings, **FINER_SEARCH)
         for piece in _pieces(rough.size, PIECE if own else FINER_PIECE):
@@ -143,8 +148,8 @@ class EllipseStresses(PatchStresses):
             shares = self._shares(flat[rows], results.scene.model.finer_shares)
             if shares is None:
                 break
-            fields, converged = [_mirrored(part, second[rows]) for part in shares[:2]], shares[2]
-            finer = find_peaks(patches[rows], ratios[rows], settings, *fields)
+            (fields, coarse), converged = (_mirrored(part, second[rows]) for part in shares[:2]), shares[2]
+            finer = find_peaks(patches[rows], ratios[rows], settings, fields, coarse, bool(own))
             # the change of the stress at one place can vanish by chance
             finer.error[:] = np.maximum(finer.error, limit[rows, None])
             peak.put(rows[converged], finer.take(converged))
