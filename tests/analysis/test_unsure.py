@@ -7,7 +7,12 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from trackroller.analysis.unsure import COEFFICIENT, unbeaten
+import trackroller as tr
+from trackroller.analysis.designs import Designs
+from trackroller.analysis.first_limits import reached_hours
+from trackroller.analysis.unsure import COEFFICIENT, settled, unbeaten
+from trackroller.report.words.limits import best_whatever, whichever_first
+from trackroller.study.file.load import parse_study
 
 PAIRS = ["steel", "steel", "POM", "POM", "PA6"]
 
@@ -55,3 +60,39 @@ def test_one_design_that_is_the_best_whatever_the_coefficients_are():
 
 def test_a_study_that_does_not_vary_the_coefficient_gets_no_answer():
     assert unbeaten(designs(np.ones((5, 2)), varied=False)) is None
+
+
+STUDY = {
+    "name": "unsure",
+    "base": {"radial_force": -60, "axial_force": 5, "guide_overrollings_per_hour": 600, "motor_force": 0},
+    "factors": {
+        "material_pair": {"values": [["1.7225-normalised"] * 2, ["EN AW-7075", "1.7225-normalised"]]},
+        "velocity": {"values": [20, 120]},
+        "friction_coefficient": {"values": [0.05, 0.2, 0.4]},
+        "placeholder_position": {"values": [-1, 0, 1]},
+    },
+    "contact_model": "sliding",
+    "accuracy": "preview",
+    "outputs": ["forces", "contact", "peak_stress", "life", "rating", "limits"],
+}
+
+
+def test_conclusions_that_hold_for_all_combinations_of_the_ranges_are_counted():
+    """Count by trying every combination of the places of each limit, which differ independently."""
+    solved = tr.run(parse_study(STUDY), progress=False)
+    reached = reached_hours(solved.view).reshape(2, 2, 3, 3, -1)  # pair, speed, friction, place, limit
+    certain = ends = 0
+    for own in reached.reshape(-1, 3, reached.shape[-1]):
+        firsts = set()
+        for places in itertools.product(range(3), repeat=own.shape[1]):
+            hours = own[places, range(own.shape[1])]
+            firsts |= {int(np.argmin(hours))} if np.isfinite(hours).any() else set()
+        ends += bool(firsts)
+        certain += len(firsts) == 1
+    found = Designs.of(solved.view)
+    assert settled(found) == (certain, ends) and 0 < certain < ends
+    said = whichever_first(solved.view)
+    assert f"in {certain} of {ends} combinations" in said.text and "placeholders of materials" in said.text
+    assert best_whatever(solved.view).text.startswith("Whatever the placeholders of materials are")
+    fixed = STUDY | {"factors": {n: f for n, f in STUDY["factors"].items() if n != "placeholder_position"}}
+    assert whichever_first(tr.run(parse_study(fixed), progress=False).view) is None

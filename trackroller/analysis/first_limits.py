@@ -81,14 +81,19 @@ def turn(designs: Designs) -> Turn | None:
     return Turn(float(np.corrcoef(places, range(len(after)))[0, 1]), tuple(before), tuple(after))
 
 
+def reached_hours(view: StudyView) -> np.ndarray:
+    """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
+    used, hours = (flat(view.data, name, view.dims) for name in ("utilisation", "life_hours_by_limit"))
+    at_once = np.array([LIMITS[name].ends_at_once for name in view.data["limit"].values.tolist()])[:, None]
+    timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values[:, None]
+    reached = hours_until_reached(used, hours, timed, at_once)
+    return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
+
+
 def without_first(view: StudyView, case: int) -> tuple[str, float, str, float]:
     """Return first limit and hours of a case, and limit and hours that come next if the first were moved far away."""
-    used, hours = (flat(view.data, name, view.dims)[case] for name in ("utilisation", "life_hours_by_limit"))
-    names = view.data["limit"].values.tolist()
-    at_once = np.array([LIMITS[name].ends_at_once for name in names])[:, None]
-    timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values[:, None]
-    reached = np.nan_to_num(hours_until_reached(used, hours, timed, at_once), nan=np.inf, posinf=np.inf).min(axis=1)
-    use = np.nan_to_num(used, nan=0.0).max(axis=1)
+    names, reached = view.data["limit"].values.tolist(), reached_hours(view)[case]
+    use = np.nan_to_num(flat(view.data, "utilisation", view.dims)[case], nan=0.0).max(axis=1)
     order = np.lexsort((-use, reached))
     first, second = int(order[0]), int(order[1]) if len(order) > 1 else int(order[0])
     return names[first], float(reached[first]), names[second], float(reached[second])

@@ -1,42 +1,50 @@
-"""Compare designs whose wear coefficients are known within a range only."""
+"""Compare designs whose values are known within a range only, and tell which conclusions do not rest on them."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from trackroller.analysis.designs import Designs
+from trackroller.analysis.first_limits import reached_hours
 from trackroller.parameters import MATERIAL_FIELDS
 
-COEFFICIENT = "wear_coefficient_factor"
+COEFFICIENT, POSITION = "wear_coefficient_factor", "placeholder_position"
+UNSURE = (COEFFICIENT, POSITION)
 OF_MATERIALS = ("material_pair", *MATERIAL_FIELDS)
 
 
+def varied(designs: Designs) -> list[str]:
+    """Return the conditions of a study that stand for values that are known within a range only."""
+    return [name for name in UNSURE if name in designs.conditions]
+
+
 def unbeaten(designs: Designs) -> np.ndarray | None:
-    """Return the designs that are the best for some wear coefficients within their ranges.
+    """Return the designs that are the best for some values within their ranges.
 
     Parameters
     ----------
     designs : Designs
-        The designs of a study with the condition `wear_coefficient_factor`.
+        The designs of a study with a condition of `UNSURE`.
 
     Returns
     -------
     numpy.ndarray or None
-        Numbers of the designs, as in the index of `Designs.table`. None if the study does not vary the coefficient, or
+        Numbers of the designs, as in the index of `Designs.table`. None if the study varies no such condition, or
         cannot compare its designs.
 
     Notes
     -----
-    At each level of the factor a design counts with its worst life over the other conditions; a case that is not valid
-    counts as 0. Designs of the same materials share their coefficients, so they are compared level by level. The
-    coefficients of other materials differ independently: a design is beaten if its longest life is shorter than the
+    At each level of the conditions a design counts with its worst life over the other conditions; a case that is not valid
+    counts as 0. Designs of the same materials share their values, so they are compared level by level. The
+    values of other materials differ independently: a design is beaten if its longest life is shorter than the
     shortest life of another design.
     """
     view = designs.view
-    if COEFFICIENT not in designs.conditions or not designs.rising or not designs.matched:
+    names = varied(designs)
+    if not names or not designs.rising or not designs.matched:
         return None
     lives = np.where(designs.usable, view.column(designs.goal[0]), 0.0)
-    levels, level = np.unique(view.table[COEFFICIENT].to_numpy(float), return_inverse=True)
+    levels, level = np.unique(view.table[names].to_numpy(float), axis=0, return_inverse=True)
     worst = np.full((len(designs.size), len(levels)), np.inf)
     own = designs.place >= 0
     np.minimum.at(worst, (designs.place[own], level[own]), lives[own])
@@ -47,3 +55,39 @@ def unbeaten(designs: Designs) -> np.ndarray | None:
     level_by_level = (worst[None] >= worst[:, None]).all(axis=2) & (worst[None] > worst[:, None]).any(axis=2)
     beaten = np.where(alike, level_by_level, least[None, :] > most[:, None])
     return np.flatnonzero(~beaten.any(axis=1) & (most > 0.0))
+
+
+def settled(designs: Designs) -> tuple[int, int] | None:
+    """Count the conditions of designs whose first limit is the same for all values within their ranges.
+
+    Parameters
+    ----------
+    designs : Designs
+        The designs of a study with a condition of `UNSURE`.
+
+    Returns
+    -------
+    tuple of int or None
+        Number of settled conditions, and of all conditions in which a limit is reached; None if the study varies no
+        such condition.
+
+    Notes
+    -----
+    Values of different limits differ independently: a limit comes first for certain if its longest life is not longer
+    than the shortest lives of all other limits.
+    """
+    view = designs.view
+    if not varied(designs) or not view.limits:
+        return None
+    others = [name for name in view.factors if name not in UNSURE]
+    place = view.table.groupby(others, sort=False, dropna=False).ngroup().to_numpy() if others else view.regime * 0
+    reached = reached_hours(view)
+    groups, first = [place[view.valid] == g for g in np.unique(place[view.valid])], reached[view.valid]
+    certain = ends = 0
+    for rows in groups:
+        least, most = first[rows].min(axis=0), first[rows].max(axis=0)
+        if np.isfinite(least).any():
+            ends += 1
+            rule = int(np.argmin(most))
+            certain += bool(np.isfinite(most[rule]) and (most[rule] <= np.delete(least, rule)).all())
+    return certain, ends

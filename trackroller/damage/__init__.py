@@ -70,4 +70,4 @@ def of_mechanics(outputs: Collection[str], life_criterion: str) -> tuple[Limit, 
 
 def declared() -> str:
     """Return what the limits declare to `parameters`, as JSON."""
-    return declarations(LIMITS.values(), {verdict.GROUP: verdict.MEANING})
+    return declarations(LIMITS.values(), {verdict.GROUP: verdict.MEANING}, (verdict.POSITION,))

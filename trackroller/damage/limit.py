@@ -190,7 +190,7 @@ def optional(
     )
 
 
-def declarations(limits: Iterable[Limit], groups: Mapping[str, str]) -> str:
+def declarations(limits: Iterable[Limit], groups: Mapping[str, str], parameters: Iterable[Parameter] = ()) -> str:
     """Return groups, fields of a case and values of a material as the JSON that `parameters` reads.
 
     Parameters
@@ -199,12 +199,16 @@ def declarations(limits: Iterable[Limit], groups: Mapping[str, str]) -> str:
         The limits.
     groups : mapping of str to str
         Meanings of further groups of outputs.
+    parameters : iterable of Parameter
+        Fields of a case that belong to all limits.
     """
     limits = tuple(limits)
     declared = {
         "groups": {limit.group: limit.meaning for limit in limits if limit.meaning} | dict(groups),
         "mappings": {own.name: own.meaning for limit in limits for own in limit.mappings},
-        "parameters": [asdict(parameter) for limit in limits for parameter in limit.parameters],
+        "parameters": [
+            asdict(parameter) for own in (*(limit.parameters for limit in limits), parameters) for parameter in own
+        ],
         "materials": [asdict(value) for limit in limits for value in limit.materials],
     }
     return json.dumps(declared, indent=1) + "\n"

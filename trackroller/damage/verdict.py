@@ -8,10 +8,21 @@ import numpy as np
 
 from trackroller.damage.limit import Limit, Results, SolvedRollers, variables
 from trackroller.damage.pair import first_failure
-from trackroller.parameters import BODIES
+from trackroller.parameters import BODIES, Parameter
 
 GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
+POSITION = Parameter(
+    "placeholder_position",
+    "",
+    "-",
+    0.0,
+    "place of all placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end",
+    -1.0,
+    1.0,
+    role="condition",
+    label="place of the placeholders of materials in their ranges",
+)
 _LB = ("limit", "body")
 RESULTS = variables(
     GROUP,

@@ -11,6 +11,7 @@ from trackroller.errors import InputError
 from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
 from trackroller.materials.sn_curve import curve_exponent
 
+LESS_IS_BETTER = ("loss_fraction", "wear_coefficient")
 _OfLimits = make_dataclass(
     "_OfLimits", [(name, Any, field(default=None)) for name in OF_LIMITS], frozen=True, kw_only=True
 )
@@ -139,6 +140,30 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             for name, r in self.records.items()
             if r.placeholder and name in OF_LIMITS
         }
+
+    def moved(self, position: float) -> Material:
+        """Return the material with its placeholders of limits at another place in their ranges.
+
+        Parameters
+        ----------
+        position : float
+            -1 for the worse end of each range, 0 for the value, 1 for the better end; linear between them.
+
+        Returns
+        -------
+        Material
+            Values that are no placeholders, or that have no range, stay.
+
+        Notes
+        -----
+        ASSUME: more is better, but for loss and wear.
+        """
+        values: dict[str, Any] = {}
+        for name, record in self.records.items():
+            if record.placeholder and record.range is not None and name in OF_LIMITS:
+                worse, better = record.range if name not in LESS_IS_BETTER else record.range[::-1]
+                values[name] = record.value + abs(position) * ((better if position > 0 else worse) - record.value)
+        return dataclasses.replace(self, **values)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain numbers and texts, which a case accepts as a material."""

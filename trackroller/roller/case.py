@@ -89,6 +89,8 @@ class Case(_Numbers):
     permissible_wear_depth, required_travel, wear_coefficient_factor : float or None
         Wear depth that ends the life [mm], travel that it has to allow [km], and a factor on the wear coefficients [1],
         for the limit `wear`.
+    placeholder_position : float
+        Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end [1].
     bearing, catalogue, wear_table : mapping or None
         Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of wear; see "Parameters,
         options and results".
@@ -245,6 +247,18 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
     return numbers
 
 
+def _moved(bodies: list[Material], positions: np.ndarray) -> list[Material]:
+    """Return the material of each case with its placeholders at their places, one object for equal ones."""
+    known: dict[tuple[int, float], Material] = {}
+    out = []
+    for body, position in zip(bodies, positions.tolist(), strict=True):
+        key = id(body), position
+        if key not in known:
+            known[key] = body.moved(position) if position else body
+        out.append(known[key])
+    return out
+
+
 def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     """Return the checked arrays of cases, with materials and friction taken from the database.
 
@@ -284,6 +298,8 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     bodies = dict(zip(pairs, zip(roller, guide, strict=True), strict=True))
     worn = {pair: (database.on(a, b), database.on(b, a)) for pair, (a, b) in bodies.items()}
     roller, guide = ([worn[pair][i] for pair in pairs] for i in (0, 1))
+    if (places := numbers["placeholder_position"]).any():
+        roller, guide = (_moved(bodies, places) for bodies in (roller, guide))
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
     return CaseTable(**numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide))
 

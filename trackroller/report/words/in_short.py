@@ -14,7 +14,7 @@ from trackroller.report.words.accuracy import accuracy, friction_guess, known_er
 from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
-from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, worn
+from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
 from trackroller.report.words.regimes import occurrence
 from trackroller.report.words.samples import samples
 from trackroller.report.words.sentence import Sentence
@@ -37,7 +37,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         ("Best", [*best_design(view), _target(view)]),  # first, so that the first screen answers what to build
-        ("What ends it", [limit_of_best(view), best_whatever(view)]),
+        ("What ends it", [limit_of_best(view), best_whatever(view), whichever_first(view)]),
         ("Valid cases", [valid_cases(view), stopped(view)]),
         ("What decides", decides(sens)),
         ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),

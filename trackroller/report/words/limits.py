@@ -8,7 +8,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.first_limits import first_limit, turn, without_first
 from trackroller.analysis.lives import FIRST_LIMIT, body_lives
 from trackroller.analysis.table import StudyView
-from trackroller.analysis.unsure import COEFFICIENT, unbeaten
+from trackroller.analysis.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
 from trackroller.damage import LIMITS
 from trackroller.report.numbers import capital, count, lasting, listing, rounded
 from trackroller.report.tables.limits import GUESSES, placeholders
@@ -71,24 +71,45 @@ def worn(view: StudyView) -> Sentence | None:
 
 
 def best_whatever(view: StudyView) -> Sentence | None:
-    """Say which designs are the best whatever the wear coefficients are; None if the study does not vary them."""
+    """Say which designs are the best whatever the values are that are known within a range; None without such values."""
     designs = Designs.of(view)
     found = unbeaten(designs) if designs is not None else None
     if designs is None or found is None or not len(found):
         return None
-    factors = view.table[COEFFICIENT]
-    span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
+    what, span = _unsure(view, varied(designs))
     rows = designs.table[designs.table.index.isin(found)]
     names = [design_words(designs, row) for _, row in rows.iterrows()]
     values = {"designs": rows.index.tolist(), "of": len(designs.size)}
     if len(names) == 1:
-        text = f"Whatever the wear coefficients are, {span}, the best design is {names[0]}."
+        text = f"Whatever the {what} are, {span}, the best design is {names[0]}."
         return Sentence("best_whatever", text, values, designs.usable)
     more = f" and {count(len(names) - MOST_NAMED)} more" if len(names) > MOST_NAMED else ""
-    text = f"Wear coefficients, {span}, decide which of {count(len(names))} designs is the best: "
+    text = f"{capital(what)}, {span}, decide which of {count(len(names))} designs is the best: "
     text += f"{'; '.join(names[:MOST_NAMED])}{more}. "
     text += f"The other {count(len(designs.size) - len(names))} of {count(len(designs.size))} designs never are."
     return Sentence("best_whatever", text, values, designs.usable)
+
+
+def _unsure(view: StudyView, names: list[str]) -> tuple[str, str]:
+    """Return words for the values that a study varies within their ranges, and for the ranges."""
+    if names == [POSITION]:
+        return "placeholders of materials", "each within its range"
+    factors = view.table[COEFFICIENT]
+    span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
+    return "wear coefficients" + " and other placeholders" * (POSITION in names), span
+
+
+def whichever_first(view: StudyView) -> Sentence | None:
+    """Say in how many conditions the first limit is the same for all values within their ranges; None without them."""
+    designs = Designs.of(view)
+    found = settled(designs) if designs is not None else None
+    if designs is None or found is None or not found[1]:
+        return None
+    certain, ends = found
+    what, span = _unsure(view, varied(designs))
+    text = f"Whatever the {what} are, {span}, the same limit comes first in {count(certain)} of {count(ends)} "
+    text += "combinations of the other factors" + ("." if certain == ends else "; in the others they decide.")
+    return Sentence("whichever_first", text, {"certain": certain, "of": ends}, view.valid)
 
 
 def _gain(designs: Designs) -> Sentence:
