@@ -95,6 +95,20 @@ def test_a_study_file_that_would_be_read_with_another_meaning_is_refused(monkeyp
         tr.open_study(ds.assign_attrs(study=text))
 
 
+def test_a_report_takes_the_indices_that_are_known(tmp_path, monkeypatch):
+    solved = tr.run(SMALL, progress=False)
+    solved.indices().to_netcdf(tmp_path / "indices.nc")
+    opened = tr.open_study(solved.data, tmp_path / "indices.nc")
+
+    def again(_):
+        raise AssertionError("the indices were computed a second time")
+
+    for place in ("trackroller.solved", "trackroller.report.build"):
+        monkeypatch.setattr(f"{place}.analyse", again)
+    for name, study in (("computed", solved), ("given", opened)):
+        assert "friction coefficient" in study.report(tmp_path / f"{name}.html").read_text(encoding="utf-8")
+
+
 def test_report_explorer_and_best_cases_come_from_the_same_object(tmp_path):
     grooves = {"roller_profile_radius": {"values": [-7, -8, -9]}}
     study = parse_study(SMALL | {"factors": SMALL["factors"] | grooves})

@@ -151,7 +151,7 @@ class Solved(StudyResults):
 
     def report(self, path: Path | str) -> Path:
         """Write the report as one HTML file, or as PDF by the name of the file, and return its path."""
-        return write_page(Path(path), report_text(self))
+        return write_page(Path(path), report_text(self, self.indices))
 
     def explore(self, path: Path | str) -> Path:
         """Write the explorer as one HTML file that works without a network, and return its path."""

@@ -7,6 +7,7 @@ import logging
 import shutil
 import tempfile
 from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -83,20 +84,23 @@ def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path,
         return out, draw_figures(results.view.analysed(analysis), out)
 
 
-def report_text(results: StudyResults) -> str:
-    """Return the report of a solved study as HTML, with its analysis and figures; no file is left behind."""
+def report_text(results: StudyResults, indices: Callable[[], xr.Dataset] | None = None) -> str:
+    """Return the report of a solved study as HTML, with its analysis and figures; no file is left behind.
+
+    `indices` returns the analysis, if the caller has it.
+    """
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    view = results.view.analysed(_analysis(results))
+    view = results.view.analysed(_analysis(indices or partial(analyse, results)))
     with tempfile.TemporaryDirectory() as place:
         draw_all(view, Path(place))
         return page_text(view, contents(view), Path(place))
 
 
-def _analysis(results: StudyResults) -> xr.Dataset:
+def _analysis(indices: Callable[[], xr.Dataset]) -> xr.Dataset:
     """Return the sensitivity analysis of a study, or a data set without variables that says why there is none."""
     try:
-        return analyse(results)
+        return indices()
     except InputError as exc:
         log.info("no sensitivity analysis: %s", exc)
         return xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
@@ -104,7 +108,7 @@ def _analysis(results: StudyResults) -> xr.Dataset:
 
 def write_analysis(results: StudyResults, out: Path) -> xr.Dataset:
     """Write the sensitivity analysis of a study, or a file that says why there is none, and return it."""
-    analysis = _analysis(results)
+    analysis = _analysis(partial(analyse, results))
     with _sealed(out):
         write_whole(out, lambda beside: analysis.to_netcdf(beside))
     return analysis

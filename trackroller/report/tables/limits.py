@@ -117,7 +117,7 @@ def margins(
     ----------
     ds : xarray.Dataset
         Result of one case. The limits of the room `damage` need the output `limits`.
-    found : Limits
+    ranges : Limits
         Ranges of forces and friction in which the roller rolls.
     inputs : mapping
         Inputs of the case by name.
