@@ -21,8 +21,7 @@ CALLS = {
 }
 # file -> calls of it that a `hasattr` beside them guards
 GUARDED = {
-    "trackroller/files.py": {"posix_fallocate", "setitimer", "SIGALRM", "ITIMER_REAL"},
-    "trackroller/study/cluster.py": {"sched_getaffinity"},
+    "trackroller/files.py": {"posix_fallocate", "setitimer", "SIGALRM", "ITIMER_REAL", "sched_getaffinity"},
 }
 ALARM = {"SIGALRM", "ITIMER_REAL"}  # where `setitimer` is
 OPTIONAL = {"snakemake", "distributed"}  # of the extras `workflow` and `cluster`; the core runs without them
@@ -68,7 +67,7 @@ def posix_only(tree: ast.AST) -> set[str]:
     return found
 
 
-def test_calls_that_other_systems_lack_stand_guarded_in_two_files():
+def test_calls_that_other_systems_lack_stand_guarded_in_one_file():
     found = {}
     for path in sorted((ROOT / "trackroller").rglob("*.py")):
         text = path.read_text(encoding="utf-8")

@@ -24,6 +24,8 @@ COMMANDS = {
     "material": ["materials", "show", "PA6"],
     "friction": ["materials", "friction"],
     "spectrum": ["spectrum", "shift.yaml"],
+    "plan": ["plan", "study.yaml"],
+    "explain": ["plan", "--explain", "--set", "contact_model=sliding"],
 }
 
 
@@ -36,6 +38,7 @@ def words_of(text: str) -> list[str]:
 def test_nothing_is_cut_at_80_and_120_columns(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "shift.yaml").write_text(SPECTRUM)
+    (tmp_path / "study.yaml").write_text("{name: s, factors: {axial_force: {values: [0, 9]}}, contact_model: sliding}")
     said = {}
     for columns in ("80", "120", "400"):
         done = CliRunner().invoke(app, COMMANDS[name], env={"COLUMNS": columns})

@@ -14,7 +14,7 @@ from trackroller.cli.case import case_of, is_study, tell_doubts, writable, writa
 from trackroller.cli.usage import print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
-from trackroller.report.terminal import print_table
+from trackroller.report.terminal import print_table, print_text
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options, options_of_cases
@@ -107,7 +107,7 @@ def print_status(name: str, results: Path, figures: bool) -> int:
     )
     _print_left(status)
     if status.outdated:
-        print("outdated  another version of the solver made the results: the next run solves every case anew")
+        print_text("another version of the solver made the results: the next run solves every case anew", "outdated")
     if regimes := [f"{count} {name}" for name, count in status.regimes.items() if count]:
         print(f"regimes   {', '.join(regimes)}")
     for reason, count in status.by_reason.items():
@@ -211,7 +211,7 @@ def _print_doubts(study: Study) -> None:
 def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO | None = None) -> None:
     """Print the values that are taken from the paper's example, and ask about a drive that is not given."""
     for line in filter(None, (not_given_text(values), drive_question(values, named))):
-        print(line, file=to)
+        print_text(line, to=to)
 
 
 def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import textwrap
 from collections.abc import Sequence
+from typing import TextIO
 
 from rich.console import Console
 from rich.table import Table
@@ -62,7 +63,7 @@ def _least(cells: Sequence[str]) -> int:
     return longest if longest <= NARROW else max(word, NARROW)
 
 
-def print_text(text: str, head: str = "") -> None:
+def print_text(text: str, head: str = "", to: TextIO | None = None) -> None:
     """Print a sentence after a head of its own column, broken between words where the line ends."""
     lines = textwrap.wrap(
         text,
@@ -72,4 +73,4 @@ def print_text(text: str, head: str = "") -> None:
         break_long_words=False,
         break_on_hyphens=False,
     )
-    print("\n".join(lines))
+    print("\n".join(lines), file=to)

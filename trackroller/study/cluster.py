@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-import os
 from collections.abc import Iterator
 from typing import Any
 
@@ -13,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, WorkError
+from trackroller.files import cores
 from trackroller.study.cost import rate
 from trackroller.study.solve import Executor, solve_cases
 from trackroller.study.store import chunks
@@ -41,11 +41,6 @@ def workers(scheduler: str) -> Iterator[Executor]:
     """
     with _client(scheduler) as client:
         yield lambda cases, database: _solve(client, cases, database)
-
-
-def cores() -> int:
-    """Return the number of processors that this process may use; of the machine where the system does not say."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _client(scheduler: str) -> Any:

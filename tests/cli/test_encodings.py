@@ -1,0 +1,83 @@
+"""Every command prints on a console of every encoding; a sign that it lacks is written in plain letters."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import pytest
+
+CASE = (
+    "case.yaml",
+    "contact_model: sliding\naccuracy: preview\nradial_force: -150\nduty: {hours_per_day: 8, days_per_year: 220}\n",
+)
+STUDY = (
+    "größe.yaml",
+    "name: small\ndescription: Größe µ ≤ 3 – „groß“\ncontact_model: sliding\naccuracy: preview\n"
+    "outputs: [forces, life]\nfactors: {axial_force: {values: [0, 30]}}\n",
+)
+SPECTRUM = "shift.yaml", "description: Größe\nblocks: [{name: größer ≥ 3, distance: 3 km}]\ncontact_model: sliding\n"
+COMMANDS = [
+    ["--help"],
+    ["solve", "--help"],
+    ["solve", CASE[0]],
+    ["solve", CASE[0], "--json"],
+    ["solve", CASE[0], "--limits", "all"],
+    ["plan", "--set", "contact_angle=µ"],
+    ["spectrum", SPECTRUM[0]],
+    ["materials", "list"],
+    ["materials", "show", "PA6"],
+    ["materials", "friction"],
+    ["materials", "add", "größer", "--set", "like=PA6", "--set", "youngs_modulus=2 µm", "--file", "own.yaml"],
+    ["plan", STUDY[0]],
+    ["run", STUDY[0]],
+    ["status", "small"],
+]
+ALL = [
+    ["report", "small"],
+    ["explore", "small"],
+    ["plot", "small"],
+    ["repeat", "small", "0"],
+    ["verify", "small"],
+    ["rerun", "small"],
+]
+DRIVER = """
+import sys
+from trackroller.cli.main import main
+for words in {commands!r}:
+    sys.argv = ["trackroller", *words]
+    try:
+        main()
+    except SystemExit as end:
+        if end.code not in (0, 2):
+            raise SystemExit(f"{{words}}: {{end.code}}")
+"""
+
+
+def run(commands, encoding, folder):
+    """Run commands one after the other in one process whose console has an encoding, and return what it printed."""
+    for name, text in (CASE, STUDY, SPECTRUM):
+        (folder / name).write_text(text, encoding="utf-8")
+    words = [sys.executable, "-c", DRIVER.format(commands=commands)]
+    known = os.environ | {"PYTHONIOENCODING": encoding, "COLUMNS": "80"}
+    done = subprocess.run(words, cwd=folder, env=known, capture_output=True, timeout=300)
+    assert done.returncode == 0, done.stderr.decode(encoding)
+    out, err = done.stdout.decode(encoding), done.stderr.decode(encoding)
+    assert "codec" not in err and "internal error" not in err
+    return out
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "cp1252", "cp437", "utf-8"])
+def test_commands_print_in_every_encoding(encoding, tmp_path):
+    out = run(COMMANDS, encoding, tmp_path)
+    assert "MPa" in out and "1.7225-normalised" in out
+    assert ("größer" in out) == (encoding != "ascii")
+    if encoding == "utf-8":
+        assert "≤" in out or "≥" in out
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("encoding", ["ascii", "cp437"])
+def test_commands_on_a_solved_study_print_in_every_encoding(encoding, tmp_path):
+    assert "report.html" in run([["run", STUDY[0]], *ALL], encoding, tmp_path)
