@@ -171,6 +171,38 @@ def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) ->
         print_spectrum(dataset)
 
 
+def run_wear(path: Path | None, to: str, words: list[str], out: Path | None, page: Path | None, quiet: bool) -> None:
+    """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
+    target, sheet = None if out is None else writable(out), None if page is None else writable_page(page)
+    case, options, _ = case_of(path, words)
+    tell_doubts(case)
+    import xarray as xr  # heavy
+
+    from trackroller.report.pages.wear import write_wear
+    from trackroller.report.words.wear import sentences
+    from trackroller.roller.wear import wear
+
+    def tell(dataset: xr.Dataset, goal: float) -> None:
+        if target is not None:
+            write_result(dataset, target)
+        if not quiet:
+            last = dataset.isel(travel=-1)
+            depth = 1e3 * float(last["groove_depth"].max())
+            print_line(f"{float(last['travel']):.4g} of {goal:g} km, depth {depth:.3g} um")
+
+    before = None
+    if target is not None and target.exists():
+        with xr.open_dataset(target) as stored:
+            before = stored.load()
+    dataset = wear(case, to, resume=before, tell=tell, **options)
+    if target is not None:
+        write_result(dataset, target)
+    if sheet is not None:
+        write_wear(dataset, sheet, "case.yaml" if path is None else path.name)
+    for sentence in sentences(dataset):
+        print(sentence.text)
+
+
 def is_failed(dataset: xr.Dataset) -> bool:
     """Return True if the single case of a result has no solution."""
     return REGIMES[int(dataset["regime"])] == "failed"

@@ -22,6 +22,7 @@ import typer
 from trackroller import __version__
 from trackroller.cli import INTERRUPTED, STOPPED
 from trackroller.cli.live import live_page
+from trackroller.cli.materials import materials
 from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
 from trackroller.files import interrupts_wait_for_files
@@ -36,7 +37,6 @@ app = typer.Typer(
     help="Parameter studies of locating-bearing track rollers.",
     epilog="--allow-code with any command: load the limits of your own in config/limits/NAME.py, which are programs.",
 )
-materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 app.add_typer(materials, name="materials")
 app.command("app")(live_page)
 
@@ -192,6 +192,21 @@ def spectrum(
 
 
 @app.command()
+def wear(
+    case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
+    to: Annotated[str, typer.Option("--to", help="travel at which to end, such as 500km")] = "50km",
+    settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="netCDF; a run goes on from what it holds")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no line for each state")] = False,
+) -> None:
+    """Follow roller and guide while their profiles wear, and print how far and how deep."""
+    from trackroller.cli.case import run_wear
+
+    run_wear(case, to, settings or [], out, report, quiet)
+
+
+@app.command()
 def plot(
     target: Annotated[str, typer.Argument(help="case file (YAML), or name of a study", show_default=False)],
     settings: Annotated[list[str] | None, typer.Option("--set", help="key=value of a case")] = None,
@@ -202,56 +217,6 @@ def plot(
     from trackroller.cli.case import plot_target
 
     plot_target(target, settings or [], out, results)
-
-
-@materials.command("list")
-def materials_list(
-    search: Annotated[str, typer.Argument(help="words of a name or description, such as 42CrMo4")] = "",
-) -> None:
-    """Print the names and values of all materials, or of those that a word describes."""
-    from trackroller.materials.tables import material_rows
-
-    _print_rows(material_rows, search)
-
-
-@materials.command("show")
-def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> None:
-    """Print every value of a material with its unit and source, and whether it is a placeholder."""
-    from trackroller.materials.tables import material_details
-
-    _print_rows(material_details, name)
-
-
-@materials.command("friction")
-def materials_friction() -> None:
-    """Print the friction coefficient of each pair of materials."""
-    from trackroller.materials.tables import friction_rows
-
-    _print_rows(friction_rows)
-
-
-def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> None:
-    from trackroller.materials import load_database
-    from trackroller.report.terminal import print_table
-
-    rows = rows_of(load_database(), *names)
-    heads = list(rows[0] if rows else ())
-    print_table(heads, [[row.get(head, "") for head in heads] for row in rows])
-
-
-@materials.command("add")
-def materials_add(
-    name: Annotated[str, typer.Argument(show_default=False)],
-    settings: Annotated[list[str], typer.Option("--set", help="field=value, e.g. youngs_modulus=210000")],
-    file: Annotated[Path, typer.Option(help="your materials file")] = Path("config/materials.yaml"),
-    replace: Annotated[bool, typer.Option("--replace", help="change a material that the file has already")] = False,
-) -> None:
-    """Write a material into your own file; comments in the file stay."""
-    from trackroller.cli.case import settings_of
-    from trackroller.materials import add_material
-
-    material = add_material(file, name, replace=replace, **settings_of(settings))
-    print(f"material '{material.name}' is in {file}")
 
 
 def main() -> None:

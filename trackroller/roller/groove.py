@@ -37,14 +37,14 @@ TOLERANCE = 0.01  # largest error of the depth in a step over the elastic approa
 FIRST = 0.05  # depth of the first step over the elastic approach of the new bodies
 LEAST = 1e-3  # least step over the first step
 GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
-STEPS = 2000  # largest number of steps
+STEPS = 400  # largest number of steps
 ENDS = {
     "travel": "the travel asked for is reached",
     "permissible": "the permissible wear depth is reached",
     "lift_off": "a contact has lifted off",
     "full_slip": "friction can no longer transmit the motor force, so that wear per travel has no limit",
     "failed": "no balance of the forces was found",
-    "steps": "the groove changes too fast for the least step",
+    "steps": f"the steps became too small, or {STEPS} steps were not enough",
     "wide": f"the patch has grown beyond {REACH:g} times the new one",
 }
 
@@ -162,6 +162,12 @@ class Wearing:
         guide_text, roller_text = (np.array([text], dtype=object) for text in texts)
         profiles: Any = {"guide_profile": guide_text, "roller_profile": roller_text}
         return replace(self.table, **profiles)
+
+    def gaps(self, state: Groove) -> np.ndarray:
+        """Return the gap of the worn bodies at `places` where they touch without load, (2, cells) [mm]."""
+        table = self.worn_table(state)
+        lateral = np.array([self._gap(table, k + 1).lateral(self.places) for k in range(self.contacts)])
+        return np.broadcast_to(lateral - lateral.min(axis=1, keepdims=True), (2, self.places.size))
 
     def solve(self, state: Groove) -> Results:
         """Return balance and patches of a state."""

@@ -11,6 +11,7 @@ import numpy as np
 from trackroller.damage.limit import variables
 from trackroller.errors import InputError
 from trackroller.materials import load_database
+from trackroller.numerics.numbers import number_in
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.groove import ENDS, Groove, Wearing, between, travel_to_depth
 from trackroller.roller.options import Options
@@ -33,6 +34,8 @@ VARIABLES = variables(
     ("groove_depth_error", (), "mm", "delta(d)", "estimated error of the depth, summed over the steps"),
     ("groove_volume", _CB, "mm3", "V", "worn volume of the roller's circumference, and of a metre of the guide"),
     ("worn_depth", (*_CB, "place"), "mm", "d(x)", "depth that wear took off normal to the contact plane"),
+    ("guide_surface", (*_C, "place"), "mm", "z", "worn surface of the guide over the new one"),
+    ("roller_surface", (*_C, "place"), "mm", "z", "worn surface of the roller over the new guide, where both touch"),
     ("contact_angle", _C, "degree", "alpha", "inclination of the resultant of the pressure"),
     ("closing", _C, "mm", "", "distance by which wear let the bodies close"),
     ("next_step", (), "km", "", "next step of a run that goes on; missing at the end, which lies between two steps"),
@@ -46,12 +49,13 @@ VARIABLES = variables(
     ),
     ("start_box", ("contact", "side"), "mm", "", "ends and half length of the patch from which the solution started"),
 )
+FARTHEST = 1e9  # km
 Tell = Callable[["xr.Dataset", float], None]
 
 
 def wear(
     case: Case | dict[str, Any],
-    to: float,
+    to: float | str,
     outputs: Iterable[str] | str | None = None,
     *,
     resume: xr.Dataset | None = None,
@@ -109,10 +113,9 @@ def wear(
     """
     known = load_database() if database is None else database
     case = case if isinstance(case, Case) else Case.from_dict(case)
-    if not (np.isfinite(to) and to > 0):
-        raise InputError("to", to, "a travel > 0 [km]")
+    to = number_in(to, "to", "a travel > 0 [km]", np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     given = Options(**{"normal": "halfspace", "outputs": tuple(OUTPUTS if outputs is None else outputs)} | options)
-    record = _Record(case, given, known, tell or (lambda ds, goal: None), float(to))
+    record = _Record(case, given, known, tell or (lambda ds, goal: None), to)
     return record.run(resume)
 
 
@@ -184,6 +187,8 @@ class _Record:
             "groove_depth_error": state.error,
             "groove_volume": np.stack([(depth[:, 0] * around).sum(axis=1), 1e3 * depth[:, 1].sum(axis=1)], 1) * step,
             "worn_depth": depth,
+            "guide_surface": -depth[:, 1],
+            "roller_surface": w.gaps(state) - depth[:, 1],
             "contact_angle": np.broadcast_to(np.degrees(w.alpha[0] + turned.inclined), 2),
             "closing": np.broadcast_to(state.closing, 2),
             "next_step": onward,
@@ -207,6 +212,8 @@ class _Record:
 
     def _taken_up(self, ds: xr.Dataset) -> tuple[Groove | None, float]:
         """Take over the rows of a shorter travel, and return the last state and its next step [km]."""
+        if "next_step" not in ds:
+            raise InputError("resume", ds.attrs.get("title"), "a result of wear", "Give another file.")
         own = with_inputs(ds.isel(travel=0).copy(), self.case, self.database).attrs
         stated = self.options.attributes() | {name: own[name] for name in (CASE, MATERIALS)}
         for name, value in stated.items():

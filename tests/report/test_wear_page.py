@@ -1,0 +1,68 @@
+"""The page and the command of a roller that wears: sentences from the rows, figures, and a run that goes on."""
+
+import numpy as np
+import pytest
+import xarray as xr
+from typer.testing import CliRunner
+
+import trackroller as tr
+from trackroller.cli.main import app
+from trackroller.report.figures.wear import course, profiles
+from trackroller.report.pages.wear import state_table
+from trackroller.report.words.wear import deeper_contact, sentences
+
+CASE = """
+motor_force: -10
+axial_force: 20
+friction_coefficient: 0.2
+roller_material: {like: 1.7225-quenched-tempered, wear_coefficient: 1.0e-5}
+guide_material: {like: 1.7225-quenched-tempered, wear_coefficient: 0}
+contact_model: sliding
+accuracy: preview
+"""
+
+
+@pytest.fixture(scope="module")
+def place(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("wear")
+    (folder / "case.yaml").write_text(CASE)
+    return folder
+
+
+def call(folder, to, name, *more):
+    words = ["wear", str(folder / "case.yaml"), "--to", to, "-o", str(folder / name), *more]
+    result = CliRunner().invoke(app, words, catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def read(path):
+    with xr.open_dataset(path) as ds:
+        return ds.load()
+
+
+def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(place):
+    call(place, "4km", "parts.nc", "--quiet")
+    said = call(place, "9km", "parts.nc", "--report", str(place / "page.html"))
+    call(place, "9 km", "whole.nc", "--quiet")
+    parts, whole = read(place / "parts.nc"), read(place / "whole.nc")
+    for name in whole.variables:
+        np.testing.assert_array_equal(parts[name].values, whole[name].values, err_msg=str(name))
+    page = (place / "page.html").read_text(encoding="utf-8")
+    assert page.count("<img ") == 2 and "trackroller wear case.yaml --to 9km" in page
+    for sentence in sentences(whole):
+        assert sentence.text in said and sentence.text in page
+    end = sentences(whole)[0].values
+    assert end["roller"] == 1e3 * float(whole.groove_depth.isel(travel=-1).max()) and end["travel"] == 9.0
+    assert deeper_contact(whole) == 2
+    assert float(state_table(whole).rows[-1][0]) == 9.0
+    for draw in (profiles, course):
+        assert draw(whole)[1].caption
+    assert tr.report(whole, place / "again.html").exists()
+
+
+def test_the_surfaces_touch_and_hold_the_worn_depth(place):
+    ds = read(place / "whole.nc")
+    gap = ds.roller_surface - ds.guide_surface
+    assert gap.min("place").values == pytest.approx(0.0, abs=1e-12)
+    np.testing.assert_array_equal(ds.guide_surface.values, -ds.worn_depth.sel(body="guide").values)

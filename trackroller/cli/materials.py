@@ -1,0 +1,61 @@
+"""Commands on the material and friction database."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
+
+
+@materials.command("list")
+def materials_list(
+    search: Annotated[str, typer.Argument(help="words of a name or description, such as 42CrMo4")] = "",
+) -> None:
+    """Print the names and values of all materials, or of those that a word describes."""
+    from trackroller.materials.tables import material_rows
+
+    _print_rows(material_rows, search)
+
+
+@materials.command("show")
+def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> None:
+    """Print every value of a material with its unit and source, and whether it is a placeholder."""
+    from trackroller.materials.tables import material_details
+
+    _print_rows(material_details, name)
+
+
+@materials.command("friction")
+def materials_friction() -> None:
+    """Print the friction coefficient of each pair of materials."""
+    from trackroller.materials.tables import friction_rows
+
+    _print_rows(friction_rows)
+
+
+def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> None:
+    from trackroller.materials import load_database
+    from trackroller.report.terminal import print_table
+
+    rows = rows_of(load_database(), *names)
+    heads = list(rows[0] if rows else ())
+    print_table(heads, [[row.get(head, "") for head in heads] for row in rows])
+
+
+@materials.command("add")
+def materials_add(
+    name: Annotated[str, typer.Argument(show_default=False)],
+    settings: Annotated[list[str], typer.Option("--set", help="field=value, e.g. youngs_modulus=210000")],
+    file: Annotated[Path, typer.Option(help="your materials file")] = Path("config/materials.yaml"),
+    replace: Annotated[bool, typer.Option("--replace", help="change a material that the file has already")] = False,
+) -> None:
+    """Write a material into your own file; comments in the file stay."""
+    from trackroller.cli.case import settings_of
+    from trackroller.materials import add_material
+
+    material = add_material(file, name, replace=replace, **settings_of(settings))
+    print(f"material '{material.name}' is in {file}")

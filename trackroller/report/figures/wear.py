@@ -1,0 +1,95 @@
+"""Figures of a roller that wears: the two profiles at five travels, and the course of depth, pressure and damage."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from trackroller.parameters import BODIES
+from trackroller.report.figures import style
+from trackroller.report.numbers import rounded
+from trackroller.report.words.wear import deeper_contact
+
+TRAVELS = 5  # profiles drawn side by side
+ROOM = 1.25  # width drawn over the half width of the widest patch
+
+
+def profiles(ds: xr.Dataset) -> style.Drawn:
+    """Draw roller and guide over the new guide at five travels, magnified normal to the surface.
+
+    Parameters
+    ----------
+    ds : result of `trackroller.wear`
+
+    Returns
+    -------
+    The figure and its caption.
+    """
+    contact = deeper_contact(ds)
+    own = ds.sel(contact=contact)
+    travel, outward = own["travel"].values, 1 if contact == 1 else -1
+    goals = np.linspace(travel[0], travel[-1], TRAVELS)
+    shown = sorted({int(np.argmin(np.abs(travel - goal))) for goal in goals})
+    middle, half = outward * own["pressure_centre"].values, own["semi_axis_lateral"].values
+    reach = ROOM * float(np.max(np.abs(middle) + half))
+    near = own.sel(place=slice(-reach, reach))
+    figure = style.new_figure(62)
+    panels = figure.subplots(1, len(shown), sharex=True, sharey=True, squeeze=False)[0]
+    colours = style.palette(2)
+    for axes, row in zip(panels, shown, strict=True):
+        surfaces = {b: 1e3 * near[f"{b}_surface"].isel(travel=row).values for b in BODIES}
+        axes.axvspan(middle[row] - half[row], middle[row] + half[row], color="0.93", zorder=0)
+        for body, colour, line in zip(BODIES, colours, style.LINES, strict=False):
+            axes.plot(near["place"], surfaces[body], color=colour, ls=line, lw=1.2, label=body)
+        if row == shown[0]:
+            new = surfaces["roller"]
+        else:
+            axes.plot(near["place"], new, color=colours[0], lw=0.6, alpha=0.5, label="new roller")
+        axes.set_title(f"{rounded(float(travel[row]))} km")
+    panels[0].set_ylabel("height over the new guide [µm]")
+    panels[len(shown) // 2].set_xlabel("lateral place, outward [mm]")
+    panels[-1].legend(loc="upper center", frameon=False)
+    magnified = reach * 1e3 / max(float(np.ptp(new)), 1e-9)
+    style.head(figure, f"Profiles of contact {contact} while they wear")
+    caption = (
+        "Worn surfaces of roller and guide over the new surface of the guide, moved together until they touch. Grey: "
+        f"width of the patch under load. Heights are magnified about {rounded(magnified, 1)} times."
+    )
+    depth = 1e3 * float(own["groove_depth"].isel(travel=-1).sum("body"))
+    wide = f"The patch grows from {rounded(2 * half[0])} to {rounded(2 * half[-1])} mm"
+    return figure, style.FigureInfo("wear_profiles", caption, f"{wide} while {rounded(depth)} µm are worn off.")
+
+
+def course(ds: xr.Dataset) -> style.Drawn:
+    """Draw depth, largest pressure and damage sum over the travel.
+
+    Parameters
+    ----------
+    ds : result of `trackroller.wear`
+
+    Returns
+    -------
+    The figure and its caption.
+    """
+    travel, contacts = ds["travel"].values, ds["contact"].values.tolist()
+    rows = [("groove_depth", "depth [µm]", 1e3), ("max_pressure", "largest pressure [MPa]", 1.0)]
+    rows += [("fatigue_damage", "damage sum [–]", 1.0)] if "fatigue_damage" in ds else []
+    figure = style.new_figure(58)
+    panels = figure.subplots(1, len(rows), squeeze=False)[0]
+    for axes, (name, words, scale) in zip(panels, rows, strict=True):
+        for body, colour in zip(BODIES, style.palette(2), strict=False):
+            for contact, line in zip(contacts, style.LINES, strict=False):
+                own = ds[name].sel(contact=contact)
+                values = scale * (own.sel(body=body) if "body" in own.dims else own).values
+                if np.isnan(values).all() or ("body" not in own.dims and body == BODIES[1]):
+                    continue
+                of = f"{body}, contact {contact}" if "body" in own.dims else f"contact {contact}"
+                axes.plot(travel, values, color=colour if "body" in own.dims else "0.25", ls=line, marker=".", label=of)
+        axes.set_xlabel("travel [km]")
+        axes.set_title(words)
+        axes.set_ylim(bottom=0)
+        axes.legend(frameon=False)
+    style.head(figure, "Depth, pressure and fatigue over the travel")
+    error = 1e3 * float(ds["groove_depth_error"][-1])
+    caption = f"Points are solved states. The steps add an estimated error of {rounded(error, 2)} µm to the depth."
+    return figure, style.FigureInfo("wear_course", caption, "")

@@ -1,0 +1,65 @@
+"""Sentences on a roller that wears: why the travel ends, depth, pressure and fatigue."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.parameters import BODIES
+from trackroller.report.numbers import rounded
+from trackroller.report.words.sentence import Sentence
+from trackroller.roller.groove import ENDS
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+def deeper_contact(ds: xr.Dataset) -> int:
+    """Return the contact whose profiles have lost more depth at the end; contact 1 if both are alike."""
+    depth = ds["groove_depth"].isel(travel=-1).sum("body")
+    return int(ds["contact"].values[int(np.argmax(depth.values > 0.999 * depth.values.max()))])
+
+
+def sentences(ds: xr.Dataset) -> list[Sentence]:
+    """Return what a user asks first: how far, how deep, how pressure and patch change, and the life with wear."""
+    return [_end(ds), _pressure(ds), *(s for body in BODIES if (s := _life(ds, body)) is not None)]
+
+
+def _end(ds: xr.Dataset) -> Sentence:
+    end, travel = str(ds.attrs["end"]), float(ds["travel"][-1])
+    depths = {b: 1e3 * float(ds["groove_depth"].sel(body=b).isel(travel=-1).max()) for b in BODIES}
+    lost = [f"the {body} has lost {rounded(depth)} µm" for body, depth in depths.items() if depth > 0.0]
+    why = ENDS.get(end, "it is not finished")
+    text = f"After {rounded(travel)} km {' and '.join(lost) or 'neither body has worn'}. The run ends there: {why}."
+    return Sentence("wear_end", text, {"end": end, "travel": travel} | depths)
+
+
+def _pressure(ds: xr.Dataset) -> Sentence:
+    own = ds.sel(contact=deeper_contact(ds))
+    pressure, wide = own["max_pressure"].values, own["semi_axis_lateral"].values
+    most, travel = int(np.argmax(pressure)), own["travel"].values
+    text = (
+        f"The largest pressure of contact {int(own['contact'])} is {rounded(pressure[0])} MPa at first, "
+        f"{rounded(pressure[most])} MPa at {rounded(travel[most])} km and {rounded(pressure[-1])} MPa at the end, "
+        f"where the patch is {rounded(wide[-1] / wide[0])} times as wide as at first."
+    )
+    return Sentence("wear_pressure", text, {"first": pressure[0], "largest": pressure[most], "last": pressure[-1]})
+
+
+def _life(ds: xr.Dataset, body: str) -> Sentence | None:
+    """Return the fatigue life of a body that counts wear; None if no life was computed or it is not known."""
+    if "fatigue_damage" not in ds:
+        return None
+    own = ds.sel(body=body)
+    damage, new = own["fatigue_damage"].isel(travel=-1).values, float(own["life_travel_new"].min())
+    if np.isnan(damage).any() or np.isnan(new):
+        return None
+    life = float(own["life_travel"].min()) if own["life_travel"].notnull().any() else np.nan
+    values = {"body": body, "life": life, "new": new}
+    under = f"under the stress of the new groove after {rounded(new)} km"
+    if np.isfinite(life):
+        text = f"Fatigue of the {body}: the damage sum reaches 1 after {rounded(life)} km, {under}."
+    else:
+        text = f"Fatigue of the {body}: the damage sum is {rounded(float(damage.max()))} at the end; it is 1 {under}."
+    return Sentence("wear_life", text, values)
