@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterable, Mapping
 from functools import cached_property
 from pathlib import Path
@@ -10,6 +11,7 @@ from typing import Any
 import pandas as pd
 import xarray as xr
 
+from trackroller.analysis.deciding import decides, run_any
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.pareto import default_objectives, pareto
 from trackroller.analysis.pareto_designs import study_pareto
@@ -26,7 +28,7 @@ from trackroller.roller.duty import years
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar
-from trackroller.study.run import run_study, solve_study
+from trackroller.study.run import solve_study
 from trackroller.study.store.seal import read_result
 
 
@@ -201,9 +203,12 @@ def run(
     """
     checked = study if isinstance(study, Study) else load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
+        told: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
         if results is not None:
-            plan = run_study(checked, results, started=bar.started, progress=bar.advanced, tell=bar.tell)
-            return open_study(plan.folder.root)
+            return open_study(run_any(checked, results, **told).folder.root)
+        if decides(checked):  # its cases follow from stored results
+            with tempfile.TemporaryDirectory() as place:
+                return open_study(run_any(checked, place, **told).folder.root)
         return Solved(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.designs import Designs
+from trackroller.analysis.judging import pareto_of_search
 from trackroller.analysis.limits import column
 from trackroller.analysis.pareto import default_objectives, front_of, pareto, pareto_of_points
 from trackroller.analysis.table import StudyView
@@ -30,6 +31,8 @@ def study_pareto(view: StudyView) -> xr.Dataset | None:
         without the key, because the conditions cannot be chosen.
     """
     given = view.study.get("pareto")
+    if view.study.get("design") == "optimise":
+        return pareto_of_search(view.solved)
     if view.study.get("design", view.attrs.get("design")) == "inner_outer":
         return pareto_of_points(view.analysis, given) if view.analysis is not None and given else None
     goals = given or default_objectives(view.data)

@@ -171,6 +171,9 @@ def analyse(results: StudyResults) -> xr.Dataset:
         If no output or no factor varies.
     """
     ds, design, given = results.data, results.design, results.config.analysis
+    if design.method == "optimise":
+        allowed = "a design that draws its rows evenly: a search prefers good designs"
+        raise InputError("design", design.method, allowed, "Take design saltelli, sobol or lhs for indices.")
     how = Settings(given.resamples, given.measures)
     own = material_deviations(results)
     aims = targets(ds, design, given.target, own, results.view.valid) if given.target else xr.Dataset()

@@ -93,13 +93,13 @@ def run(name: str) -> int:
 
 
 def _work(name: str, progress: Progress) -> None:
+    from trackroller.analysis.deciding import run_any  # heavy: analysis
     from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
     from trackroller.study.file.load import load_study
-    from trackroller.study.run import run_study
     from trackroller.study.status import status_of
 
     study = load_study(Path("studies", f"{name}.yaml"))
-    plan = run_study(study, started=progress.started, progress=progress.advanced)
+    plan = run_any(study, started=progress.started, progress=progress.advanced)
     status = status_of(study)
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
     build_report(plan.folder, lambda line: progress.say(step=line))

@@ -122,6 +122,18 @@ def report(
 
 
 @app.command()
+def best(
+    study: AnyStudy,
+    results: Results = Path("results"),
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="the comparison as a page (.html or .pdf)")] = None,
+) -> None:
+    """Say which designs of a study that was run are best, and compare up to five of them."""
+    from trackroller.cli.study import print_best
+
+    print_best(study, results, out)
+
+
+@app.command()
 def explore(
     study: Annotated[str, typer.Argument(help="results/NAME, NAME, or a study.nc", show_default=False)],
     results: Results = Path("results"),

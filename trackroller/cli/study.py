@@ -14,6 +14,7 @@ from trackroller.cli.case import case_of, is_study, tell_doubts, writable, writa
 from trackroller.cli.usage import print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
+from trackroller.report.tables.table import cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.roller.case import to_table
 from trackroller.roller.explain import explain as stages_of
@@ -37,11 +38,13 @@ def run_with_progress(
     path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
+    from trackroller.analysis.deciding import run_any  # heavy: analysis
+
     study = load_study(path)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors}, sys.stderr)
     _print_doubts(study)
     with progress_bar(study.name, not quiet) as bar:
-        plan = run_study(
+        plan = run_any(
             study,
             results,
             rerun_failed=rerun_failed,
@@ -89,6 +92,23 @@ def print_explorer(path: Path, out: Path | None) -> None:
 
     solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
     print(solved.explore(out or place_of_pages(solved, folder) / "explorer.html"))
+
+
+def print_best(study: str, results: Path, out: Path | None) -> None:
+    """Print which designs of a study are best, in words and in a table; write both as a page to `out`."""
+    from trackroller.report.pages.best import best_of, write_best  # heavy: SALib
+    from trackroller.solved import open_study
+
+    target = out if out is None else writable_page(out)
+    folder = Path(study) if Path(study).is_dir() else study_folder(find_study(study, results).name, results).root
+    view = open_study(folder).view
+    said, table = best_of(view)
+    for text in said:
+        print_text(text)
+    if table is not None:
+        print_table(table.heads, [[cell(v) for v in row] for row in table.rows], title=table.title)
+    if target is not None:
+        print(write_best(view, target))
 
 
 def print_status(name: str, results: Path, figures: bool) -> int:

@@ -12,6 +12,7 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
+from trackroller.analysis.deciding import decides
 from trackroller.cli import STOPPED
 from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.files import interrupts_wait_for_files
@@ -20,6 +21,7 @@ from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.identity import Cases
 from trackroller.study.store.plan import Plan, read_plan, study_folder
 from trackroller.study.store.planning import working_plan
 
@@ -99,6 +101,8 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], N
         If the study was edited after the main process had planned it.
     """
     study, results = load_study(config["study"], planned=not main), config["results"]
+    if decides(study):  # its rule plans each generation
+        return Plan(study, study_folder(study.name, results).create(), {}, 0, 0, (), Cases(study))
     if main:
         return _held.enter_context(working_plan(study, results, tell=tell))
     plan = read_plan(study, study_folder(study.name, results))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 import functools
 import json
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -79,13 +79,19 @@ def run_study(
         left = plan.open
         if started is not None:
             started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in left))
-        executor: Executor = functools.partial(solve_here, solver=solver)
-        if scheduler is not None and left:
-            executor = stack.enter_context(workers(scheduler))
+        executor = stack.enter_context(executing(scheduler if left else None, solver))
         for name in left:
             tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
         gather(plan, tell=tell)
     return plan
+
+
+@contextlib.contextmanager
+def executing(scheduler: str | None, solver: Solver | None = None) -> Iterator[Executor]:
+    """Yield what solves the cases of a chunk: dask workers, or this process without a scheduler; see `run_study`."""
+    with contextlib.ExitStack() as stack:
+        here: Executor = functools.partial(solve_here, solver=solver)
+        yield here if scheduler is None else stack.enter_context(workers(scheduler))
 
 
 def solve_study(

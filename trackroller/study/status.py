@@ -163,9 +163,11 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.design, status.total)
+    generations = f"these are the first generation; it goes on to {study.config.budget.designs} designs"
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
+        ("search", generations if study.config.design == "optimise" else ""),
         ("unused", status.unused),
         ("chunks", f"{-(-status.missing // chunk)} of up to {chunk} cases"),
         ("time", f"{times} ({source} cases/s: {status.speed:.3g})"),

@@ -73,8 +73,8 @@ rule report:
 rule crate:
     input:
         inputs=study_inputs(PLAN.study),
-        design=rules.design.output,
-        study=rules.gather.output,
+        design=f"{RESULTS}/design.nc",
+        study=f"{RESULTS}/study.nc",
         sensitivity=rules.sensitivity.output,
         figures=rules.figures.output,
         report=rules.report.output,

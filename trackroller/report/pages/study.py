@@ -35,6 +35,7 @@ from trackroller.report.tables.inputs import (
     record_rows,
     stored_materials,
 )
+from trackroller.report.tables.optimum import optima_table
 from trackroller.report.tables.pareto import pareto_table
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.tables.targets import target_tables
@@ -131,7 +132,7 @@ def _doubts(view: StudyView) -> list[str]:
 def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     """Return the tables and the sentences of each section; a sentence that a figure has is not repeated."""
     sens, error = view.analysis, friction_error(view)
-    decide: list[Table | None] = [best_table(view), first_limit_table(view)]
+    decide: list[Table | None] = [optima_table(view) or best_table(view), first_limit_table(view)]
     front = study_pareto(view)
     said = [s.text for s in limit_sentences(view)]
     if front is not None:

@@ -15,6 +15,7 @@ from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
+from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.regimes import occurrence
 from trackroller.report.words.samples import samples
 from trackroller.report.words.sentence import Sentence
@@ -36,7 +37,8 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     sens = view.analysis
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
-        ("Best", [*best_design(view), _target(view)]),  # first, so that the first screen answers what to build
+        # first, so that the first screen answers what to build
+        ("Best", [*(optimum_sentences(view) or best_design(view)), _target(view)]),
         ("What ends it", [limit_of_best(view), best_whatever(view), whichever_first(view)]),
         ("Valid cases", [valid_cases(view), stopped(view)]),
         ("What decides", decides(sens)),

@@ -17,7 +17,8 @@ from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
-from trackroller.study.design.factors import readable
+from trackroller.study.design.factors import parse, readable
+from trackroller.study.design.roles import scattered
 from trackroller.study.design.sampling import SampledDesign, sample
 from trackroller.study.design.stored import stored
 
@@ -65,6 +66,10 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
         options["table"] = str(table)
     if config.exchange == "groups":
         options["groups"] = config.analysis.groups
+    if config.design == "optimise":
+        options["conditions"] = scattered({name: parse(name, spec) for name, spec in factors.items()}, config.roles)
+        options["population"] = config.budget.generation
+        options["table"] = None if config.table is None else str(table)
     base = {k: v for k, v in config.values.items() if isinstance(v, float)}
     design = sample(factors, config.design, config.samples, config.seed, base=base, **options)
     if design.size > MAX_CASES:

@@ -22,6 +22,7 @@ from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design import correlation, saltelli
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
+from trackroller.study.design.evolution import Gene, first_generation
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.saltelli import all_groups
@@ -169,7 +170,41 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     return columns, unit, meta
 
 
+def genes_of(choices: Factors) -> list[Gene]:
+    """Return the kind of each choice for `evolution`."""
+    return [Gene(len(f.levels), f.ordered) for f in choices.values()]
+
+
+def _optimise(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+    """Cross designs with conditions: lists of conditions among each other, and n rows of those that scatter."""
+    choices = {name: f for name, f in free.items() if name not in settings["conditions"]}
+    inner = {name: f for name, f in free.items() if name not in choices}
+    if not choices:
+        remedy = "Give a choice two values or a range, or write roles: {NAME: choice}."
+        raise InputError("factors", list(free), "at least one choice of the designer that varies", remedy)
+    for name, f in choices.items():
+        if not f.discrete and f.kind not in ("uniform", "loguniform"):
+            raise InputError(f"factors.{name}", f.kind, "a list, uniform or loguniform: the range of a search")
+    if settings["table"] is None:
+        genes = first_generation(genes_of(choices), settings["population"], seed)
+    else:
+        lines = read_rows(Path(settings["table"]), "table", "design", Collector(), most=math.inf).lines
+        genes = np.array([[read_number(cell) for cell in line] for line in lines.values()])
+    random = {name: f for name, f in inner.items() if not f.discrete}
+    listed, index, _ = _grid({name: f for name, f in inner.items() if f.discrete}, 0, 0, {})
+    drawn, sample, _ = _random("sobol", random, n, seed, {}) if random else ({}, np.zeros((1, 0)), {})
+    places = {name: np.repeat(index[:, j], len(sample)) for j, name in enumerate(listed)}
+    places |= {name: np.tile(sample[:, j], len(index)) for j, name in enumerate(drawn)}
+    rows, many = len(index) * len(sample), len(genes)
+    places = {name: np.tile(values, many) for name, values in places.items()}
+    places |= {name: np.repeat(genes[:, j], rows) for j, name in enumerate(choices)}
+    columns = {n: f.take(places[n]) if f.discrete else f.from_unit(places[n]) for n, f in free.items()}
+    meta = {"design_points": many, "inner_samples": rows, "outer": list(choices), "inner": list(inner)}
+    return columns, np.stack([places[name] for name in free], axis=1), meta
+
+
 DRAW: dict[str, Callable[..., Drawn]] = {
+    "optimise": _optimise,
     "grid": _grid,
     "lhs": partial(_random, "lhs"),
     "sobol": partial(_random, "sobol"),

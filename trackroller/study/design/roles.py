@@ -53,6 +53,16 @@ def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: st
         raise InputError(where, role, allowed, f"Write scatter: true beside the list of factors.{name}.")
 
 
+def scattered(factors: Mapping[str, Factor], given: Mapping[str, str]) -> tuple[str, ...]:
+    """Return the factors of a search for designs that vary as conditions; the others are its choices.
+
+    A bell-shaped distribution states scatter. Ranges and lists are conditions by their role, see `roles_of`.
+    """
+    roles = roles_of(factors, factors, given)
+    bells = ("normal", "truncnormal", "triangular")
+    return tuple(n for n, f in factors.items() if f.varies and (f.kind in bells or roles.get(n) == "condition"))
+
+
 def roles_of(
     names: Iterable[str], factors: Mapping[str, Factor], given: Mapping[str, str], design: str = ""
 ) -> dict[str, str]:

@@ -31,6 +31,7 @@ METHODS = (
     "plackett_burman",
     "inner_outer",
     "table",
+    "optimise",
 )
 OPTIONS: dict[str, dict[str, Any]] = {
     "saltelli": {"second_order": True, "groups": None},
@@ -39,6 +40,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": ()},
     "lhs": {"grown_from": (), "rank_correlations": ()},
     "sobol": {"rank_correlations": ()},
+    "optimise": {"conditions": (), "population": 32, "table": None},
 }
 WEIGHING = ("lhs", "sobol", "saltelli")  # designs that draw the values of a list with their weights
 ARRAYS = ("grid", "central_composite", "box_behnken", "plackett_burman")  # `samples` does not count for them
@@ -126,7 +128,8 @@ def sample(
         together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
         default 4), table (path of the CSV), inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier
         numbers of samples, whose rows come first), rank_correlations (lhs, sobol, inner_outer: see
-        `trackroller.study.design.correlation`)
+        `trackroller.study.design.correlation`), conditions and population (optimise: factors that are no choices, and
+        designs of the first generation), table (optimise: CSV of the genes of the designs instead)
 
     Returns
     -------

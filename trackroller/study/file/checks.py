@@ -20,6 +20,7 @@ from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.roles import check_roles
 from trackroller.study.design.saltelli import serves
 from trackroller.study.file.goals import check, check_scatter
+from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
 
 if TYPE_CHECKING:
@@ -65,15 +66,18 @@ def cross_check(study: Study) -> None:
     if doubled := set(config.base) & set(study.factors):
         name = min(doubled)
         raise InputError(f"base.{name}", config.base[name], f"{name} is a factor too", "Remove one of them.")
-    if (config.design == "table") != (config.table is not None):
+    if config.design != "optimise" and (config.design == "table") != (config.table is not None):
         raise InputError("table", config.table, "design: table and the path of a CSV belong together")
     if config.design == "grid":
         check_listed(study.parsed)
+    if config.design == "optimise" and (several := [n for n in OPTION_FACTORS if n in study.factors]):
+        raise InputError(several[0], study.factors[several[0]]["values"], "one model: a search compares designs")
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
     wrong = Collector()
     with wrong.part():
         check(config, study.parsed)
+        check_search(config, study.parsed)
     for checked in (_check_roles, _check_parts, _check_options, _check_correlations, _check_materials):
         with wrong.part():
             checked(study)

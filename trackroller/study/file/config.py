@@ -17,6 +17,7 @@ from trackroller.study.design.entries import base_value, choice, factor
 from trackroller.study.design.roles import check_words
 from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.goals import Analysis, comparisons, directions
+from trackroller.study.file.search import Budget, budget_keys, search_goals
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
@@ -119,6 +120,12 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     )
     duty: Duty = Field(None, description="hours_per_day and days_per_year of travel: lives in years beside hours")
     roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")
+    goals: Annotated[dict[str, str], BeforeValidator(search_goals)] = Field(
+        {}, description="optimise: results or choices, each max or min; worst (default), mean, b10, probability of one"
+    )
+    budget: Annotated[Budget, BeforeValidator(budget_keys)] = Field(
+        default_factory=lambda: Budget.model_validate({}), description="optimise: how long the search goes on"
+    )
     pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
     constraints: Comparisons = Field((), description="comparisons that an allowed design must meet")
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases in each job; chosen if not given")

@@ -38,7 +38,7 @@ SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
 DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
 STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
-TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table")
+TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table", "optimise")
 
 
 def targets(value: Any) -> dict[str, dict[str, float]]:
@@ -224,10 +224,10 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     scale = config.analysis.scale
     for name in (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())):
         if name.replace(" ", "") not in known:
-            raise _unknown("analysis.outputs", name, known, config.outputs)
+            raise unknown_result("analysis.outputs", name, known, config.outputs)
     for name in config.analysis.target:
         if name not in known:
-            raise _unknown("analysis.target", name, known, config.outputs)
+            raise unknown_result("analysis.target", name, known, config.outputs)
     if config.analysis.target and config.design not in TARGET_DESIGNS:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
@@ -235,7 +235,7 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     _check_statistics(config, factors, known)
     for name in config.pareto if config.design != "inner_outer" else ():
         if name not in free:
-            raise _unknown("pareto", name, free, config.outputs)
+            raise unknown_result("pareto", name, free, config.outputs)
         if name in factors and not factors[name].numeric:
             raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
     _check_constraints(config, factors, free)
@@ -258,7 +258,7 @@ def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[st
             remedy = "Add it to analysis.target, such as {roller_life_hours: {min: 500}}."
             raise InputError("pareto", name, "the probability of a target or of a regime", remedy)
         if kind != "probability" and output not in known:
-            raise _unknown("pareto", output, known, config.outputs)
+            raise unknown_result("pareto", output, known, config.outputs)
         if kind.startswith("b10") and "life" not in output:
             raise InputError("pareto", name, "b10 of a life", f"Use mean({output}).")
 
@@ -274,13 +274,14 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
     for text in config.constraints:
         for name in names_in(text):
             if name not in words:
-                raise _unknown("constraints", name, [*words, *REGIMES], config.outputs)
+                raise unknown_result("constraints", name, [*words, *REGIMES], config.outputs)
         dummy: dict[str, Any] = dict.fromkeys(free, np.ones(2)) | {name: "" for name in words[len(free) :]}
         dummy |= {name: "" for name, factor in factors.items() if not factor.numeric} | {name: name for name in REGIMES}
         expressions.condition(text, dummy)
 
 
-def _unknown(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
+def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
+    """Return the error for a name that is no result of these groups; it gives the nearest one."""
     variable = name.split("[")[0].strip()
     name_of = DEFAULTS[variable][0] if variable in DEFAULTS else variable
     if name_of in VARIABLES and (group := VARIABLES[name_of].group) not in set(groups):

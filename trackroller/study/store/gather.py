@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import tempfile
-from collections.abc import Hashable
+from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -34,7 +34,7 @@ def write_design(plan: Plan) -> None:
         write_whole(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
 
 
-def gather(plan: Plan, tell: Tell | None = None) -> Path:
+def gather(plan: Plan, tell: Tell | None = None, attrs: Mapping[str, str] | None = None) -> Path:
     """Gather the solved cases of a plan into `study.nc`, and write `design.nc` if it is missing.
 
     Parameters
@@ -43,6 +43,8 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
         A plan whose chunks are solved.
     tell : callable, optional
         Receives one line when the file is complete.
+    attrs : mapping, optional
+        Further attributes of the file, such as the optima of a search.
 
     Returns
     -------
@@ -70,7 +72,8 @@ def gather(plan: Plan, tell: Tell | None = None) -> Path:
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
     def save(beside: Path) -> None:
-        labelled(study, study.drawn, design, *collect(found, place, folder.root)).to_netcdf(beside, engine="netcdf4")
+        results = labelled(study, study.drawn, design, *collect(found, place, folder.root))
+        results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
 
     with sealing(folder.gathered):
         write_whole(folder.gathered, save)

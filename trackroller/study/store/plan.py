@@ -181,6 +181,8 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
         Index of each case of the design in `found.states`; -1 for a case that is not solved.
     """
     solved = found.states.sizes["case"]
+    if study.config.design == "optimise":  # each generation is a design of its own
+        return ""
     if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
         return ""
     earlier, remedy = folder.earlier().get("factors", {}), "They stay in chunks/."

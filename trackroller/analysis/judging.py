@@ -1,0 +1,213 @@
+"""Judge the designs of a search over their conditions, and choose among the best ones."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.analysis.limits import Column, column
+from trackroller.analysis.pareto import default_objectives, front_of
+from trackroller.analysis.robustness import b10
+from trackroller.analysis.table import OUTSIDE, StudyResults
+from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.study.design.evolution import crowding
+from trackroller.study.design.factors import readable
+from trackroller.study.file.search import judged_by
+
+OPTIMUM = "optimum"  # attribute of study.nc with what the search found (JSON)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Designs with their goals.
+
+    Attributes
+    ----------
+    genes : shape (n, choices)
+    values : goals in their units, shape (n, goals); NaN where no condition gives a value
+    costs : the same with smaller as better
+    violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where B10 or a probability
+        counts these conditions
+    reasons : cases by what they break, of all designs together
+    """
+
+    genes: np.ndarray
+    values: np.ndarray
+    costs: np.ndarray
+    violation: np.ndarray
+    reasons: Mapping[str, int] = field(default_factory=dict)
+
+    def take(self, rows: np.ndarray) -> Judged:
+        """Return some of the designs."""
+        return Judged(self.genes[rows], self.values[rows], self.costs[rows], self.violation[rows], self.reasons)
+
+    def __add__(self, other: Judged) -> Judged:
+        """Return the designs of both."""
+        counts = {k: self.reasons.get(k, 0) + other.reasons.get(k, 0) for k in {**self.reasons, **other.reasons}}
+        pairs = ((getattr(self, n), getattr(other, n)) for n in ("genes", "values", "costs", "violation"))
+        genes, values, costs, violation = map(np.concatenate, pairs)
+        return Judged(genes, values, costs, violation, counts)
+
+
+def goals_of_search(results: StudyResults) -> dict[str, str]:
+    """Return the goals of a search: the key `goals`, otherwise the usual ones."""
+    return dict(results.config.goals) or default_objectives(results.data)
+
+
+def judge(results: StudyResults, genes: np.ndarray | None = None) -> Judged:
+    """Judge each design of a solved search over its conditions.
+
+    Parameters
+    ----------
+    results : StudyResults
+        A solved study with `design: optimise`.
+    genes : numpy.ndarray, shape (n, choices), optional
+        Genes of the designs; by default those of the design.
+    """
+    view, design = results.view, results.design
+    shape = design.meta["design_points"], design.meta["inner_samples"]
+    valid, goals = view.valid.reshape(shape), goals_of_search(results)
+    values, known = [], valid.copy()
+    for goal in goals:
+        kind, output = judged_by(goal)
+        if kind == "probability":
+            values.append(_met(results, output).reshape(shape).mean(axis=1))
+            continue
+        raw = column(view.data, view.dims, output, view.base, design.columns)[0].astype(float).reshape(shape)
+        good = valid & ~np.isnan(raw)
+        known &= good | (kind == "b10")
+        values.append(_over_conditions(raw, good, kind, goals[goal]))
+    counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
+    table = np.stack(values, axis=1)
+    if genes is None:
+        places = [list(design.factors).index(name) for name in design.meta["outer"]]
+        genes = design.unit[:: shape[1], places]
+    costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
+    violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
+    return Judged(genes, table, costs, violation.astype(float), _reasons(results, known.ravel()))
+
+
+def _met(results: StudyResults, output: str) -> np.ndarray:
+    """Return which cases are in a regime, or are valid and meet a target of the study, shape (n,)."""
+    view = results.view
+    if output in REGIMES:
+        return np.asarray(view.regime == REGIMES.index(output))
+    values = column(view.data, view.dims, output, view.base, results.design.columns)[0].astype(float)
+    ends = results.config.analysis.target[output]
+    return np.asarray(view.valid & (values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+
+
+def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
+    """Return a statistic of a result over the conditions of each design, shape (n, conditions) -> (n,)."""
+    if kind == "b10":
+        return np.array([b10(lives)[0] for lives in np.where(good, raw, 0.0)])
+    out = np.full(len(raw), np.nan)
+    some = good.any(axis=1)
+    if kind == "mean":
+        out[some] = np.mean(raw[some], axis=1, where=good[some])
+    else:
+        worst, end = (np.min, np.inf) if way == "max" else (np.max, -np.inf)
+        out[some] = worst(np.where(good, raw, end)[some], axis=1)
+    return out
+
+
+def _reasons(results: StudyResults, known: np.ndarray) -> dict[str, int]:
+    """Count the cases that do not count, by what they break."""
+    view = results.view
+    counts = {word: int((view.regime == i).sum()) for i, word in enumerate(REGIMES) if i}
+    counts |= {flag: int((view.rolling & view.flagged(flag)).sum()) for flag in view.flags if flag in OUTSIDE}
+    if view.met is not None:
+        counts["constraints"] = int((view.inside & ~view.met).sum())
+    counts["no value of a goal"] = int((view.valid & ~known).sum())
+    return {word: n for word, n in counts.items() if n}
+
+
+def recommended(best: Judged) -> int:
+    """Return the design of a front that is nearest to the best of all goals, each normalised over the front.
+
+    Lives count by their logarithm, because they span decades. Of equal designs, the first goal decides.
+    """
+    shares = _normalised(best.costs)
+    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9)))[0])
+
+
+def _normalised(costs: np.ndarray) -> np.ndarray:
+    """Return costs from 0 (best) to 1 (worst) by goal; goals that span a decade by their logarithm."""
+    out = np.zeros(costs.shape)
+    for j, values in enumerate(costs.T):
+        finite = values[np.isfinite(values)]
+        if not finite.size:
+            continue
+        size, sign = np.abs(finite), np.sign(finite[0])
+        if (np.sign(finite) == sign).all() and size.max() > 10 * size.min() > 0:
+            values, finite = (sign * np.log(np.abs(v)) for v in (values, finite))
+        low, high = finite.min(), finite.max()
+        out[:, j] = (np.clip(np.nan_to_num(values, nan=high), low, high) - low) / (high - low or 1.0)
+    return out
+
+
+def spread(costs: np.ndarray, count: int) -> np.ndarray:
+    """Return the indices of at most `count` designs along a front: the least crowded ones, its ends first."""
+    left = np.arange(len(costs))
+    while len(left) > count:
+        left = np.delete(left, np.argmin(crowding(costs[left])))
+    return left
+
+
+def optimum_of(results: StudyResults) -> dict[str, Any] | None:
+    """Return what a search found, from the attribute of its results; None for another study."""
+    text = results.data.attrs.get(OPTIMUM)
+    return json.loads(text) if isinstance(text, str) else None
+
+
+def choices_of(results: StudyResults, number: int) -> dict[str, Any]:
+    """Return the choices of a design of a search by name."""
+    design = results.design
+    row = number * design.meta["inner_samples"]
+    return {name: readable(design.columns[name][row : row + 1])[0] for name in design.meta["outer"]}
+
+
+def goal_column(results: StudyResults, goal: str) -> Column:
+    """Return the values (n,) of a goal by design, its units and its name in words."""
+    judged, (kind, output) = judge(results), judged_by(goal)
+    values = judged.values[:, list(goals_of_search(results)).index(goal)]
+    if kind == "probability":
+        words = REGIME_LABELS[REGIMES.index(output)] if output in REGIMES else f"the target of {output}"
+        return values, "1", f"probability of {words.replace('_', ' ')}"
+    view = results.view
+    _, units, words = column(view.data, view.dims, output, view.base, results.design.columns)
+    if output in results.design.meta["outer"] or results.design.meta["inner_samples"] == 1:
+        return values, units, words
+    return (
+        values,
+        units,
+        {"worst": f"{words} at the worst condition", "b10": f"B10 of the {words}"}.get(kind, f"mean {words}"),
+    )
+
+
+def pareto_of_search(results: StudyResults) -> xr.Dataset:
+    """Return the Pareto set of the gathered designs of a search, see `trackroller.analysis.pareto.pareto`.
+
+    The dimension `row` numbers the designs. Only the designs that are valid in the most conditions are compared.
+    """
+    judged, goals, design = judge(results), goals_of_search(results), results.design
+    kept = np.flatnonzero(judged.violation == judged.violation.min())
+    first = kept * design.meta["inner_samples"]
+    factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
+    columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
+    left = len(judged.violation) - len(kept)
+    attrs = {
+        "constraints": "; ".join(results.config.constraints),
+        "factors": ", ".join(factors),
+        "rows": len(judged.violation),
+        "model": "",
+        "excluded": f"{left} that are valid in fewer conditions" if left else "nothing",
+        "kind": "design point",
+        "study": results.study.merged(),
+    }
+    return front_of(factors, columns, goals, kept, attrs)

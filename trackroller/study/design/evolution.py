@@ -1,0 +1,221 @@
+"""Multi-objective evolution over mixed factors: real, ordered lists (integers) and categories.
+
+Every generation follows from the seed, its number and the results of all earlier generations alone. A search that was
+stopped is therefore replayed from stored results, without a stored state of the search.
+
+The method is NSGA-II [1]_ with the archive of all evaluated designs as the pool of parents: simulated binary crossover
+and polynomial mutation for real genes, the same with rounding for ordered lists, exchange and redrawing for categories.
+`validation/benchmarks/optimum.py` measures it beside pymoo and beside a random search.
+
+References
+----------
+.. [1] Deb et al. (2002), IEEE Trans. Evol. Comput. 6, 182-197
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+CROSSOVER, MUTATION = 5.0, 10.0  # distribution indices: larger ones keep children nearer to their parents
+CROSSED = 0.9  # share of the children that mix two parents
+ROUNDS = 30  # attempts to find children that are new
+
+
+@dataclass(frozen=True)
+class Gene:
+    """One free factor of a search.
+
+    Parameters
+    ----------
+    levels : number of listed values; 0 for a real factor, whose gene is a quantile in [0, 1]
+    ordered : whether the listed values go from less to more
+    """
+
+    levels: int = 0
+    ordered: bool = True
+
+
+def nondominated_ranks(costs: np.ndarray, violation: np.ndarray, enough: int | None = None) -> np.ndarray:
+    """Return the front of each design: 0 for designs that no other one beats.
+
+    Parameters
+    ----------
+    costs : smaller is better, shape (n, goals); NaN counts as the worst value
+    violation : 0 for a design that meets every constraint, shape (n,). A design with less violation beats any other one
+    enough : number of designs after which later fronts are not told apart; by default all of them
+
+    Returns
+    -------
+    Shape (n,) of int. The time and the memory are proportional to n squared.
+
+    Examples
+    --------
+    >>> nondominated_ranks(np.array([[0.0, 1.0], [1.0, 0.0], [1.0, 1.0]]), np.zeros(3)).tolist()
+    [0, 0, 1]
+    """
+    equal = violation[:, None] == violation[None]
+    no_worse, better = equal.copy(), np.zeros_like(equal)
+    for values in np.where(np.isnan(costs), np.inf, costs).T:
+        no_worse &= values[:, None] <= values[None]
+        better |= values[:, None] < values[None]
+    beats = (no_worse & better) | (violation[:, None] < violation[None])
+    beaten_by, ranks, front = beats.sum(axis=0), np.full(len(costs), -1), 0
+    while (ranks < 0).any():
+        first = (ranks < 0) & (beaten_by == 0)
+        ranks[first] = front
+        beaten_by -= beats[first].sum(axis=0)
+        front += 1
+        if enough is not None and (ranks >= 0).sum() >= enough:
+            ranks[ranks < 0] = front
+    return ranks
+
+
+def crowding(costs: np.ndarray) -> np.ndarray:
+    """Return the normalised distance between the neighbours of each design of a front, shape (n,); inf at its ends."""
+    out = np.zeros(len(costs))
+    for values in np.nan_to_num(costs, posinf=np.nan, neginf=np.nan).T:
+        finite = values[np.isfinite(values)]
+        if not finite.size:
+            continue
+        values = np.clip(np.nan_to_num(values, nan=finite.max()), finite.min(), finite.max())
+        order, spread = np.argsort(values, kind="stable"), np.ptp(values)
+        gaps = np.full(len(values), np.inf)
+        gaps[1:-1] = (values[order[2:]] - values[order[:-2]]) / spread if spread > 0 else 0.0
+        out[order] += gaps
+    return out
+
+
+def survivors(costs: np.ndarray, violation: np.ndarray, count: int) -> np.ndarray:
+    """Return the indices of the best designs by front, then by crowding, the best one first."""
+    ranks, space = nondominated_ranks(costs, violation, count), np.zeros(len(costs))
+    for front in range(ranks.max(initial=-1) + 1):
+        rows = np.flatnonzero(ranks == front)
+        space[rows] = crowding(costs[rows])
+    return np.lexsort((-space, ranks))[:count]
+
+
+def first_generation(genes: Sequence[Gene], count: int, seed: int) -> np.ndarray:
+    """Return the genes of the first generation, a scrambled Sobol sequence, shape (count, genes); each design once."""
+    from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
+
+    size = 1 << max(0, count - 1).bit_length()
+    unit = qmc.Sobol(d=len(genes), rng=np.random.default_rng(seed)).random(size)[:count]
+    return _new(_snapped(unit * [max(g.levels, 1) for g in genes], genes), np.empty((0, len(genes))), count)
+
+
+def next_generation(
+    genes: Sequence[Gene],
+    known: np.ndarray,
+    costs: np.ndarray,
+    violation: np.ndarray,
+    count: int,
+    seed: Sequence[int],
+) -> np.ndarray:
+    """Return the genes of the next generation.
+
+    Parameters
+    ----------
+    genes : kind of each gene
+    known : genes of all evaluated designs, shape (n, genes)
+    costs, violation : as for `nondominated_ranks`
+    count : number of children
+    seed : seed of the search and number of the generation
+
+    Returns
+    -------
+    Shape (count, genes); fewer if the lists hold no further design, empty if every design is evaluated.
+    """
+    rng = np.random.default_rng(list(seed))
+    parents = known[survivors(costs, violation, count)]
+    children = np.empty((0, len(genes)))
+    for attempt in range(ROUNDS):
+        # a lower index stands for a better parent: of two drawn ones, the better one has children
+        mother, father = (parents[rng.integers(0, len(parents), (2, count)).min(axis=0)] for _ in range(2))
+        drawn = _mutated(_crossed(mother, father, genes, rng), genes, rng)
+        if attempt > ROUNDS // 2:
+            drawn = _snapped(rng.random(drawn.shape) * [max(g.levels, 1) for g in genes], genes)
+        children = np.concatenate([children, _new(drawn, np.concatenate([known, children]), count - len(children))])
+        if len(children) == count:
+            return children
+    return children
+
+
+def _crossed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
+    """Mix the genes of two parents."""
+    out = mother.copy()
+    mixed = rng.random(len(out)) < CROSSED
+    for j, gene in enumerate(genes):
+        u, swap, side = rng.random(len(out)), rng.random(len(out)) < 0.5, rng.random(len(out)) < 0.5
+        spread = np.where(u < 0.5, (2 * u) ** (1 / (CROSSOVER + 1)), (0.5 / (1 - u)) ** (1 / (CROSSOVER + 1)))
+        middle, half = (mother[:, j] + father[:, j]) / 2, np.abs(mother[:, j] - father[:, j]) / 2
+        child = middle + np.where(side, spread, -spread) * half if gene.ordered else father[:, j]
+        out[:, j] = np.where(mixed & swap, child, out[:, j])
+    return out
+
+
+def _mutated(children: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
+    """Change a gene of each child, on average."""
+    for j, gene in enumerate(genes):
+        u, hit = rng.random(len(children)), rng.random(len(children)) < 1 / len(genes)
+        step = np.where(u < 0.5, (2 * u) ** (1 / (MUTATION + 1)) - 1, 1 - (2 - 2 * u) ** (1 / (MUTATION + 1)))
+        if not gene.ordered:
+            moved = rng.integers(0, gene.levels, len(children)).astype(float)
+        elif gene.levels:  # at least to the next value
+            moved = children[:, j] + np.sign(step) * np.maximum(np.abs(step) * gene.levels, 1.0)
+        else:
+            moved = children[:, j] + step
+        children[:, j] = np.where(hit, moved, children[:, j])
+    return _snapped(children, genes, whole=False)
+
+
+def _snapped(values: np.ndarray, genes: Sequence[Gene], whole: bool = True) -> np.ndarray:
+    """Return genes inside their bounds; lists as whole numbers, rounded down (`whole`) or to the nearest one."""
+    out = np.array(values, dtype=float)
+    for j, gene in enumerate(genes):
+        if gene.levels:
+            out[:, j] = np.clip(np.floor(out[:, j] + (0.0 if whole else 0.5)), 0, gene.levels - 1)
+        else:
+            out[:, j] = np.clip(out[:, j], 0.0, 1.0)
+    return out
+
+
+def _new(drawn: np.ndarray, known: np.ndarray, count: int) -> np.ndarray:
+    """Return the first designs that differ from each other and from the known ones, at most `count`."""
+    seen = {row.tobytes() for row in known}
+    rows: list[np.ndarray] = []
+    for row in drawn:
+        if len(rows) < count and (key := row.tobytes()) not in seen:
+            seen.add(key)
+            rows.append(row)
+    return np.array(rows).reshape(len(rows), drawn.shape[1])
+
+
+def hypervolume(costs: np.ndarray, reference: Sequence[float] | np.ndarray) -> float:
+    """Return the volume between a front and a reference point, by slices along the last goal.
+
+    Parameters
+    ----------
+    costs : smaller is better, shape (n, goals)
+    reference : worst value that counts of each goal
+
+    Examples
+    --------
+    >>> hypervolume(np.array([[0.0, 0.5], [0.5, 0.0]]), [1.0, 1.0])
+    0.75
+    """
+    point = np.asarray(reference, dtype=float)
+    inside = costs[(costs < point).all(axis=1)]
+    if not len(inside):
+        return 0.0
+    if len(point) == 1:
+        return float(point[0] - inside.min())
+    inside = inside[np.argsort(inside[:, -1], kind="stable")]
+    ends = np.append(inside[1:, -1], point[-1])
+    total = 0.0
+    for i, (low, high) in enumerate(zip(inside[:, -1], ends, strict=True)):
+        if high > low:
+            total += (high - low) * hypervolume(inside[: i + 1, :-1], point[:-1])
+    return float(total)

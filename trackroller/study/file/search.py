@@ -1,0 +1,94 @@
+"""Check the keys of a study file that state what a search for designs aims at.
+
+design: optimise
+goals: {pair_life_hours: max, mean(friction_power): min, probability(pair_life_hours): max}
+budget: {designs: 640, hours: 2}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field
+
+from trackroller.errors import InputError
+from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.study.design.entries import choice
+from trackroller.study.design.factors import Factor
+from trackroller.study.design.roles import scattered
+from trackroller.study.file.goals import DEFAULT_TARGET, DIRECTIONS, output_names, unknown_result
+
+JUDGED_BY = ("worst", "mean", "b10", "probability")  # statistics over the conditions of a design
+
+
+class Budget(BaseModel):
+    """The key `budget` of a study file; each field has a description."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    designs: int = Field(640, ge=1, le=1_000_000, description="largest number of designs that the search solves")
+    population: int | None = Field(
+        None, ge=4, le=10_000, description="designs of a generation; default a twentieth of the designs, 8 to 32"
+    )
+    hours: float | None = Field(None, gt=0, description="time of solving on one core, all runs together")
+
+    @property
+    def generation(self) -> int:
+        """Return the number of designs of a generation."""
+        return min(self.designs, self.population or min(max(self.designs // 20, 8), 32))
+
+
+def budget_keys(value: Any) -> Any:
+    """Refuse a key `budget` that is no mapping."""
+    if not isinstance(value, (Mapping, Budget)):
+        raise InputError("budget", value, "designs, population and hours", "For example {designs: 640, hours: 2}.")
+    return value
+
+
+def search_goals(value: Any) -> dict[str, str]:
+    """Check the key `goals` of a search: results or choices, each with `max` or `min`."""
+    if not isinstance(value, Mapping):
+        example = "For example {pair_life_hours: max, mean(friction_power): min}."
+        raise InputError("goals", value, "results or choices, each with max or min", example)
+    return {str(name).replace(" ", ""): choice(way, f"goals.{name}", DIRECTIONS) for name, way in value.items()}
+
+
+def judged_by(goal: str) -> tuple[str, str]:
+    """Split a goal of a search into its statistic over the conditions and its result; a plain name is its `worst`."""
+    kind, bracket, output = goal.partition("(")
+    return (kind, output[:-1]) if bracket and kind in JUDGED_BY and output.endswith(")") else ("worst", goal)
+
+
+def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
+    """Check the goals of a search, and refuse them in every other design."""
+    if config.design != "optimise":
+        if config.goals:
+            remedy = "Use design: optimise, or name the goals under pareto."
+            raise InputError("goals", config.design, "design: optimise", remedy)
+        return
+    if config.pareto:
+        raise InputError("pareto", list(config.pareto), "goals, in design optimise", "Rename the key to goals.")
+    if len({judged_by(goal) for goal in config.goals}) < len(config.goals):
+        raise InputError("goals", list(config.goals), "each result once with a statistic", "Remove one of them.")
+    known = output_names(config.outputs)
+    free = [*known, *factors, *PARAMETERS]
+    for goal in config.goals:
+        _check_goal(config, goal, factors, free, known)
+    if any(not f.discrete for n, f in factors.items() if n in scattered(factors, config.roles)):
+        if "samples" not in config.model_fields_set:
+            allowed = "the number of drawn conditions at which each design is judged"
+            raise InputError("samples", None, allowed, "Write samples: 32, for example.")
+
+
+def _check_goal(config: Any, goal: str, factors: Mapping[str, Factor], free: list[str], known: list[str]) -> None:
+    kind, output = judged_by(goal)
+    if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
+        remedy = f"Add it to analysis.target, such as {{{DEFAULT_TARGET}: {{min: 500}}}}."
+        raise InputError("goals", goal, "the probability of a target or of a regime", remedy)
+    if kind != "probability" and output not in (free if kind == "worst" else known):
+        raise unknown_result("goals", output, free, config.outputs)
+    if kind == "b10" and "life" not in output:
+        raise InputError("goals", goal, "b10 of a life", f"Use mean({output}).")
+    if output in factors and not factors[output].numeric:
+        raise InputError("goals", goal, "a result or factor with one number a case", "Names have no order.")

@@ -1,0 +1,12 @@
+"""Search for the best designs of a study and gather them."""
+
+import logging
+
+from trackroller.analysis.deciding import run_any
+from trackroller.cli.workflow import log_to
+from trackroller.study.file.load import load_study
+
+log_to(snakemake.log[0], "search for the best designs")
+config, tell = snakemake.params.config, logging.getLogger("trackroller").info
+scheduler = "local" if snakemake.threads > 1 else None
+run_any(load_study(config["study"]), config["results"], scheduler=scheduler, tell=tell)
