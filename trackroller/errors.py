@@ -142,13 +142,26 @@ MEANS = {  # names that a word of a designer stands for, the likeliest first
     "rail track": "guide_profile_radius guide_curve_radius guide_material",
     "speed rpm": "velocity guide_overrollings_per_hour",
     "drive driving torque traction braking": "motor_force",
-    "load weight preload": "radial_force axial_force permissible_radial_force",
-    "thrust lateral side": "axial_force",
+    "load weight preload mass": "radial_force axial_force permissible_radial_force",
+    "rad": "radial_force",
+    "thrust lateral side ax": "axial_force",
+    "alpha": "contact_angle",
+    "v": "velocity",
+    "clearance gap play": "roller_profile_radius groove_depth axis_distance",
+    "width": "roller_profile groove_depth",
+    "lubrication lubricant oil grease": "friction_law friction_coefficient",
     "mu": "friction_coefficient",
     "reliability survival confidence b10": "failure_probability failure_probabilities",
     "life lifetime": "pair_life_hours roller_life_hours guide_life_hours life_rule",
     "steel": "roller_material guide_material material_pair",
-    "pressure hertzian": "max_pressure hertz",
+    "pressure hertzian": "max_pressure outputs",
+    "modulus stiffness": "youngs_modulus roller_material guide_material",
+    "tensile strength": "tensile_strength roller_material guide_material",
+    "hardness": "hardness roller_material guide_material",
+    "goal target objective optimise": "pareto analysis constraints",
+    "limit": "constraints analysis stop_if",
+    "variable parameter": "factors base",
+    "tolerance resolution mesh": "accuracy",
     "stress": "peak_stress roller_peak_stress guide_peak_stress stress_bodies",
     "hours days years shift": "duty guide_overrollings_per_hour",
 }
@@ -159,6 +172,9 @@ def nearest(name: str, options: Iterable[str]) -> str | None:
     """Return the option that a name misspells or abbreviates by whole words, or None if there is no such option."""
     options = list(options)
     longer = [option for option in options if _words(name) <= _words(option)]
+    other = [option for word in _words(name) for option in _MEANS.get(word, ())]
+    if longer and other and not set(longer) & set(other):  # the word means something else
+        return None
     if longer:  # of several abbreviated names none is meant for sure
         return longer[0] if len(longer) == 1 else None
     by_lower = {option.lower(): option for option in options}
@@ -175,7 +191,8 @@ def _words(name: object) -> set[str]:
 def likeliest(name: str, options: Iterable[str]) -> list[str]:
     """Return at most three options that a name stands for by the meaning of its words, the likeliest first."""
     options, words = list(options), str(name).lower().split("_")
-    meant = [option for word in words for option in _MEANS.get(word, ()) if option in options]
+    plain = [word if word in _MEANS else word.removesuffix("s") for word in words]
+    meant = [option for word in plain for option in _MEANS.get(word, ()) if option in options]
     akin = [o for o in options if any(difflib.get_close_matches(word, _words(o), cutoff=CLOSE) for word in words)]
     return list(dict.fromkeys([*meant, *akin]))[:3]
 

@@ -10,6 +10,7 @@ from command_line import trackroller
 import trackroller as tr
 from trackroller.errors import MOST_SHOWN, Collector, InputErrors, likeliest, nearest
 from trackroller.roller.fields import FIELDS
+from trackroller.study.file.config import StudyFile
 from trackroller.yaml_file import lines_of
 
 CASE = """\
@@ -247,12 +248,35 @@ def test_lines_are_those_of_the_keys():
         ("frition", None, "friction_coefficient"),
         ("rail_radius", None, "guide_profile_radius"),
         ("xyz", None, None),
+        ("pressure", None, None),
+        ("speeds", None, "velocity"),
+        ("F_rad", None, "radial_force"),
+        ("alpha", None, "contact_angle"),
+        ("e_modulus", None, "roller_material"),
+        ("lubrication", None, "friction_law"),
+        ("roller_mat", "roller_material", "roller_profile_radius"),
     ],
 )
 def test_a_name_is_suggested_only_where_it_is_close(name, close, meant):
     assert nearest(name, FIELDS) == close
     assert ([*likeliest(name, FIELDS), None])[0] == meant
     assert len(likeliest(name, FIELDS)) <= 3
+
+
+@pytest.mark.parametrize(
+    ("name", "close", "meant"),
+    [
+        ("factor", "factors", "factors"),
+        ("goals", None, "pareto"),
+        ("limits", None, "constraints"),
+        ("parameters", None, "factors"),
+        ("tolerance", None, "accuracy"),
+        ("desgin", "design", "design"),
+    ],
+)
+def test_a_key_of_a_study_is_suggested_by_its_meaning(name, close, meant):
+    assert nearest(name, StudyFile.model_fields) == close
+    assert likeliest(name, StudyFile.model_fields)[0] == meant
 
 
 def test_reliability_means_the_failure_probability(tmp_path):
