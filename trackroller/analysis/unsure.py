@@ -34,9 +34,9 @@ def unbeaten(designs: Designs) -> np.ndarray | None:
 
     Notes
     -----
-    At each level of the conditions a design counts with its worst life over the other conditions; a case that is not valid
-    counts as 0. Designs of the same materials share their values, so they are compared level by level. The
-    values of other materials differ independently: a design is beaten if its longest life is shorter than the
+    At each level of these conditions a design counts with its worst life over the other conditions; a case that is not
+    valid counts as 0. Designs of the same materials share their values, so they are compared level by level. The values
+    of other materials differ independently: a design is beaten if its longest life is shorter than the
     shortest life of another design.
     """
     view = designs.view

@@ -170,7 +170,8 @@ def of_mechanics(solved: SolvedRollers) -> Results:
     pressed, v = np.sum(t.pressure, axis=(2, 3)) * cell, solved.values
     with np.errstate(divide="ignore", invalid="ignore"):
         tied = np.where(braked, v["normal_force"] / pressed, v["friction_energy_per_distance"] / rubbed)
-    long = long * np.where(np.isfinite(tied), tied, 1.0)
+    # the friction energy of a patch that hardly slips can round to a negative number
+    long = long * np.where(np.isfinite(tied) & (tied > 0.0), tied, 1.0)
     lines = [wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate))) for rate in _rates(solved, t, sliding)]
     depth = np.stack(lines, axis=2)
     largest, place = deepest(t.x, depth)

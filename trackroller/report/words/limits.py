@@ -71,7 +71,7 @@ def worn(view: StudyView) -> Sentence | None:
 
 
 def best_whatever(view: StudyView) -> Sentence | None:
-    """Say which designs are the best whatever the values are that are known within a range; None without such values."""
+    """Say which designs are the best whatever the values known within a range are; None without such values."""
     designs = Designs.of(view)
     found = unbeaten(designs) if designs is not None else None
     if designs is None or found is None or not len(found):
