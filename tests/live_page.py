@@ -73,7 +73,7 @@ class LivePage:
 
     def entry(self, name: str) -> dict[str, Any]:
         """Return what the list of studies says of one; {} if it is not in the list."""
-        return next((one for one in self.ask("studies")[1] if one["name"] == name), {})
+        return next((one for one in self.ask("listing")[1] if one["name"] == name), {})
 
     def until(self, name: str, *states: str, cases: int = 0) -> dict[str, Any]:
         """Wait until a study is in one of some states, with at least so many cases solved."""

@@ -98,7 +98,7 @@ def test_lift_off_and_wrong_values_are_words():
 
 
 def test_a_curve_is_the_results_of_its_cases():
-    found = curve({"motor_force": 0}, "axial_force", (0.0, 60.0))
+    found = curve({"motor_force": 0}, "axial_force", [0.0, 60.0])
     assert len(found["along"]) == 21 and found["refused"] == ""
     ds = tr.solve([tr.Case(motor_force=0, axial_force=v) for v in (0.0, 60.0)], accuracy="preview")
     ends = [found["columns"]["roller_peak_stress"]["values"][i] for i in (0, -1)]
@@ -106,7 +106,7 @@ def test_a_curve_is_the_results_of_its_cases():
 
 
 def test_a_curve_names_what_it_leaves_out():
-    found = curve({}, "roller_profile_radius", (-28.0, -1.75))
+    found = curve({}, "roller_profile_radius", [-28.0, -1.75])
     values = found["columns"]["max_pressure"]["values"]
     assert "conform" in found["refused"] and np.isnan(values[-1]) and np.isfinite(values[0])
 

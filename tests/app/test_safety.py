@@ -31,7 +31,7 @@ def test_a_request_without_the_token_is_refused(live):
         status, text, headers = wrong.get("")
         assert (status, "token" in text) == (403, True)
         assert "no-store" in headers["Cache-Control"]
-        status, found = wrong.ask("solve", case={})
+        status, found = wrong.ask("picture", values={})
         assert (status, "token" in message(found)) == (403, True)
 
 
@@ -49,7 +49,7 @@ def test_a_request_without_the_token_is_refused(live):
     ids=lambda h: " ".join(map(str, *h.items())),
 )
 def test_another_site_is_refused(live, headers):
-    status, found = live.send("solve", b'{"case": {}}', **headers)
+    status, found = live.send("picture", b'{"values": {}}', **headers)
     assert status in (403, 415)
     assert message(found).endswith(".")
 
@@ -65,23 +65,23 @@ def test_the_page_trusts_its_own_script_only(live):
 
 
 @pytest.mark.parametrize(
-    "body", [b"", b"{", b"[]", b"1", b'"text"', b"[" * 50_000, b"\xff\xfe", b"{}", b'{"case": [1]}']
+    "body", [b"", b"{", b"[]", b"1", b'"text"', b"[" * 50_000, b"\xff\xfe", b"{}", b'{"values": [1]}']
 )
 def test_malformed_bodies_are_refused_in_words(live, body):
-    status, found = live.send("solve", body)
+    status, found = live.send("picture", body)
     assert status == 400
     assert message(found).startswith("The request ")
 
 
 def test_large_bodies_are_refused(live):
-    status, found = live.send("solve", b" " * (LARGEST + 1))
+    status, found = live.send("picture", b" " * (LARGEST + 1))
     assert (status, "larger than" in message(found)) == (413, True)
     connection = http.client.HTTPConnection(live.host, timeout=30)
-    connection.putrequest("POST", "/" + live.address.split("/", 3)[3] + "api/solve")
+    connection.putrequest("POST", "/" + live.address.split("/", 3)[3] + "api/picture")
     connection.putheader("Content-Length", "4000000000")
     connection.endheaders()
     assert connection.getresponse().status in (400, 413)
-    assert live.ask("solve", case={})[0] == 200
+    assert live.ask("picture", values={})[0] == 200
 
 
 @pytest.mark.parametrize("path", ATTACKS)
@@ -93,7 +93,7 @@ def test_no_path_leads_out_of_the_folder(live, path):
 
 
 @pytest.mark.parametrize("name", ["../outside", "/etc", "a/b", "", ".", "con", "x" * 300, 7, None, ["a"]])
-@pytest.mark.parametrize("action", ["open", "pause", "resume", "delete"])
+@pytest.mark.parametrize("action", ["text_of", "pause", "resume", "delete"])
 def test_names_of_studies_are_no_paths(live, name, action):
     status, found = live.ask(action, name=name, confirm=name)
     assert status in (400, 409, 422)
@@ -108,27 +108,27 @@ def test_a_link_in_the_results_is_not_followed(live):
     (live.folder / "results" / "linked").symlink_to(target)
     assert live.ask("delete", name="linked", confirm="linked")[0] == 422
     assert (target / "study.nc").exists()
-    assert "linked" not in [one["name"] for one in live.ask("studies")[1]]
+    assert "linked" not in [one["name"] for one in live.ask("listing")[1]]
 
 
 def test_a_million_cases_are_refused_before_they_are_drawn(live):
-    spec = {"linspace": [0, 30, 1000]}
-    _, found = live.ask(
-        "study", study={"name": "big", "factors": {"axial_force": spec, "velocity": {"linspace": [1, 9, 1000]}}}
-    )
+    _, found = live.ask("checked", study={"name": "big", "factors": LARGE})
     assert "at most 200,000 cases" in message(found)
-    _, found = live.ask(
-        "study", text="name: big\ndesign: sobol\nsamples: 1000000\nfactors: {velocity: {uniform: [1, 9]}}"
-    )
+    _, found = live.ask("checked", text="name: big
+design: sobol
+samples: 1000000
+factors: {velocity: {uniform: [1, 9]}}")
     assert "at most 200,000 cases" in message(found)
     assert live.ask("start", text="name: big\nfactors: {velocity: {linspace: [1, 9, 1000000]}}")[0] == 422
 
 
 def test_markup_in_names_stays_text(live):
     nasty = '<img src=x onerror="alert(1)">'
-    _, found = live.ask("study", text=f"name: fine\ndescription: '{nasty}'\nfactors: {{velocity: {{values: [1, 2]}}}}")
+    _, found = live.ask(
+        "checked", text=f"name: fine\ndescription: '{nasty}'\nfactors: {{velocity: {{values: [1, 2]}}}}"
+    )
     assert found["study"]["description"] == nasty
-    status, found = live.ask("solve", case={"roller_material": nasty})
+    status, found = live.ask("picture", values={"roller_material": nasty})
     assert status == 422 and nasty in message(found)
     raw = live.get("")[1]
     assert nasty not in raw
@@ -189,4 +189,4 @@ def test_a_study_runs_to_its_report_and_is_deleted_after_asking(live):
     assert live.ask("delete", name="small", confirm="")[0] == 422
     assert live.ask("delete", name="small", confirm="small")[0] == 200
     assert live.entry("small") == {}
-    assert json.loads(json.dumps(live.ask("open", name="small")[1]))["text"] == STUDY
+    assert json.loads(json.dumps(live.ask("text_of", name="small")[1]))["text"] == STUDY

@@ -33,12 +33,11 @@ from trackroller.roller.solver import solve
 from trackroller.study.outputs import outputs
 from trackroller.yaml_file import parse_yaml, write_yaml
 
-Values = Mapping[str, Any]
+Values = dict[str, Any]
 POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
 _JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None))
 _UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes 0.2 s
-_FIELDS = {"pressure": "pressure", "shear": "shear traction", "friction_energy_density": "friction energy"}
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
 
 
@@ -163,7 +162,7 @@ def sheet(values: Values) -> str:
     return render(_solved(json.dumps(values, sort_keys=True), "standard", groups))
 
 
-def curve(values: Values, over: str, ends: tuple[float, float]) -> dict[str, Any]:
+def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     """Solve 21 cases over a parameter in one batch.
 
     Parameters
@@ -172,7 +171,7 @@ def curve(values: Values, over: str, ends: tuple[float, float]) -> dict[str, Any
         Fields of the case and options by name.
     over : str
         The parameter.
-    ends : tuple of float
+    ends : list of float
         Its first and last value.
 
     Returns
@@ -182,7 +181,9 @@ def curve(values: Values, over: str, ends: tuple[float, float]) -> dict[str, Any
     """
     if over not in PARAMETERS:
         raise InputError("over", over, "a parameter of a case", "Choose one of the list.")
-    low, high = float(ends[0]), float(ends[1])
+    if len(ends) != 2 or not all(map(math.isfinite, ends)) or ends[0] == ends[1]:
+        raise InputError(over, ends, "a first and a last value that differ", "Write two numbers.")
+    low, high = ends
     along = np.geomspace(low, high, POINTS) if low * high > 0 else np.linspace(low, high, POINTS)
     cases, kept, refused = [], [], ""
     for i, value in enumerate(along):

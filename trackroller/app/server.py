@@ -18,6 +18,7 @@ from http import HTTPStatus
 from importlib import resources
 from typing import Any
 
+import pydantic
 import tornado.httpserver
 import tornado.netutil
 import tornado.web
@@ -42,7 +43,6 @@ REPORT = (
     "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; "
     "form-action 'none'; sandbox allow-scripts allow-downloads"
 )
-KINDS = {dict: "mapping", str: "text", list: "list", (int, float): "number"}
 ASSETS = {"": ("index.html", "text/html"), "app.js": ("app.js", "text/javascript"), "app.css": ("app.css", "text/css")}
 
 
@@ -54,53 +54,27 @@ class Refused(Exception):
         self.status = status
 
 
-def part(body: Mapping[str, Any], name: str, kind: Any, default: Any = None) -> Any:
-    """Return a part of a request; refuse a request that lacks it, or has one of another kind."""
-    value = body.get(name, default)
-    if not isinstance(value, kind):
-        raise Refused(400, f"The request needs '{name}' as a {KINDS[kind]}.")
-    return value
+Answer = Callable[..., Any]
 
 
-def name_of(body: Mapping[str, Any]) -> str:
-    """Return the name of a study in a request."""
-    return str(part(body, "name", str))
+def _answers(*functions: Answer) -> dict[str, Answer]:
+    """Return functions by their names; they refuse arguments that they do not take, or of another type."""
+    return {f.__name__: pydantic.validate_call(config=pydantic.ConfigDict(strict=True))(f) for f in functions}
 
 
-def _solve(body: Mapping[str, Any]) -> dict[str, Any]:
-    accuracy, flags = part(body, "accuracy", str, "preview"), [bool(body.get(n)) for n in ("complete", "inside")]
-    return picture(part(body, "case", dict), accuracy, *flags)
-
-
-def _curve(body: Mapping[str, Any]) -> dict[str, Any]:
-    ends = float(part(body, "from", (int, float))), float(part(body, "to", (int, float)))
-    return curve(part(body, "case", dict), part(body, "over", str), ends)
-
-
-def _study(body: Mapping[str, Any]) -> dict[str, Any]:
-    return (
-        studies.checked(part(body, "text", str)) if "text" in body else studies.checked(None, part(body, "study", dict))
-    )
-
-
-Answer = Callable[[Mapping[str, Any]], Any]
-SOLVING: dict[str, Answer] = {  # the thread of the solver answers
-    "solve": _solve,
-    "curve": _curve,
-    "texts": lambda body: texts(part(body, "case", dict)),
-}
-FILES: dict[str, Answer] = {  # the thread of the files answers
-    "fields": lambda body: all_fields(),
-    "study": _study,
-    "studies": lambda body: studies.listing(),
-    "open": lambda body: studies.text_of(name_of(body)),
-    "start": lambda body: studies.start(part(body, "text", str)),
-    "resume": lambda body: studies.resume(name_of(body)),
-    "pause": lambda body: studies.pause(name_of(body)),
-    "delete": lambda body: studies.delete(name_of(body), part(body, "confirm", str, "")),
-    "compare": lambda body: studies.compare(part(body, "names", list)[:2]),
-}
-NEWEST = ("solve", "curve", "study", "studies")  # an older request of the same page is not worth an answer
+SOLVING = _answers(picture, curve, texts)  # the thread of the solver answers
+FILES = _answers(  # the thread of the files answers
+    all_fields,
+    studies.checked,
+    studies.listing,
+    studies.text_of,
+    studies.start,
+    studies.resume,
+    studies.pause,
+    studies.delete,
+    studies.compare,
+)
+NEWEST = ("picture", "curve", "checked", "listing")  # an older request of the same page is not worth an answer
 
 
 def plain(value: Any) -> Any:
@@ -153,6 +127,10 @@ class _Handler(tornado.web.RequestHandler):
             errors = [{"field": e.field, "message": str(e)} for e in exc.errors]
         elif isinstance(exc, WorkError):
             self.set_status(409)
+        elif isinstance(exc, pydantic.ValidationError):
+            self.set_status(400)
+            found = exc.errors()[0]
+            errors[0]["message"] = f"The request is not complete: {'.'.join(map(str, found['loc']))}, {found['msg']}."
         elif isinstance(exc, tornado.web.HTTPError):
             errors[0]["message"] = f"{HTTPStatus(status_code).phrase}. The page asks for nothing of this kind."
         elif exc is not None:
@@ -161,7 +139,7 @@ class _Handler(tornado.web.RequestHandler):
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
         """Print the traceback of an error of the program; refusals and wrong input are answers."""
-        if not isinstance(value, (Refused, InputError, WorkError, tornado.web.HTTPError)):
+        if not isinstance(value, (Refused, InputError, WorkError, pydantic.ValidationError, tornado.web.HTTPError)):
             traceback.print_exception(typ, value, tb)
 
 
@@ -189,8 +167,9 @@ class _Answer(_Handler):
             raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
         body = self._body()
         answer, lane = (SOLVING[name], self.server.solver) if solving else (FILES[name], self.server.files)
-        page = str(body.get("page", "")) if name in NEWEST else secrets.token_hex(8)
-        found = await asyncio.wrap_future(lane.submit((name, page), lambda: answer(body)))
+        page = str(body.pop("page", "")) if name in NEWEST else secrets.token_hex(8)
+        body.pop("page", None)
+        found = await asyncio.wrap_future(lane.submit((name, page), lambda: answer(**body)))
         self.set_header("Content-Type", "application/json")
         self.finish(json.dumps(plain(found), allow_nan=False).replace("<", "\\u003c"))
 

@@ -63,14 +63,14 @@ def _least_cases(mapping: Mapping[str, Any]) -> float:
     return count * samples if sampled else count
 
 
-def checked(text: str | None, mapping: Mapping[str, Any] | None = None) -> dict[str, Any]:
+def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dict[str, Any]:
     """Check a study and plan it.
 
     Parameters
     ----------
     text : str or None
         The study file, or None if the fields of the page give the study.
-    mapping : mapping, optional
+    study : mapping, optional
         The keys of a study file.
 
     Returns
@@ -81,14 +81,12 @@ def checked(text: str | None, mapping: Mapping[str, Any] | None = None) -> dict[
     """
     out: dict[str, Any] = {"text": text, "study": None, "errors": [], "plan": [], "doubts": []}
     try:
-        out["text"] = write_yaml(_without_empty(mapping or {})) if text is None else text
+        out["text"] = write_yaml(_without_empty(study or {})) if text is None else text
         out["study"] = parse_mapping(out["text"], "study file")
-        study = _study(out["text"])
-        status = status_of(study, RESULTS)
-        out |= {"plan": plan_rows(study, status), "doubts": study.doubts(), "name": study.name}
+        parsed = _study(out["text"])
+        out |= {"plan": plan_rows(parsed, status_of(parsed, RESULTS)), "doubts": parsed.doubts()}
     except InputError as exc:
-        found = [{"field": e.field, "line": e.line, "message": str(e)} for e in exc.errors]
-        out["errors"] = found
+        out["errors"] = [{"field": e.field, "line": e.line, "message": str(e)} for e in exc.errors]
     except WorkError as exc:
         out["errors"] = [{"field": "name", "line": None, "message": str(exc)}]
     return out
@@ -101,16 +99,17 @@ def _without_empty(mapping: Mapping[str, Any]) -> dict[str, Any]:
 def _study(text: str) -> Study:
     """Return the checked study of a text, unless it is too large for the page."""
     data = parse_mapping(text, "study file")
-    cases = _least_cases(data)
+    _check_size(_least_cases(data))
+    with errors_by_line(text), files_beside(TEXTS / "study.yaml"):
+        study = parse_study(data, TEXTS / "study.yaml")
+    _check_size(study.drawn.size)
+    return study
+
+
+def _check_size(cases: float) -> None:
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
         raise InputError("design", f"{cases:,.0f} cases", allowed, "Start larger studies with `trackroller run`.")
-    with errors_by_line(text), files_beside(TEXTS / "study.yaml"):
-        study = parse_study(data, TEXTS / "study.yaml")
-    if (size := study.drawn.size) > MOST_CASES:
-        allowed = f"at most {MOST_CASES:,} cases on this page"
-        raise InputError("design", f"{size:,} cases", allowed, "Start larger studies with `trackroller run`.")
-    return study
 
 
 def start(text: str) -> dict[str, Any]:
@@ -159,7 +158,7 @@ def pause(name: str) -> dict[str, Any]:
     return {"name": name}
 
 
-def delete(name: str, confirm: str) -> dict[str, Any]:
+def delete(name: str, confirm: str = "") -> dict[str, Any]:
     """Delete the results of a study; its file in `studies/` stays."""
     folder = folder_of(name)
     if confirm != name:
@@ -261,7 +260,7 @@ def page_of(name: str, page: str) -> Path:
 
 def compare(names: list[str]) -> list[dict[str, Any]]:
     """Return factors, headline numbers and the sentences of *In short* of some studies."""
-    return [_headlines(name) for name in names]
+    return [_headlines(name) for name in names[:2]]
 
 
 def _headlines(name: str) -> dict[str, Any]:

@@ -17,7 +17,7 @@ export function live({ values, inside, shown, failed }) {
     wish = null;
     busy = true;
     try {
-      const picture = await ask("solve", { case: own.values, accuracy: own.accuracy, complete: own.complete, inside: own.inside });
+      const picture = await ask("picture", { values: own.values, accuracy: own.accuracy, complete: own.complete, inside: own.inside });
       if (!picture.stale && (own.version === version || own.accuracy === "preview")) shown(picture, own);
     } catch (error) {
       if (own.version === version) failed(error.errors ?? [{ field: "", message: String(error) }]);

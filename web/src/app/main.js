@@ -19,7 +19,7 @@ const OPEN = ["Loads and use", "Roller and guide"];
 
 async function start() {
   const root = document.querySelector("#app");
-  const offered = await ask("fields");
+  const offered = await ask("all_fields");
   const state = createState();
   const rows = new Map();
   const times = []; // ms from the event of a slider to its picture

@@ -27,7 +27,7 @@ export function resultsView(state, { open, told }) {
   async function look() {
     clearTimeout(timer);
     try {
-      const found = await ask("studies");
+      const found = await ask("listing");
       if (!found.stale) list = found;
     } catch (error) {
       said.textContent = error.message;
@@ -61,7 +61,7 @@ export function resultsView(state, { open, told }) {
         solved ? link("explorer.html", "Explorer") : null,
         study.state === "running" ? button("Pause", () => act("pause", { name: study.name })) : null,
         ["paused", "stopped"].includes(study.state) ? button("Resume", () => act("resume", { name: study.name })) : null,
-        study.text ? button("Edit", async () => open((await ask("open", { name: study.name })).text)) : null,
+        study.text ? button("Edit", async () => open((await ask("text_of", { name: study.name })).text)) : null,
         study.state !== "running" ? button("Delete", () => question(study)) : null,
       ),
     );

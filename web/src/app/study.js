@@ -87,7 +87,7 @@ export function studyView(state, offered, { started }) {
 
   async function check(body) {
     try {
-      const answer = await ask("study", body);
+      const answer = await ask("checked", body);
       if (answer.stale) return;
       text = answer.text;
       if (document.activeElement !== area) area.value = text;

@@ -34,7 +34,7 @@ export function whatIf(state, offered, { rows }) {
     if (pictures.has(key(values))) return;
     pictures.set(key(values), null);
     try {
-      pictures.set(key(values), facts(await ask("solve", { case: values, accuracy: "standard", complete: true }, key(values))));
+      pictures.set(key(values), facts(await ask("picture", { values, accuracy: "standard", complete: true }, key(values))));
     } catch (error) {
       pictures.set(key(values), new Map([["Verdict|verdict", error.message]]));
     }
@@ -95,7 +95,7 @@ export function whatIf(state, offered, { rows }) {
 
   async function solveCurve() {
     try {
-      const answer = await ask("curve", { case: state.values, over: over.field.value, from: Number(from.value), to: Number(to.value) });
+      const answer = await ask("curve", { values: state.values, over: over.field.value, ends: [Number(from.value), Number(to.value)] });
       if (answer.stale) return;
       found = answer;
       const names = Object.entries(found.columns);
@@ -158,7 +158,7 @@ export function whatIf(state, offered, { rows }) {
   const copied = el("button", { type: "button", onclick: () => copy(text.textContent, copied) }, "Copy");
   async function write() {
     try {
-      text.textContent = (await ask("texts", { case: state.values }))[kind.field.value] ?? "";
+      text.textContent = (await ask("texts", { values: state.values }))[kind.field.value] ?? "";
     } catch (error) {
       text.textContent = error.message;
     }
