@@ -18,7 +18,7 @@ from trackroller.analysis.pawn import bins, pawn, pawn_interval, thinned
 MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
 HARMONICS, ROWS_PER_HARMONIC = 10, 16  # of RBD-FAST: SALib's number, fewer for small samples
-FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_ROWS are those of a rare event
+FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_ROWS have a rare value
 MEASURES = {
     "first": ("first", "first_low", "first_high"),
     "delta": ("delta", "delta_low", "delta_high", "delta_noise"),

@@ -14,7 +14,7 @@ from trackroller.files import interrupts_wait_for_files
 def run() -> None:
     """Import the command line and run it; Ctrl-C during the import ends in one sentence, too."""
     try:
-        if ALLOW_CODE in sys.argv:  # anywhere on the line, because limits are known before anything else is imported
+        if ALLOW_CODE in sys.argv:  # read before the line is parsed: the import registers the limits
             sys.argv.remove(ALLOW_CODE)
             os.environ["TRACKROLLER_ALLOW_CODE"] = str(Path("config", "limits").resolve())
         with interrupts_wait_for_files():

@@ -27,6 +27,6 @@ fast: Any = njit(**_FAST, **_CACHED)
 inner: Any = njit(**_FAST, **_INNER)
 # for functions that become a part of each caller, with the options of that caller
 woven: Any = njit(inline="always")
-# for functions that run in plain Python too: there they take arrays
+# for functions that compiled code calls with numbers, and plain Python with arrays
 formula: Any = register_jitable(**_PLAIN, forceinline=True)
 fast_formula: Any = register_jitable(**_FAST, forceinline=True)

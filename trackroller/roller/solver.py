@@ -44,7 +44,7 @@ cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 
 BLOCK = 2048  # cases worked on at once: bounds the memory whatever the size of the batch
-WINDOW = 16 * BLOCK  # cases among which equal mechanics are searched
+WINDOW = 16 * BLOCK  # number of cases within which cases with equal mechanics are solved once
 
 
 def solve(
@@ -222,7 +222,7 @@ def _solve_block(table: CaseTable, options: Options) -> Block:
     groups = list(_groups(table, options))
     parts = [_solve_group(table.take(rows), options.changed(contact_model=model), n) for model, n, rows in groups]
     order = np.argsort(np.concatenate([rows for *_, rows in groups]))
-    return parts[0] if len(parts) == 1 else join(parts).take(order)  # one group has them in order
+    return parts[0] if len(parts) == 1 else join(parts).take(order)  # the rows of one group are in order
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.ndarray]]:

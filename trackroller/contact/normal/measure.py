@@ -36,7 +36,7 @@ def _vanishing(sums: np.ndarray) -> float:
     if last < 4:
         return last + 0.5
     a, b, c = sums[last - 3], sums[last - 2], sums[last - 1]
-    curve, slope = 0.5 * (a - 2 * b + c), 0.5 * (3 * c - 4 * b + a)  # at the last of the three
+    curve, slope = 0.5 * (a - 2 * b + c), 0.5 * (3 * c - 4 * b + a)  # of the parabola, at its last point
     root = slope * slope - 4 * curve * c
     if slope >= 0 or root < 0:
         return last + 0.5

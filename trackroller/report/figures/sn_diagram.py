@@ -80,7 +80,7 @@ def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str
         if material not in known or not mine.any():
             continue
         stress = view.column(f"{_amplitude(view)}_{body}")[mine]
-        if np.isnan(stress).all():  # a study of lives alone
+        if np.isnan(stress).all():  # the study has lives but no stresses
             with np.errstate(invalid="ignore"):
                 stress = SNCurve.of(known[material], rule).allowable_stress(life[mine])
         points[material] = stress, life[mine]

@@ -1,4 +1,4 @@
-"""Tables of designs: the best ones with what they last, what fails first, and their margins."""
+"""Tables of designs: the best ones with their lives, the body or limit that fails first, and their margins."""
 
 from __future__ import annotations
 

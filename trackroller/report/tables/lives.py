@@ -25,7 +25,7 @@ UNKNOWN = {"guide": "not known: give guide_overrollings_per_hour", "roller": "no
 
 
 def overrollings(inputs: Mapping[str, Any], body: str) -> float:
-    """Return the overrollings of a point of a body [1/h]; NaN for a guide without a number."""
+    """Return the overrollings of a point of a body [1/h]; NaN if the overrollings of the guide are not given."""
     if body == "guide":
         rate = inputs.get("guide_overrollings_per_hour")
         return math.nan if rate is None else float(rate)

@@ -1,4 +1,4 @@
-"""Sentences on limits: which one ends the pair first, how the order of the designs turns, and what moving it gains."""
+"""Sentences on limits: which one the pair reaches first, how they change the order of designs, and what each costs."""
 
 from __future__ import annotations
 

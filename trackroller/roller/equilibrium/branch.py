@@ -50,7 +50,7 @@ def follow_friction(roller: Roller, bounds: Bounds) -> tuple[Solution, np.ndarra
         part = Roller(eased, law, rows[go])
         if k == 0:
             solution.w[:], solution.normal[:] = bracketed(part, bounds.copy(), fine=True, sweeps=60, tolerance=1e-12)
-        # to the last digit: small differences grow along a branch that nearly locks
+        # down to rounding errors, because small errors grow along a branch that nearly locks
         new = newton_polish(part, solution.w[go], solution.normal[:, go], bounds.take(go))
         solution.residual[go], solution.forces[:, :, go] = new.residual, new.forces
         fine = new.residual <= FOLLOWED

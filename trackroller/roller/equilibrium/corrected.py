@@ -13,8 +13,8 @@ from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, 
 from trackroller.roller.equilibrium.solution import FAILED, ROLLING, Equilibrium, solve_equilibrium
 
 ROUNDS = 6  # of correction at most
-# Largest change of a force over mu F_N by a correction after which the balance is final. The next correction would
-# change the forces by a small share of it.
+# The balance is final after a correction that changes no force by more than this, over mu F_N: the next correction
+# would change the forces much less.
 SETTLED = 2e-3
 
 _ARRAYS = tuple(f.name for f in fields(Loads) if f.type == "np.ndarray")

@@ -150,7 +150,7 @@ class EllipseStresses(PatchStresses):
                 break
             (fields, coarse), converged = (_mirrored(part, second[rows]) for part in shares[:2]), shares[2]
             finer = find_peaks(patches[rows], ratios[rows], settings, fields, coarse, bool(own))
-            # the change of the stress at one place can vanish by chance
+            # the change between two grids may be small by chance, and is no estimate then
             finer.error[:] = np.maximum(finer.error, limit[rows, None])
             peak.put(rows[converged], finer.take(converged))
             results.refined[flat[rows[converged]]] = True
