@@ -114,10 +114,8 @@ def test_a_link_in_the_results_is_not_followed(live):
 def test_a_million_cases_are_refused_before_they_are_drawn(live):
     _, found = live.ask("checked", study={"name": "big", "factors": LARGE})
     assert "at most 200,000 cases" in message(found)
-    _, found = live.ask("checked", text="name: big
-design: sobol
-samples: 1000000
-factors: {velocity: {uniform: [1, 9]}}")
+    text = "name: big\ndesign: sobol\nsamples: 1000000\nfactors: {velocity: {uniform: [1, 9]}}"
+    _, found = live.ask("checked", text=text)
     assert "at most 200,000 cases" in message(found)
     assert live.ask("start", text="name: big\nfactors: {velocity: {linspace: [1, 9, 1000000]}}")[0] == 422
 
