@@ -117,3 +117,15 @@ def test_surroundings_above_the_limit_exceed_it_without_heat():
     cases = [tr.Case(**case, ambient_temperature=t) for t in (149.0, 150.0, 151.0)]
     used = tr.solve(cases, "heat", contact_model="sliding").heat_utilisation.values
     assert (used[0] == 0).all() and np.isposinf(used[1:]).all()
+
+
+def test_the_drive_turns_the_roller_against_hysteresis():
+    """The torque grows by the moments of both contacts, in cases of equal mechanics by those of each; power agrees."""
+    lossy = [STEEL | {"loss_fraction": loss} for loss in (0.0, 0.05, 0.2)]
+    cases = [tr.Case(motor_force=0, roller_material=own, guide_material=own, **COOLED) for own in lossy]
+    plain, ds = (tr.solve(cases, ("forces", *more), contact_model="sliding") for more in ((), ("heat",)))
+    assert ds.drive_torque.values == pytest.approx((plain.drive_torque + ds.hysteresis_moment.sum("contact")).values)
+    assert ds.drive_torque[0] == plain.drive_torque[0] and (np.diff(ds.drive_torque) > 0).all()
+    unknown = tr.Case(motor_force=0, roller_material={"like": "1.7225-normalised", "loss_fraction": None}, **COOLED)
+    alone, with_heat = (tr.solve(unknown, ("forces", *more), contact_model="sliding") for more in ((), ("heat",)))
+    assert float(alone.drive_torque) <= float(with_heat.drive_torque) < np.inf

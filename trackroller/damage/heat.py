@@ -133,7 +133,10 @@ def hysteresis_moments(force: np.ndarray, length: np.ndarray, loss: np.ndarray, 
 
 
 def evaluate(solved: SolvedRollers) -> Results:
-    """Return temperature rises [K], (n, contact, body), partition, hysteresis and pressure-velocity, (n, contact)."""
+    """Return temperature rises [K], (n, contact, body), partition, hysteresis and pressure-velocity, (n, contact).
+
+    `drive_torque` [N mm], (n,), takes in the hysteresis of both contacts.
+    """
     m, v, c, t = solved.materials, solved.values, solved.cases, solved.tractions()
     speed = c["velocity"] * 1e3 / 60.0
     conductivity = 1e-3 * m["thermal_conductivity"]
@@ -157,6 +160,8 @@ def evaluate(solved: SolvedRollers) -> Results:
     # a body whose surroundings are too hot is over its limit without any heat of its own
     used = np.where((room <= 0.0) & ~np.isnan(rise), np.inf, rise / np.where(room > 0.0, room, np.nan))
     return {
+        # the drive turns the roller against the loss; without a known loss the torque is that of the tractions alone
+        "drive_torque": v["drive_torque"] + np.nan_to_num(moments.sum(axis=(1, 2))),
         "flash_temperature_rise": flashes,
         "bulk_temperature_rise": bulks,
         "heat_utilisation": used,
