@@ -21,8 +21,8 @@ RADIUS = 21.75 - 6.0 * math.cos(math.radians(30.0))  # r_A of the example [mm]
 def test_every_declared_output_has_a_value_and_every_value_a_declaration(monkeypatch):
     """A forgotten declaration would drop a result without a word, a forgotten formula would leave a gap."""
     seen = {}
-    assemble = solver._assemble
-    monkeypatch.setattr(solver, "_assemble", lambda block, *rest: seen.update(block.values) or assemble(block, *rest))
+    assemble = solver.assemble
+    monkeypatch.setattr(solver, "assemble", lambda block, *rest: seen.update(block.values) or assemble(block, *rest))
     found: set[str] = set()
     for criterion in ("von_mises_peak", "findley"):
         found |= set(tr.solve(tr.Case(), EVERY, accuracy="preview", life_criterion=criterion).variables)
