@@ -7,6 +7,7 @@ from __future__ import annotations
 
 SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
+WEAR = ("damage/test_wear.py", "analysis/test_unsure.py")
 SOBOL = ("analysis/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
 CONVERGENCE = ("analysis/test_sensitivity.py", "analysis/test_enough.py", "analysis/test_given_data.py")
@@ -91,6 +92,15 @@ FORMULAS = {
         ("analysis/test_pareto.py",),
     ),
     "direction": ("analysis/pareto.py", '"min" else -1.0', '"min" else 1.0', ("analysis/test_pareto.py",)),
+    "wear-depth": ("damage/wear.py", "return np.asarray(1e-3 * k.reshape", "return np.asarray(1e-2 * k.reshape", WEAR),
+    "wear-tied": ("damage/wear.py", "/ rubbed)", "/ shear)", WEAR),
+    "wear-place": ("damage/wear.py", "0.5 * (right - left)", "0.5 * (left - right)", WEAR),
+    "wear-mirrored": ("damage/wear.py", "np.array([1.0, -1.0])[:, None]", "np.array([1.0, 1.0])[:, None]", WEAR),
+    "wear-beyond-table": ("damage/wear.py", "slope * np.maximum(work - x[-1]", "0.0 * np.maximum(work - x[-1]", WEAR),
+    "wear-gap": ("damage/wear.py", "0.5 * curvature[:, None]", "curvature[:, None]", WEAR),
+    "wear-standing-roller": ("damage/wear.py", "where(locked, 1.0,", "where(locked, 0.5,", WEAR),
+    "wear-run-in": ("damage/wear.py", "np.max(counted, axis=2), axis=1)", "np.min(counted, axis=2), axis=1)", WEAR),
+    "wear-of-designs": ("analysis/unsure.py", "least[None, :] > most[:, None]", "most[None, :] > most[:, None]", WEAR),
 }
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
