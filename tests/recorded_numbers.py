@@ -86,6 +86,7 @@ CURVED: Cases = [
 ]
 BEARING = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 3000, "static_rating": 1500}
 BEARING |= {"e": 0.3, "X": 0.56, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
+WEARING = {"permissible_wear_depth": 0.05, "wear_table": {"work_rate": [0, 5], "roller": [0, 9], "guide": [0, 4]}}
 _X = np.linspace(-5.4, 5.4, 61)
 PROFILES: Cases = [
     {"guide_profile": {"parabola": 6.0}, "roller_profile": {"parabola": -7.0}},
@@ -117,7 +118,11 @@ def groups() -> dict[str, tuple[Cases, dict[str, Any]]]:
         "slip_profile": (CURVED, preview | {"slip_terms": ["profile"]}),
         "no_shortcuts": (REGIMES[:4], preview | {"shortcuts": False}),
         "stop": ([*ORDINARY, *REGIMES[3:5]], preview | {"stop_if": stop}),
-        "limits": ([case | {"bearing": BEARING} for case in ORDINARY[:3]], preview | {"outputs": LIMITS}),
+        "limits": ([case | WEARING | {"bearing": BEARING} for case in ORDINARY[:3]], preview | {"outputs": LIMITS}),
+        "wear_energy": (
+            [case | WEARING for case in ORDINARY[:3]],
+            preview | {"outputs": ["wear"], "wear_law": "energy"},
+        ),
         "fields": ([ORDINARY[2]], preview | {"outputs": FIELDS}),
         "halfspace": ([*ORDINARY[1:4], REGIMES[4]], preview | {"normal": "halfspace"}),
         "halfspace_profiles": (PROFILES, preview | {"normal": "halfspace"}),
