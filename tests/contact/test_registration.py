@@ -15,8 +15,8 @@ import trackroller as tr
 from trackroller.contact.models import CLASSES, _digest, register, unregister
 from trackroller.parameters import CONTACT_MODELS, EXACTNESS, OPTIONS, options_text
 from trackroller.parameters.contact_models import DECLARED
-from trackroller.roller.accuracy import error_attributes
 from trackroller.roller.case import to_table
+from trackroller.roller.expected_errors import error_attributes
 from trackroller.roller.options import Options
 from trackroller.study.cost import rate
 from trackroller.study.file.load import parse_study

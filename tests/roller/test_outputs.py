@@ -26,6 +26,7 @@ def test_every_declared_output_has_a_value_and_every_value_a_declaration(monkeyp
     found: set[str] = set()
     for criterion in ("von_mises_peak", "findley"):
         found |= set(tr.solve(tr.Case(), EVERY, accuracy="preview", life_criterion=criterion).variables)
+    found |= set(tr.solve(tr.Case(), ("forces", "contact"), accuracy=0.01).variables)
     assert set(VARIABLES) <= found
     assert set(seen) <= set(VARIABLES) | set(FLAGS)
 

@@ -163,3 +163,9 @@ def all_equal(values: np.ndarray) -> bool:
     if values.dtype.kind == "f":
         same |= np.isnan(values) & np.isnan(values[:1])
     return bool(np.all(same))
+
+
+def rounded_up(value: float) -> float:
+    """Return a number > 0 rounded up to two figures."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 1)
+    return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")

@@ -57,6 +57,8 @@ class ModelDeclaration:
     ladder : str
         Ladder of measured settings in `roller/accuracy.json` from which a tolerance is met: "forces" for quadrature,
         otherwise elements. Empty if the errors of the model were not measured; a tolerance is refused then.
+    by_case : bool
+        Whether the stages estimate the error of each case, so that a tolerance is met case by case.
     own_errors : bool
         Whether the errors of the forces are those that the method `errors` of the class returns.
     interpolates : bool
@@ -83,6 +85,7 @@ class ModelDeclaration:
     friction_laws: bool = False
     remedy: str = "Take contact_model: kalker."
     ladder: str = ""
+    by_case: bool = False
     own_errors: bool = False
     interpolates: bool = False
     rough_peaks: bool = False
@@ -138,6 +141,7 @@ _BUILT_IN = (
         slip_terms=("profile", "curve"),
         friction_laws=True,
         ladder="kalker",
+        by_case=True,
         interpolates=True,
         cheaper="kalker_table",
         cost=Cost((5e-4, 3e-3, 0.016), (1.5e-3, 3.3e-3, 5e-3)),

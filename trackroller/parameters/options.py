@@ -13,6 +13,8 @@ from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters.contact_models import DECLARED, MEANINGS
 from trackroller.parameters.declared import declared
 
+QUANTITIES = ("forces", "peak", "life")  # that may have tolerances of their own
+
 
 @dataclass(frozen=True)
 class Option:
@@ -29,8 +31,8 @@ class Option:
     values : dict of str
         Allowed words with their meanings; empty for numbers, conditions and switches.
     kind : str
-        "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy" (a word or such a
-        number), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
+        "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy" (a word, such a
+        number, or numbers by quantity), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
     bounds : tuple of float
         Numbers between which a number must lie; the bounds themselves are not allowed.
     by_model : bool
@@ -75,7 +77,7 @@ class Option:
         return {
             "word": f"one of {words}",
             "words": f"a list of {words}" + (", at least one" if self.required else ", which may be empty"),
-            "accuracy": f"one of {words} or a relative tolerance {number}",
+            "accuracy": f"one of {words} or a relative tolerance {number}, also by quantity: {', '.join(QUANTITIES)}",
             "number": f"a number {number}",
             "condition": "a condition such as peak_stress > R_m",
             "switch": "true or false",
@@ -111,12 +113,25 @@ class Option:
             raise InputError(where, value, self.allowed())
         if self.kind == "switch" and not isinstance(value, bool):
             raise InputError(where, value, self.allowed())
+        if self.kind == "accuracy" and isinstance(value, Mapping):
+            return self._by_quantity(value, where)
         if self.kind in ("accuracy", "number"):
             number = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not number or not self.bounds[0] < value < self.bounds[1]:
                 raise InputError(where, value, self.allowed())
             return float(value)
         return value
+
+    def _by_quantity(self, value: Mapping[str, Any], where: str) -> dict[str, float]:
+        """Return tolerances by quantity in the order of QUANTITIES."""
+        if not value:
+            raise InputError(where, value, self.allowed())
+        for name, number in value.items():
+            if name not in QUANTITIES:
+                raise unknown_name(f"{where}.{name}", str(name), QUANTITIES)
+            if isinstance(number, (str, Mapping)):
+                raise InputError(f"{where}.{name}", number, "a number in ({:g}, {:g})".format(*self.bounds))
+        return {name: self.check(value[name], f"{where}.{name}") for name in QUANTITIES if name in value}
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
@@ -135,6 +150,8 @@ class Option:
             return value if self.applies(contact_model) else ""
         if self.kind == "switch":
             return str(value).lower()
+        if isinstance(value, Mapping):
+            return ", ".join(f"{name} {number:g}" for name, number in value.items())
         if self.kind in ("accuracy", "number"):
             return value.name if hasattr(value, "name") else str(value)
         return value if self.applies(contact_model) else None
@@ -181,7 +198,7 @@ _OPTIONS = (
     Option(
         "accuracy",
         "standard",
-        "discretisation: a preset, or a relative tolerance of forces and peak stress",
+        "discretisation: a preset, or a relative tolerance of forces and peak stress, which kalker meets case by case",
         {
             "preview": "for a first look",
             "standard": "for studies",

@@ -95,4 +95,9 @@ VALIDITY: dict[str, ValidityFlag] = {
         "Take the life as an estimate: beyond the run-in distance the worn groove decides pressure, stress and life.",
         of_body=True,
     ),
+    "tolerance_missed": ValidityFlag(
+        "the estimated error exceeds the tolerance",
+        "estimated error above the tolerance of the option accuracy on the finest elements",
+        "Take a larger tolerance, or the estimated errors as they are: adhesion covers less than an element there.",
+    ),
 }

@@ -3,7 +3,8 @@
 A ladder is a list of measured settings of one stage, sorted by cost; each setting is a rung. There is one ladder for
 the quadrature of forces, one for the search of the peak stress, and one for the elements of each rolling contact model
 (`roller/accuracy.json`, written by `python -m validation.adopt tradeoff`). A preset or a tolerance takes from each
-ladder the cheapest setting whose measured error is small enough.
+ladder the cheapest setting whose measured error is small enough. A contact model that estimates the error of each case
+meets a tolerance case by case instead, see `Tolerance` and `roller.tolerance`.
 """
 
 from __future__ import annotations
@@ -19,29 +20,17 @@ from typing import Any
 from trackroller.contact.settings import Accuracy
 from trackroller.errors import InputError, unknown_name
 from trackroller.halfspace.peak_settings import PeakSettings
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.numbers import number_or_nan, rounded_up
 from trackroller.parameters import ACCURACIES, DEFAULT_OUTPUTS
 from trackroller.parameters.contact_models import DECLARED
 
 FORCE_QUANTITIES = ("normal_force", "friction_force", "spin_moment")
 PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
 FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whose cost is low
+LIKELY_EXPONENT = 10.0  # of an S-N curve, for the search of the peak where the life has a tolerance
 PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
-_QUANTITY_OF = {
-    "normal_force": "normal_force",
-    "lateral_force": "friction_force",
-    "driving_force": "friction_force",
-    "spin_moment": "spin_moment",
-    "friction_power": "friction_energy",
-    "friction_energy_per_distance": "friction_energy",
-    "peak_stress": "peak_stress",
-    "life_cycles": "life",
-    "life_hours": "life",
-    "roller_life_hours": "life",
-    "guide_life_hours": "life",
-    "pair_life_hours": "life",
-}
-_RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
+BY_CASE_ELEMENTS = (12, 28, 56, 80)  # across a patch, on the rungs of a tolerance that is met case by case
+SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 80 elements keep in all but a few per cent of designs
 
 
 @dataclass(frozen=True)
@@ -140,15 +129,64 @@ def _preset(name: str) -> Accuracy:
 PRESETS = {name: _preset(name) for name in ACCURACIES}
 
 
+@dataclass(frozen=True)
+class Tolerance:
+    """Relative errors that a case may have, met case by case; infinite where nothing is asked.
+
+    Parameters
+    ----------
+    forces : float
+        Of F_N and friction work, relative to themselves, of F_T and F_A over mu F_N, and of M_R over mu F_N sqrt(a b).
+    peak, life : float
+        Of the peak stress and the life, relative to themselves.
+    """
+
+    forces: float = math.inf
+    peak: float = math.inf
+    life: float = math.inf
+
+    @classmethod
+    def read(cls, value: float | Mapping[str, float], outputs: Iterable[str]) -> Tolerance:
+        """Return the tolerances that a user asks for; a number holds for forces and, if they are computed, for peaks.
+
+        Raises
+        ------
+        InputError
+            If a tolerance is smaller than the finest elements keep.
+        """
+        peaks = bool(PEAK_OUTPUTS & set(outputs))
+        asked = dict(value) if isinstance(value, Mapping) else dict.fromkeys(("forces", *("peak",) * peaks), value)
+        for name, smallest in SMALLEST.items():
+            if asked.get(name, math.inf) < smallest:
+                best = ", ".join(f"{key}: {max(SMALLEST.get(key, 0.0), own):g}" for key, own in asked.items())
+                allowed = f"{smallest:g} or more for {name}, which the finest elements keep"
+                raise InputError("accuracy", value, allowed, f"Write accuracy: {{{best}}}, or take 'reference'.")
+        if not peaks and (extra := [name for name in ("peak", "life") if name in asked]):
+            remedy = f"Leave {extra[0]} out, or add peak_stress or life to outputs."
+            raise InputError("accuracy", extra[0], "a tolerance of a quantity that is computed", remedy)
+        return cls(**asked)
+
+    @functools.cached_property
+    def rungs(self) -> tuple[Accuracy, ...]:
+        """Return the settings to solve with, from few to many elements."""
+        peak, searches = min(self.peak, self.life / LIKELY_EXPONENT), ladders()["peak"]
+        search = _cheapest(searches, PEAK_SHARE * peak, ("peak_stress",)) or _finest(searches, ("peak_stress",))
+        forces = _finest(ladders()["forces"], FORCE_QUANTITIES)
+        return tuple(
+            _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements)
+            for elements in BY_CASE_ELEMENTS
+        )
+
+
 def accuracy_settings(
-    accuracy: str | float | Accuracy, contact_model: str, outputs: Iterable[str] = DEFAULT_OUTPUTS
+    accuracy: str | float | Mapping[str, float] | Accuracy, contact_model: str, outputs: Iterable[str] = DEFAULT_OUTPUTS
 ) -> Accuracy:
     """Return the settings of a preset, or the cheapest measured settings that meet a relative tolerance.
 
     Parameters
     ----------
-    accuracy : str, float or Accuracy
-        Preset, or relative tolerance in (0, 1). An `Accuracy` is returned as it is.
+    accuracy : str, float, mapping or Accuracy
+        Preset, or relative tolerance in (0, 1), also by quantity. An `Accuracy` is returned as it is.
     contact_model : str
         Contact model, which chooses the ladder.
     outputs : iterable of str
@@ -166,13 +204,11 @@ def accuracy_settings(
 
     Notes
     -----
-    The tolerance limits the error of discretisation, not that of the model, in 99 % of the measured cases. It is
+    For `kalker` the settings are those of the first rung, see `Tolerance`. For other models the tolerance limits the
+    error of discretisation, not that of the model, in 99 % of the measured cases. It is
     relative to F_N for F_N, to mu F_N for F_T and F_A, to mu F_N sqrt(a b) for M_R, and to the value itself for
     friction work and peak stress. The relative error of the life is that of the peak times the exponent k of the S-N
     curve.
-
-    A number beside the presets serves those who know which error they can afford: it finds the cheapest settings for
-    this error and these outputs, which no preset does.
     """
     if isinstance(accuracy, Accuracy):
         return accuracy
@@ -183,9 +219,22 @@ def accuracy_settings(
         if math.isnan(number):
             raise unknown_name("accuracy", accuracy, (*ACCURACIES, "a relative tolerance such as 1e-3"))
         accuracy = number
+    if DECLARED[contact_model].by_case and (by_case := tolerance_of(accuracy, outputs)) is not None:
+        return by_case.rungs[0]
+    if isinstance(accuracy, Mapping):
+        remedy = f"Give {contact_model} one number, or take contact_model: kalker."
+        raise InputError("accuracy", accuracy, "a tolerance by quantity only with contact_model: kalker", remedy)
     if isinstance(accuracy, bool) or not isinstance(accuracy, (int, float)) or not 0.0 < accuracy < 1.0:
         raise InputError("accuracy", accuracy, f"one of {', '.join(ACCURACIES)} or a relative tolerance in (0, 1)")
     return _for_tolerance(float(accuracy), contact_model, frozenset(outputs))
+
+
+def tolerance_of(accuracy: Any, outputs: Iterable[str]) -> Tolerance | None:
+    """Return the tolerances that an accuracy asks for, None for a preset, settings, and what is no tolerance."""
+    if isinstance(accuracy, str):
+        accuracy = number_or_nan(accuracy, "-", "accuracy")
+    number = isinstance(accuracy, (int, float)) and not isinstance(accuracy, bool) and 0.0 < accuracy < 1.0
+    return Tolerance.read(accuracy, outputs) if number or isinstance(accuracy, Mapping) else None
 
 
 @functools.lru_cache(maxsize=64)
@@ -253,43 +302,6 @@ def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: I
     )
 
 
-def rounded_up(value: float) -> float:
-    """Return a number > 0 rounded up to two figures."""
-    unit = 10.0 ** (math.floor(math.log10(value)) - 1)
-    return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")
-
-
-def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:
-    """Return the measured errors of settings by quantity; the errors of the stages are added.
-
-    Quantities whose settings were not measured are missing.
-    """
-    declared = DECLARED[contact_model]
-    if declared.own_errors:
-        return own_errors(contact_model)
-    rungs, ladder = ladders(), declared.ladder
-    if not ladder:
-        return {}
-    own: dict[str, dict[str, Any]]
-    own = {
-        "forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
-        "peak": {"peak": list(vars(settings.peak).values())},
-    }
-    if ladder != "forces":
-        elements = settings.elements if declared.interpolates else settings.on_grids
-        own = {ladder: {"elements": elements}, "peak": own["peak"]}
-    total: dict[str, Levels] = {}
-    unknown: set[str] = set()
-    for ladder, wanted in own.items():
-        rung = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
-        if rung is None:
-            unknown.update(rungs[ladder][0].errors)
-            continue
-        for name, levels in rung.errors.items():
-            total[name] = _sum(total[name], levels) if name in total else levels
-    return {name: levels for name, levels in total.items() if name not in unknown}
-
-
 def own_errors(contact_model: str) -> dict[str, Levels]:
     """Return the measured errors of the forces that the class of a contact model states, by quantity."""
     from trackroller.contact.models import CLASSES  # loads numba, which a plan at a preset does not need
@@ -300,20 +312,3 @@ def own_errors(contact_model: str) -> dict[str, Levels]:
 def finest_tolerance(contact_model: str) -> float:
     """Return the tolerance of forces that the model keeps in 99 % of the cases."""
     return rounded_up(max(levels.p99 for levels in own_errors(contact_model).values()))
-
-
-def _sum(one: Levels, other: Levels) -> Levels:
-    return Levels(*(a + b for a, b in zip(vars(one).values(), vars(other).values(), strict=True)))
-
-
-def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
-    """Return attributes with the expected errors of discretisation, by result variable."""
-    return {
-        variable: {
-            "expected_relative_error": rounded_up(max(levels[q].median, 1e-16)),
-            "relative_error_99_percent": rounded_up(max(levels[q].bound, levels[q].p99, 1e-16)),
-            "relative_error_refers_to": _RELATIVE_TO.get(q, "itself"),
-        }
-        for variable, q in _QUANTITY_OF.items()
-        if q in levels
-    }

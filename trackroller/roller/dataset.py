@@ -45,6 +45,8 @@ _GROUPS = {
         ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller", _SHOWN),
         ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _SHOWN | _ODD),
         ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N"),
+        ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N"),
+        ("error_over_tolerance", (), "1", "", "largest estimated error over its tolerance, if kalker has a tolerance"),
         ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
         ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track", _SHOWN),

@@ -17,10 +17,12 @@ from trackroller.roller.accuracy import (
     PRESETS,
     Accuracy,
     Levels,
+    Tolerance,
     accuracy_settings,
-    expected_errors,
     finest_tolerance,
+    tolerance_of,
 )
+from trackroller.roller.expected_errors import expected_errors
 from trackroller.roller.stop import parse_condition
 
 if TYPE_CHECKING:
@@ -46,14 +48,15 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         wrong = Collector()
         for option in OPTIONS.values():
             with wrong.part():
-                if option.kind != "accuracy":  # may be an `Accuracy` or a number as text: `accuracy_settings` checks it
+                # an accuracy may be an `Accuracy` or a number as text: `accuracy_settings` checks it
+                if option.kind != "accuracy" or isinstance(getattr(self, option.name), Mapping):
                     object.__setattr__(self, option.name, option.check(getattr(self, option.name)))
                 if option.kind == "condition" and getattr(self, option.name) is not None:
                     parse_condition(getattr(self, option.name))
-        refused = {error.field for error in wrong.errors}
+        refused = {error.field.split(".")[0] for error in wrong.errors}
         with wrong.part():
-            known = {n: OPTIONS[n].default if n in refused else getattr(self, n) for n in ("contact_model", "outputs")}
-            accuracy_settings(self.accuracy, **known)
+            names = ("accuracy", "contact_model", "outputs")
+            accuracy_settings(**{n: OPTIONS[n].default if n in refused else getattr(self, n) for n in names})
         wrong.check()
         check_pairs(self.hertz, self.normal, self.slip_terms, self.contact_model)
         check_spin_model((self.spin_model,), (self.contact_model,))
@@ -63,12 +66,20 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         """Return the discretisation of each stage that belongs to the accuracy."""
         return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
 
+    @property
+    def tolerance(self) -> Tolerance | None:
+        """Return the tolerances that are met case by case, None if every case has the same settings."""
+        declared = DECLARED[self.contact_model]
+        if not declared.by_case or (declared.cheaper and _suffices(declared.cheaper, self)):
+            return None
+        return tolerance_of(self.accuracy, self.outputs)
+
     def expected_errors(self, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
         """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
 
         The measurements hold for ellipses, constant friction and the rigid slip that each model has by itself.
         """
-        if self.normal != "hertz" or self.slip_terms or not constant_friction:
+        if self.normal != "hertz" or self.slip_terms or not constant_friction or self.tolerance is not None:
             return {}
         errors = expected_errors(self.settings, contact_model)
         published = self.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured

@@ -17,10 +17,11 @@ from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements
-from trackroller.roller.accuracy import Accuracy, error_attributes
+from trackroller.roller.accuracy import Accuracy
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
+from trackroller.roller.expected_errors import error_attributes
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
@@ -31,6 +32,7 @@ from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import finer_across
 from trackroller.roller.stages.scene import Results
+from trackroller.roller.tolerance import meet
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,7 +55,7 @@ def solve(
     *,
     contact_model: str | None = None,
     spin_model: str | None = None,
-    accuracy: str | float | Accuracy | None = None,
+    accuracy: str | float | Mapping[str, float] | Accuracy | None = None,
     hertz: str | None = None,
     stress_bodies: str | None = None,
     life_rule: str | None = None,
@@ -86,10 +88,11 @@ def solve(
         accuracy "preview", and for forces within a tolerance that the table keeps.
     spin_model : str
         Assumption 0, 1, 2 of the publication on the spin pole, for "sliding": "concentric", "edge", "skewed" (default).
-    accuracy : str, float or Accuracy
-        Discretisation: "standard", "preview", "reference", or a relative tolerance of forces and peak stress in (0, 1),
-        which takes the cheapest settings that were measured to keep it. The attributes of a result state its expected
-        errors. See `trackroller.roller.accuracy`.
+    accuracy : str, float, mapping or Accuracy
+        Discretisation: "standard", "preview", "reference", or a relative tolerance of forces and peak stress in (0, 1).
+        "kalker" meets it case by case, also by quantity, as `{"forces": 1e-3, "peak": 0.01, "life": 0.1}`: the result
+        `error_over_tolerance` is at most 1, or the case has the flag `tolerance_missed`. Other models take the cheapest
+        settings that were measured to keep it. See `trackroller.roller.accuracy`.
     hertz : str
         "exact" elliptic integrals, or "published" for the table of the published program.
     stress_bodies : str
@@ -210,7 +213,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     # limits of patches depend on the speed and on all values of the materials
     if options.shortcuts and len(table) > 1 and not of_patches(options.outputs, options.life_criterion):
         rows, number = requirements.distinct_mechanics(table)
-    distinct = join([_solve_block(part, options) for part in _cut(table.take(rows), BLOCK)])
+    distinct = join([meet(part, options, _solve_block) for part in _cut(table.take(rows), BLOCK)])
     block = distinct.take(number)
     stages_case.finish(table, block, options)
     reflect(block.values, mirrored)

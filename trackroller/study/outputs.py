@@ -22,6 +22,8 @@ BOOKKEEPING = {
     "error_estimate",
     "force_error_estimate",
     "wear_error_estimate",
+    "normal_force_error_estimate",
+    "error_over_tolerance",
     "life_error_estimate",
     "reason",
     "stopped",

@@ -8,7 +8,9 @@ from typing import Any
 
 from trackroller.contact.kalker import correction
 from trackroller.errors import InputError
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import (
+    BY_CASE_ELEMENTS,
     ELEMENTS,
     GRID_ELEMENTS,
     PROMISES,
@@ -64,8 +66,10 @@ def _settings(tolerance: float, model: str) -> str:
     try:
         s = accuracy_settings(tolerance, model)
     except InputError as refusal:
-        hit = re.search(r"reaches here is ([\d.e-]+)", str(refusal))
-        return "refused: " + (f"reaches {hit[1]}" if hit else "out of reach")
+        hit = re.search(r"reaches here is ([\d.e-]+)|= [\d.e-]+ is not usable: ([\d.e-]+) or more", str(refusal))
+        return "refused: " + (f"reaches {hit[1] or hit[2]}" if hit else "out of reach")
+    if DECLARED[model].by_case:
+        return f"{BY_CASE_ELEMENTS[0]} to {BY_CASE_ELEMENTS[-1]} elements, by case"
     p = s.peak
     size = f"{s.force_nodes} nodes" if model == "sliding" else f"{s.elements} elements"
     return f"{size}, {p.scan}/{p.climb}/{p.polish}/{p.summit}, {p.seeds} seeds"

@@ -96,7 +96,9 @@ def forces(results: Results) -> None:
 
 
 def force_error(results: Results, options: Options) -> None:
-    """Add the estimated error of the friction forces over mu F_N; models without an estimate give the measured bound.
+    """Add the estimated errors of F_N, and of the friction forces over mu F_N.
+
+    Models without an estimate give the measured bound.
 
     An error of F_T in one contact changes F_N of the other by up to 1/sin(2 alpha) times this error. The relative
     change is largest in a contact near lift-off.
@@ -112,10 +114,12 @@ def force_error(results: Results, options: Options) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
         load = (error * capacity)[:, ::-1] / (2.0 * scene.loads.sine * scene.loads.cosine)[:, None]
-        error = error + np.sqrt(used) * load / v["normal_force"]
+        of_load = load / v["normal_force"]
+        error = error + np.sqrt(used) * of_load
     known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
-    error = np.where(known[:, None], 0.0, error)
-    v["force_error_estimate"] = np.where(np.isfinite(v["lateral_force"]), error, np.nan)
+    for name, estimate in (("force_error_estimate", error), ("normal_force_error_estimate", of_load)):
+        estimate = np.where(known[:, None], 0.0, estimate)
+        v[name] = np.where(np.isfinite(v["lateral_force"]), estimate, np.nan)
 
 
 def contact(results: Results, options: Options) -> None:

@@ -94,7 +94,7 @@ class _Design(BaseModel):
 _TYPES: dict[str, Any] = {
     "words": tuple[str, ...],
     "number": float,
-    "accuracy": str | float,
+    "accuracy": str | float | dict[str, float],
     "condition": str | None,
     "switch": bool,
 }

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
+from trackroller.parameters.options import QUANTITIES
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import DISTRIBUTIONS
 from trackroller.study.design.sampling import METHODS
@@ -38,7 +39,9 @@ def _option(option: Option) -> dict[str, Any]:
         return {"anyOf": [words, several | {"minItems": 1}]}
     if option.kind == "words":
         return several | ({"minItems": 1} if option.required else {})
-    single: dict[str, dict[str, Any]] = {"word": words, "accuracy": {"anyOf": [words, number]}, "number": number}
+    by_quantity = {"type": "object", "properties": dict.fromkeys(QUANTITIES, number), "additionalProperties": False}
+    accuracy: dict[str, Any] = {"anyOf": [words, number, by_quantity | {"minProperties": 1}]}
+    single: dict[str, dict[str, Any]] = {"word": words, "accuracy": accuracy, "number": number}
     return single.get(option.kind, {})
 
 

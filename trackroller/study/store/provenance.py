@@ -13,6 +13,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
+from trackroller.parameters import OPTIONS
 from trackroller.parameters.own_limits import digests
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.store.folder import STORE_FORMAT
@@ -74,7 +75,7 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
         "study_name": study.name,
         "design": config.design,
         "seed": config.seed,
-        "accuracy": str(config.accuracy),
+        "accuracy": OPTIONS["accuracy"].attribute(config.accuracy, ""),
         "solver_digest": solver_digest(),
         "store_format": STORE_FORMAT,
         "versions": json.dumps(versions()),

@@ -1,0 +1,156 @@
+"""A tolerance of `kalker` is met case by case: the result lies within it, or the case says that it does not."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.errors import InputError
+from trackroller.roller import tolerance as by_case
+from trackroller.roller.accuracy import PRESETS, Tolerance
+from trackroller.roller.dataset import validity_bit
+from trackroller.study.cost import rate
+from validation.benchmarks.samples import random_designs
+
+OUTPUTS = ("forces", "contact", "peak_stress", "friction_work", "life")
+MISSED = validity_bit("tolerance_missed")
+
+
+def errors(ds, best, friction):
+    """Return the largest true error of forces and of peaks of each case, by the definitions of `Tolerance`."""
+    capacity = friction[:, None] * best.normal_force
+    arm = np.sqrt(best.semi_axis_lateral * best.semi_axis_rolling)
+    scales = {
+        "normal_force": best.normal_force,
+        "lateral_force": capacity,
+        "driving_force": capacity,
+        "spin_moment": capacity * arm,
+        "friction_energy_per_distance": best.friction_energy_per_distance,
+    }
+    forces = np.max([np.nanmax(np.abs((ds[n] - best[n]) / s).values, axis=1) for n, s in scales.items()], axis=0)
+    peak = np.abs(ds.peak_stress / best.peak_stress - 1).max(("contact", "body")).values
+    return forces, peak
+
+
+def kept(cases, asked, elements):
+    """Return the share of cases without the flag within the tolerances, and the share with the flag."""
+    finest = dataclasses.replace(PRESETS["reference"], elements=elements)
+    best = tr.solve(cases, outputs=OUTPUTS, accuracy=finest)
+    rolls = (best.regime.values <= 1) & (best.converged.values == 1)
+    ds = tr.solve(cases, outputs=OUTPUTS, accuracy=asked)
+    forces, peak = errors(ds, best, np.array([case.friction_coefficient for case in cases]))
+    missed = (ds.validity.values & MISSED) != 0
+    assert np.array_equal(missed[rolls], (ds.error_over_tolerance.values > 1)[rolls])
+    within = (forces <= asked.get("forces", np.inf)) & (peak <= asked.get("peak", np.inf))
+    return within[rolls & ~missed].mean(), missed[rolls].mean()
+
+
+def test_forces_keep_their_tolerance():
+    within, missed = kept(random_designs(10, 5), {"forces": 5e-3}, 56)
+    assert within == 1.0 and missed < 0.15
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("asked", [{"forces": 1e-2, "peak": 3e-2}, {"forces": 1e-3}, {"forces": 3e-3, "peak": 3e-3}])
+def test_many_designs_keep_their_tolerances(asked):
+    within, missed = kept(random_designs(80, 31), asked, 112)
+    assert within >= 0.975 and missed < 0.2
+
+
+def test_only_doubtful_cases_are_solved_again(monkeypatch):
+    solved, cases = [], random_designs(12, 5)
+    meet = by_case.meet
+
+    def counted(table, options, solve):
+        def one(part, own):
+            solved.append((own.settings.elements, len(part)))
+            return solve(part, own)
+
+        return meet(table, options, one)
+
+    monkeypatch.setattr("trackroller.roller.solver.meet", counted)
+    tr.solve(cases, accuracy=0.02)
+    elements, rows = zip(*solved, strict=True)
+    assert elements == tuple(sorted(set(elements))) and elements[0] == 12
+    assert rows[0] == 12 > rows[1] and all(later <= before for before, later in itertools.pairwise(rows))
+
+
+def test_a_case_alone_and_in_a_batch_has_the_same_bits():
+    cases = random_designs(6, 5)
+    together = tr.solve(cases, accuracy={"forces": 3e-3, "peak": 0.02})
+    alone = tr.solve(cases[3], accuracy={"forces": 3e-3, "peak": 0.02})
+    for name in ("normal_force", "lateral_force", "peak_stress", "pair_life_hours", "error_over_tolerance"):
+        np.testing.assert_array_equal(together[name].values[3], alone[name].values)
+
+
+def test_the_mirror_image_of_a_roller_has_mirrored_bits():
+    asked = {"forces": 1e-3, "peak": 0.01}
+    one, other = (tr.solve(tr.Case(axial_force=force), accuracy=asked) for force in (35.0, -35.0))
+    np.testing.assert_array_equal(one.normal_force.values, other.normal_force.values[::-1])
+    np.testing.assert_array_equal(one.peak_stress.values, other.peak_stress.values[::-1])
+    assert one.error_over_tolerance == other.error_over_tolerance
+
+
+def test_a_tolerance_of_the_life_is_one_of_the_peak_by_the_exponent():
+    """The S-N curve of the example has one exponent k, so that life 0.2 asks for the same as peak 0.2/k."""
+    ds = tr.solve(tr.Case(), accuracy={"life": 0.2})
+    exponent = float((ds.life_error_estimate / ds.error_estimate).max())
+    same = tr.solve(tr.Case(), accuracy={"peak": 0.2 / exponent})
+    np.testing.assert_allclose(ds.error_over_tolerance, same.error_over_tolerance, rtol=0.05)
+    assert exponent > 3
+
+
+def test_frictionless_and_sliding_rollers_need_no_second_rung():
+    ds = tr.solve(
+        [tr.Case(friction_coefficient=0.0), tr.Case(friction_coefficient=0.02)], outputs="forces", accuracy=2e-3
+    )
+    assert ds.regime.values[1] == 1 and np.all(ds.error_over_tolerance.values == 0)
+
+
+@pytest.mark.parametrize(
+    ("accuracy", "outputs", "model", "words"),
+    [
+        (1e-3, OUTPUTS, "kalker", "0.003 or more for peak.*{forces: 0.001, peak: 0.003}"),
+        (5e-4, ("forces",), "kalker", "0.001 or more for forces"),
+        ({"force": 0.01}, OUTPUTS, "kalker", "accuracy.force.*Did you mean 'forces'"),
+        ({"peak": "small"}, OUTPUTS, "kalker", "accuracy.peak = 'small'"),
+        ({"peak": 2}, OUTPUTS, "kalker", r"accuracy.peak.*\(0, 1\)"),
+        ({}, OUTPUTS, "kalker", "accuracy = {}"),
+        ({"life": 0.1}, ("forces",), "kalker", "Leave life out, or add peak_stress or life to outputs"),
+        ({"forces": 0.1}, OUTPUTS, "sliding", "take contact_model: kalker"),
+    ],
+)
+def test_impossible_tolerances_are_refused_by_name(accuracy, outputs, model, words):
+    with pytest.raises(InputError, match=words):
+        tr.solve(tr.Case(), outputs=outputs, contact_model=model, accuracy=accuracy)
+
+
+def test_tolerances_are_read_by_quantity():
+    assert Tolerance.read(0.01, OUTPUTS) == Tolerance(0.01, 0.01) and Tolerance.read(0.01, ["forces"]) == Tolerance(
+        0.01
+    )
+    assert [rung.elements for rung in Tolerance(0.01).rungs] == [12, 28, 56, 80]
+
+
+def test_the_expected_cost_grows_with_the_accuracy():
+    seconds = [
+        1 / rate({"accuracy": asked, "outputs": OUTPUTS}) for asked in (0.1, 0.01, {"forces": 1e-3, "peak": 3e-3})
+    ]
+    assert seconds == sorted(seconds) and seconds[2] > 2 * seconds[1]
+
+
+def test_a_study_file_takes_tolerances_by_quantity(tmp_path):
+    text = "name: tolerant\naccuracy: {{{}}}\nfactors: {{axial_force: {{values: [20, 30]}}}}\n"
+    (tmp_path / "study.yaml").write_text(text.format("peak: 0.02, forces: 0.01"))
+    study = tr.load_study(tmp_path / "study.yaml")
+    assert study.options["accuracy"] == {"forces": 0.01, "peak": 0.02}
+    solved = tr.run(study)
+    assert solved.data.attrs["accuracy"] == "forces 0.01, peak 0.02"
+    assert (solved.data.error_over_tolerance <= 1).all()
+    (tmp_path / "study.yaml").write_text(text.format("peak: 0.001"))
+    with pytest.raises(InputError, match=r"0\.003 or more for peak"):
+        tr.load_study(tmp_path / "study.yaml")
