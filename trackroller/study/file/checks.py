@@ -11,6 +11,7 @@ import numpy as np
 
 from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.accuracy import accuracy_settings
 from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
@@ -42,6 +43,8 @@ def _check_options(study: Study) -> None:
     for model, normal in itertools.product(levels("contact_model"), levels("normal")):
         check_pairs(study.config.hertz, normal, study.config.slip_terms, model)
     check_spin_model(levels("spin_model"), levels("contact_model"))
+    for model in levels("contact_model"):
+        accuracy_settings(study.config.accuracy, model, study.config.outputs)
 
 
 def cross_check(study: Study) -> None:
