@@ -243,7 +243,7 @@ def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str,
     """Return the attributes of the first of several results, with the notes on limits of all of them."""
     notes = [line for part in parts for line in str(part.get(NOTES, "")).split("\n") if line]
     own = dict(next(iter(parts), {}))
-    return own | {NOTES: "\n".join(dict.fromkeys(notes))} if notes else own
+    return own | {NOTES: "\n".join(sorted(set(notes)))} if notes else own  # in no order of files
 
 
 def joined(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
