@@ -267,7 +267,7 @@ def test_a_name_is_suggested_only_where_it_is_close(name, close, meant):
     ("name", "close", "meant"),
     [
         ("factor", "factors", "factors"),
-        ("goals", None, "pareto"),
+        ("objectives", None, "pareto"),
         ("limits", None, "constraints"),
         ("parameters", None, "factors"),
         ("tolerance", None, "accuracy"),
