@@ -146,7 +146,7 @@ def test_numbers_at_the_bounds_have_finite_results_or_say_why_not(model):
 
 def test_a_rolling_row_without_a_number_is_not_converged(monkeypatch):
     """A contact model whose peaks overflow, as in materials that no bound foresees."""
-    monkeypatch.setattr(EllipseStresses, "peaks", lambda self, asked: Peak(*np.full((5, asked.sum(), 2), np.nan)))
+    monkeypatch.setattr(EllipseStresses, "peaks", lambda self, asked: Peak(*np.full((6, asked.sum(), 2), np.nan)))
     ds = tr.solve([tr.Case(), tr.Case(motor_force=-80)], ("forces", "peak_stress"), contact_model="sliding")
     assert ds.regime.values.tolist() == [0, 1] and ds.converged.values.tolist() == [0, 1]
     assert "misses" in str(ds.reason.values[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
@@ -140,10 +141,7 @@ class MaterialDatabase:
             return own
         for pair in product(self._names_of(own), self._names_of(other)):
             if pair in self.wear_table:
-                known = self.wear_table[pair]
-                records = {**own.records, "wear_coefficient": replace(known, note=f"on {other.name}")}
-                changed: dict[str, Any] = {"wear_coefficient": known.value, "records": records}
-                return replace(own, **changed)
+                return _worn(own, id(own.records), self.wear_table[pair], other.name)
         return own
 
     def friction_record(self, roller: str | Material, guide: str | Material, level: str | None) -> dict[str, Any]:
@@ -182,3 +180,15 @@ class MaterialDatabase:
                 remedy += f" Did you mean the family '{close}'?"
         allowed = f"the friction table has no {level} value for it; it has the pairs {known}"
         return InputError("friction_coefficient of the pair", "-".join(label), allowed, remedy)
+
+
+@functools.lru_cache(maxsize=256)
+def _worn(own: Material, records: int, known: Value, partner: str) -> Material:
+    """Return a material with its wear coefficient on its partner.
+
+    Equal materials may have different sources. The identity of their `records` tells them apart; the cache keeps the
+    material, so that no other one takes this identity.
+    """
+    told = {**own.records, "wear_coefficient": replace(known, note=f"on {partner}")}
+    changed: dict[str, Any] = {"wear_coefficient": known.value, "records": told}
+    return replace(own, **changed)

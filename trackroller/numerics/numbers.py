@@ -37,6 +37,8 @@ def read_number(value: Any) -> float:
     ValueError
         If the value is no number, such as true, `3_0`, digits of other scripts, `nan` and texts over 400 characters.
     """
+    if type(value) is float:
+        return value
     if isinstance(value, (bool, np.bool_, bytes)) or value is np.ma.masked:
         raise ValueError("true, false, bytes and masked values are not numbers")
     if isinstance(value, str):

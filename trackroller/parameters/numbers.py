@@ -81,18 +81,24 @@ class Parameter:
             return ""
         return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
 
-    def accepts(self, value: np.ndarray | float) -> np.ndarray:
-        """Return which values are allowed, elementwise, a bool array of the shape of `value`."""
+    def accepts(self, value: np.ndarray | float) -> Any:
+        """Return which values are allowed, elementwise, a bool array of the shape of `value`; a bool for a number."""
+        if isinstance(value, (float, int)):  # arrays of one number would take most of the time of a case's checks
+            return self._allows(value, math.isnan(value), not math.isinf(value))
         import numpy as np  # noqa: PLC0415 - the help of the command line needs no arrays and starts faster without
 
         v = np.asarray(value, dtype=float)
-        good = ~np.isnan(v) if self.allow_infinite else np.isfinite(v)
-        with np.errstate(invalid="ignore"):
-            good &= (v > self.lower) if self.open_lower else (v >= self.lower)
-            good &= (v < self.upper) if self.open_upper else (v <= self.upper)
-            if self.nonzero:
-                good &= np.abs(v) >= SMALLEST
-        return np.asarray(good | np.isnan(v) if self.allow_missing else good)
+        return self._allows(v, np.isnan(v), ~np.isinf(v))
+
+    def _allows(self, v: Any, missing: Any, bounded: Any) -> Any:
+        """Return whether a number, or which of an array of numbers, is allowed; see `accepts`."""
+        good = (v > self.lower) if self.open_lower else (v >= self.lower)
+        good = good & ((v < self.upper) if self.open_upper else (v <= self.upper))
+        if self.nonzero:
+            good = good & (abs(v) >= SMALLEST)
+        if not self.allow_infinite:
+            good = good & bounded
+        return good | missing if self.allow_missing else good
 
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}

@@ -222,7 +222,6 @@ def build(
             meta["comment"] = COMMENTS[name]
         variables[name] = (("case", *v.dims), array, meta)
     variables |= {name: _flag(name, array) for name, array in flags.items()}
-    coords = _sides().copy()
     further: dict[str, Any] = {}
     if "utilisation" in values:
         further["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
@@ -233,10 +232,33 @@ def build(
             {"long_name": "stress component"},
         )
     if single:
-        variables = {name: (dims[1:], array[0], meta) for name, (dims, array, meta) in variables.items()}
+        return _single(variables, further, attrs)
     made = {name: xr.Variable(*parts) for name, parts in variables.items()}
-    ds = xr.Dataset(made, coords=coords, attrs=dict(attrs))
+    ds = xr.Dataset(made, coords=_sides().copy(), attrs=dict(attrs))
     return ds.assign_coords(further) if further else ds
+
+
+_LIKE: dict[Any, xr.Dataset] = {}  # one result of each kind of call for a single case
+MOST_LIKE = 32  # kinds of calls that are kept
+
+
+def _single(variables: Mapping[str, Any], further: Mapping[str, Any], attrs: Mapping[str, Any]) -> xr.Dataset:
+    """Return the data set of a single case, without the dimension `case`.
+
+    xarray aligns and merges all variables anew for each data set, which takes longer than a simple solution. A result
+    with the same variables, attributes and shapes is therefore copied with the new numbers.
+    """
+    import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
+
+    data = {name: array[0] for name, (_, array, _) in variables.items()}
+    key = tuple((name, values.shape, values.dtype) for name, values in data.items()), str(attrs.get("limits"))
+    like = _LIKE.get(key)
+    if like is None:
+        made = {name: xr.Variable(dims[1:], data[name], meta) for name, (dims, _, meta) in variables.items()}
+        if len(_LIKE) >= MOST_LIKE:
+            _LIKE.clear()
+        like = _LIKE[key] = xr.Dataset(made, coords=_sides().copy()).assign_coords(further).copy(deep=True)
+    return like.copy(data=data).assign_attrs(attrs)
 
 
 def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str, Any]:
