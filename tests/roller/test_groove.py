@@ -209,3 +209,24 @@ def test_a_worn_profile_is_a_profile_of_a_case():
     case = roller(guide_profile=table.guide_profile[0], roller_profile=table.roller_profile[0])
     ds = tr.solve(case, FORCES, normal="halfspace", **SLIDING)
     assert ds.max_pressure.values[0] == pytest.approx(w.solve(at).patch.max_pressure[0], rel=5e-3)  # boxes differ
+
+
+def test_travel_is_a_field_of_a_case():
+    cases = [roller(axial_force=f, travel=s) for f in (30, -30) for s in (0, 4, "9 km")]
+    both = {**SLIDING, "normal": "halfspace"}
+    ds = tr.solve(cases, FORCES, **both)
+    run = tr.wear(cases[0], 9, FORCES, **SLIDING)
+    np.testing.assert_array_equal(ds.max_pressure.values[0], tr.solve(cases[0], FORCES, **both).max_pressure.values)
+    assert ds.max_pressure.values[2] == pytest.approx(run.max_pressure.values[-1], rel=1e-9)
+    assert ds.max_pressure.values[3:] == pytest.approx(ds.max_pressure.values[:3, ::-1], rel=1e-4)
+    alone = tr.solve(cases[1], FORCES, **both)  # its bits do not depend on the other travels
+    np.testing.assert_array_equal(ds.normal_force.values[1], alone.normal_force.values)
+    with pytest.raises(InputError, match="normal to halfspace"):
+        tr.solve(cases[1], FORCES, **SLIDING)
+
+
+def test_a_travel_beyond_the_end_is_a_row_with_a_reason():
+    cases = [roller(travel=1), roller(motor_force=-60, travel=1)]
+    ds = tr.solve(cases, FORCES, normal="halfspace", **SLIDING)
+    assert ds.converged.values.tolist() == [1, 0] and np.isnan(ds.max_pressure.values[1]).all()
+    assert "friction can no longer transmit" in str(ds.reason.values[1]) and ds.reason.values[0] == ""

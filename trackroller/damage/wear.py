@@ -261,6 +261,16 @@ LIMIT = Limit(
     ),
     parameters=(
         optional("permissible_wear_depth", "h_zul", "mm", "permissible wear depth of roller and guide", 0.0, 1e3),
+        Parameter(
+            "travel",
+            "s",
+            "km",
+            0.0,
+            "travel after which the worn profiles are solved, with normal: halfspace; 0 for new ones",
+            0.0,
+            1e9,
+            role="condition",
+        ),
         optional("required_travel", "", "km", "travel that the wear depth has to allow", 0.0, 1e9),
         Parameter(
             "wear_coefficient_factor",

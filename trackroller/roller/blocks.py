@@ -7,6 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trackroller.parameters import REGIMES
+
 _PLAIN = ("regime", "converged", "bits", "model", "stopped")  # fields with one entry a case
 
 
@@ -42,6 +44,15 @@ class Block:
         values = {name: array[rows] for name, array in self.values.items()}
         plain = {name: getattr(self, name)[rows] for name in _PLAIN}
         return Block(values, **plain, bodies=None if self.bodies is None else self.bodies[rows])
+
+    def fail(self, rows: list[int]) -> None:
+        """Mark the cases `rows` as failed, without results."""
+        if not rows:
+            return
+        self.regime[rows], self.converged[rows] = REGIMES.index("failed"), False
+        for array in self.values.values():
+            if array.dtype.kind == "f":
+                array[rows] = np.nan
 
 
 def join(parts: Sequence[Block]) -> Block:

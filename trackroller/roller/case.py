@@ -86,6 +86,8 @@ class Case(_Numbers):
     heat_transfer_coefficient, cooled_area, ambient_temperature : float or None
         Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the temperature of the air [degC],
         for the limit `heat`.
+    travel : float
+        Travel after which the case is solved with the profiles worn until then, >= 0 [km]; needs normal="halfspace".
     permissible_wear_depth, required_travel, wear_coefficient_factor : float or None
         Wear depth that ends the life [mm], travel that it has to allow [km], and a factor on the wear coefficients [1],
         for the limit `wear`.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -25,7 +26,9 @@ STEEP = validity_bit("steep_friction")
 PROFILES = ("guide_profile", "roller_profile")
 
 
-def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Dataset:
+def with_reasons(
+    ds: xr.Dataset, table: CaseTable, options: Options, lost: Mapping[int, str] | None = None
+) -> xr.Dataset:
     """Return results with a text `reason` where a case failed or missed its tolerance.
 
     Parameters
@@ -36,6 +39,8 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
         The n cases.
     options : Options
         Options of the solution.
+    lost : mapping, optional
+        Known reasons by row.
 
     Returns
     -------
@@ -51,6 +56,9 @@ def with_reasons(ds: xr.Dataset, table: CaseTable, options: Options) -> xr.Datas
     used = np.atleast_1d(ds["contact_model_used"].values) if "contact_model_used" in ds else asked
     reasons = np.full(len(regime), "", dtype=object)
     for i in np.flatnonzero(failed | loose).tolist():
+        if lost and i in lost:
+            reasons[i] = lost[i]
+            continue
         words = "no convergence" if failed[i] else "it rolls, but its solution misses the tolerance"
         if np.isfinite(residual[i]):  # one digit, so that cases of one kind are counted together
             words += f", residual {residual[i]:.0e}"

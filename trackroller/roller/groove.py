@@ -25,7 +25,7 @@ from trackroller.errors import InputError
 from trackroller.parameters import REGIMES
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.geometry import contact_geometry
-from trackroller.roller.options import Options
+from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.mechanics import prepare
 from trackroller.roller.stages.models import bodies, finer_across
@@ -114,7 +114,8 @@ class Wearing:
     """
 
     def __init__(self, table: CaseTable, options: Options) -> None:
-        self.table, self.options = table, options
+        self.table = table
+        self.options = options.changed(contact_model=model_in_use(options, str(table.friction_law[0])))
         self.alpha, self.radius, *_ = contact_geometry(vars(table))
         self.modulus = float(contact_modulus(*bodies(table))[0])
         hourly = np.array([roller_overrollings(table.velocity, self.radius)[0], table.guide_overrollings_per_hour[0]])
@@ -298,9 +299,11 @@ class Wearing:
 def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:
     """Return the depth per km of roller and guide over int p |s| dy, (2,) [mm2/N]; 0 where it is not known."""
     if options.normal != "halfspace":
-        raise InputError("normal", options.normal, "halfspace, because a worn groove is no circle", "Leave it out.")
+        raise InputError(
+            "normal", options.normal, "halfspace, because a worn groove is no circle", "Set normal to halfspace."
+        )
     if getattr(options, "wear_law", "archard") != "archard":
-        raise InputError("wear_law", options.wear_law, "archard while the groove changes", "Leave it out.")
+        raise InputError("wear_law", options.wear_law, "archard while the groove changes", "Leave wear_law out.")
     k = np.array([body.wear_coefficient[0] for body in (table.roller, table.guide)]) * table.wear_coefficient_factor[0]
     if np.isnan(k).all():
         remedy = "Give it: roller_material: {like: NAME, wear_coefficient: NUMBER}."

@@ -33,6 +33,7 @@ from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import finer_across
 from trackroller.roller.stages.scene import Results
 from trackroller.roller.tolerance import meet
+from trackroller.roller.travel import with_travel
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -177,8 +178,11 @@ def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: Materia
 def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset:
     """Solve checked cases with the same options."""
     _check_cases(table, options)
+    table, lost = with_travel(table, options)
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
-    ds = with_reasons(assemble(join(windows), options, single), table, options)
+    block = join(windows)
+    block.fail(list(lost))
+    ds = with_reasons(assemble(block, options, single), table, options, lost)
     _tell_errors(ds, table, options)
     told = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     if told or of_mechanics(options.outputs, options.life_criterion):
