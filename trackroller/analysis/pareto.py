@@ -100,7 +100,7 @@ def pareto(
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
     columns = {name: column(ds, dims, name, results.config.values, design.columns) for name in names}
-    values = {name: found[0] for name, found in columns.items()}
+    values = {name: own[0] for name, own in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
     undefined = np.isnan(np.stack([values[name].astype(float) for name in objectives])).any(axis=0)

@@ -76,11 +76,11 @@ def targets(
     if len(names) > 1:
         hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
     robust = design.method == "inner_outer"
-    levels, found = (_of_points if robust else _of_rows)(hits, design)
+    levels, estimates = (_of_points if robust else _of_rows)(hits, design)
     out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
-    for end, whole in zip(ENDS, found[0], strict=True):
+    for end, whole in zip(ENDS, estimates[0], strict=True):
         out[f"target_probability{end}"] = (("target", "point") if robust else ("target",), whole, {"units": "1"})
-    for end, part in zip(ENDS, zip(*found[1:], strict=True), strict=False):
+    for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
         out[f"level_probability{end}"] = (("target", "target_level"), np.stack(part, axis=1), {"units": "1"})
     return out
 

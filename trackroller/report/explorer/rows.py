@@ -206,12 +206,12 @@ def _first_limits(view: StudyView) -> list[Column]:
         return []
     words = np.array([LIMITS[name].title if name in LIMITS else "not known" for name in view.limits])
     last = len(words) - 1
-    found = {"limiting_mechanism": [LIMITS[name].title if name else words[last] for name in first_limit(view)]}
+    columns = {"limiting_mechanism": [LIMITS[name].title if name else words[last] for name in first_limit(view)]}
     for body in BODIES:
         numbers = np.nan_to_num(view.column(f"limiting_mechanism_{body}", np.nan), nan=last).astype(int)
-        found[f"limiting_mechanism_{body}"] = words[numbers].tolist()
+        columns[f"limiting_mechanism_{body}"] = words[numbers].tolist()
     labels = ("First limit of the pair", *(f"First limit of the {body}" for body in BODIES))
-    pairs = zip(found.items(), labels, strict=True)
+    pairs = zip(columns.items(), labels, strict=True)
     return [coded(name, label, "state", np.array(values, dtype=object)) for (name, values), label in pairs]
 
 

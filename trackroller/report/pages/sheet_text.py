@@ -70,10 +70,10 @@ def print_margins(facts: Facts, probability: float) -> None:
 @lives_in_years
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives, sentences on their causes and warnings."""
-    for told, words in ((block_table(ds), "damage per shift"), (limit_table(ds), "limits")):
-        if told is not None:
-            print_table(told.heads, told.rows, range(1, len(told.heads)), f"{ds.attrs['title']}: {words}")
-            print_text(told.note)
+    for part, words in ((block_table(ds), "damage per shift"), (limit_table(ds), "limits")):
+        if part is not None:
+            print_table(part.heads, part.rows, range(1, len(part.heads)), f"{ds.attrs['title']}: {words}")
+            print_text(part.note)
     for body in BODIES:
         lives = "; ".join(f"{row.words}: {row.value} {row.unit}".rstrip() for row in life_rows(ds, body))
         print_text(lives, body)

@@ -54,8 +54,8 @@ def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
         for p in ds["probability"].values if not bool(at.isnull().all()) else ():
             shifts = float(at.sel(probability=p).min(skipna=False))
             scaled = [(shifts * scale, unit) for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
-            told = ", ".join(f"{_life(value)} {life_unit(unit, value)}" for value, unit in scaled)
-            rows.append(Row(f"until {100 * float(p):g} % have failed", told))
+            lengths = ", ".join(f"{_life(value)} {life_unit(unit, value)}" for value, unit in scaled)
+            rows.append(Row(f"until {100 * float(p):g} % have failed", lengths))
     return rows
 
 

@@ -64,8 +64,8 @@ def _lives(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
     shown = (
         [("worst", "worst condition"), ("median", "median"), ("best", "best condition")] if several else [("worst", "")]
     )
-    for key, told in shown:
-        head = f"{capital(words)}{f', {told}' if told else ''} [{unit}]"
+    for key, place in shown:
+        head = f"{capital(words)}{f', {place}' if place else ''} [{unit}]"
         rows.append([head, *(Life(row[key], row[f"{key}_beyond"]) for row in best)])
     if several:
         rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
@@ -88,7 +88,7 @@ def first_words(row: pd.Series) -> str:
 def _stresses(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
     words = capital(designs.goal[1])
     keys = (("worst", "largest"), ("median", "median")) if designs.conditions else (("worst", ""),)
-    rows = [[f"{words}{f', {told}' if told else ''} [MPa]", *(float(row[key]) for row in best)] for key, told in keys]
+    rows = [[f"{words}{f', {of}' if of else ''} [MPa]", *(float(row[key]) for row in best)] for key, of in keys]
     if designs.conditions:
         rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
     return rows

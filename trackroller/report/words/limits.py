@@ -49,13 +49,13 @@ def limit_sentences(view: StudyView) -> list[Sentence]:
 
 def guesses(view: StudyView) -> Sentence | None:
     """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
-    found: dict[str, list[str]] = {}
+    materials: dict[str, list[str]] = {}
     for note in placeholders(view.data):
         name, _, rest = note.partition(GUESSES)
-        found.setdefault(name, []).append(rest.split("'")[1])
-    placed = [f"{title(name)} ({listing(list(dict.fromkeys(own)))})" for name, own in found.items()]
+        materials.setdefault(name, []).append(rest.split("'")[1])
+    placed = [f"{title(name)} ({listing(list(dict.fromkeys(own)))})" for name, own in materials.items()]
     text = f"Placeholders of materials, guesses without a source, decide {listing(placed)}: measure them."
-    return Sentence("guesses", text, found) if placed else None
+    return Sentence("guesses", text, materials) if placed else None
 
 
 def worn(view: StudyView) -> Sentence | None:
