@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.analysis.judging import judge, optimum_of
+from trackroller.analysis.judging import beyond_data, judge, optimum_of
 from trackroller.analysis.optimum import cheaper, search_designs
 from trackroller.analysis.pareto import pareto_mask
+from trackroller.cli.study import print_best
 from trackroller.errors import InputError
 from trackroller.report.pages.best import best_of, write_best
 from trackroller.study.design.evolution import (
@@ -165,6 +166,25 @@ def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     assert table.heads[1] == "Recommended" and len(table.heads) <= 6
     page = write_best(solved.view, tmp_path / "best.html").read_text()
     assert "Optima of the search" in page and said[0].split(":")[0] in page
+
+
+def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
+    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
+    best = tr.run(grid, progress=False, results=tmp_path).best(1)
+    print_best("grid", tmp_path, tmp_path / "best.html")
+    said = capsys.readouterr().out
+    assert "Best valid designs" in said and f"contact angle {best['contact_angle'].iloc[0]:g}°" in said
+    assert "Best valid designs" in (tmp_path / "best.html").read_text()
+
+
+def test_a_life_beyond_the_data_is_marked(tmp_path):
+    light = changed(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
+    solved = tr.open_study(search_designs(light, tmp_path).folder.root)
+    marked = beyond_data(solved, "pair_life_hours")
+    worst = solved.view.column("pair_life_hours").reshape(-1, 2).argmin(axis=1)
+    rows = solved.view.beyond_data("pair_life_hours").reshape(-1, 2)
+    assert marked.any() and np.array_equal(marked, rows[np.arange(len(rows)), worst])
+    assert "beyond the S-N data" in best_of(solved.view)[0][0]
 
 
 @pytest.mark.parametrize(

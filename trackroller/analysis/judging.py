@@ -190,6 +190,17 @@ def goal_column(results: StudyResults, goal: str) -> Column:
     )
 
 
+def beyond_data(results: StudyResults, goal: str) -> np.ndarray:
+    """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape (n,)."""
+    view, (kind, output) = results.view, judged_by(goal)
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    if "life" not in output or kind == "probability":
+        return np.zeros(shape[0], dtype=bool)
+    lives = column(view.data, view.dims, output, view.base, results.design.columns)[0].astype(float).reshape(shape)
+    counted = view.valid.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
+    return np.asarray((counted & view.beyond_data(output).reshape(shape)).any(axis=1))
+
+
 def pareto_of_search(results: StudyResults) -> xr.Dataset:
     """Return the Pareto set of the gathered designs of a search, see `trackroller.analysis.pareto.pareto`.
 
@@ -210,4 +221,5 @@ def pareto_of_search(results: StudyResults) -> xr.Dataset:
         "kind": "design point",
         "study": results.study.merged(),
     }
-    return front_of(factors, columns, goals, kept, attrs)
+    lives = {f"beyond_{n}": ("row", beyond_data(results, n)[kept].astype(np.int8)) for n in goals if "life" in n}
+    return front_of(factors, columns, goals, kept, attrs).assign(lives)

@@ -159,7 +159,9 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     """Return the line under the title: date, design, size, model, accuracy."""
     design = str(merged.get("design", "grid" if view.grid else "sample")).replace("_", " ")
-    samples = view.study.get("samples") if design.replace(" ", "_") not in (*ARRAYS, "table", "sample") else None
+    samples = (
+        view.study.get("samples") if design.replace(" ", "_") not in (*ARRAYS, "table", "sample", "optimise") else None
+    )
     date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")
     parts = [
         date[:10],

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from trackroller.analysis.judging import choices_of, goal_column, optimum_of
+from trackroller.analysis.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import capital, percent, with_unit
+from trackroller.report.numbers import Life, capital, percent, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
 
 MOST = 5  # designs that stand side by side
@@ -23,8 +23,12 @@ def optima_table(view: StudyView, most: int = MOST) -> Table | None:
     for i, (goal, way) in enumerate(found["goals"].items()):
         _, units, words = goal_column(view.solved, goal)
         head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
-        rows.append([f"{head} {'↑' if way == 'max' else '↓'}", *(float(one["values"][i]) for one in shown)])
-        rows.append([f"{head}, at reference", *(float(one["reference"][i]) for one in shown)])
+        for key, told in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
+            numbers = [float(one[key][i]) for one in shown]
+            if "life" in goal and units == "h":
+                marked = beyond_data(view.solved, goal)
+                numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
+            rows.append([f"{head}{told}", *numbers])
     if any(one["violation"][0] for one in shown):
         rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
     heads = ["", "Recommended", *(f"Optimum {i}" for i in range(2, len(shown) + 1))]

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.judging import choices_of, goal_column, optimum_of
+from trackroller.analysis.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import capital, count, listing, long_name, percent, plain, quantity, setting
+from trackroller.report.numbers import capital, count, lasting, listing, long_name, percent, plain, quantity, setting
 from trackroller.report.words.sentence import Sentence
 
 SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
@@ -34,16 +34,19 @@ def design_words(view: StudyView, number: int) -> str:
     return ", ".join(setting(name, value) for name, value in choices_of(view.solved, number).items())
 
 
-def goal_texts(view: StudyView, values: list[float]) -> list[str]:
-    """Write the goals of a design with their units."""
-    found = optimum_of(view.solved) or {}
-    columns = [goal_column(view.solved, goal) for goal in found["goals"]]
-    return [f"{words} {quantity(v, units)}" for v, (_, units, words) in zip(values, columns, strict=True)]
+def goal_texts(view: StudyView, found: dict[str, Any], one: dict[str, Any]) -> list[str]:
+    """Write the goals of an optimum with their units; a life beyond the S-N data says so."""
+    texts = []
+    for goal, value in zip(found["goals"], one["values"], strict=True):
+        _, units, words = goal_column(view.solved, goal)
+        beyond = bool(beyond_data(view.solved, goal)[one["design"]])
+        texts.append(f"{words} {lasting(value, units, beyond) if units == 'h' else quantity(value, units)}")
+    return texts
 
 
 def _recommended(view: StudyView, found: dict[str, Any]) -> str:
     best = next(one for one in found["optima"] if one["design"] == found["recommended"])
-    text = f"Recommended: {design_words(view, best['design'])}. Its goals: {listing(goal_texts(view, best['values']))}"
+    text = f"Recommended: {design_words(view, best['design'])}. Its goals: {listing(goal_texts(view, found, best))}"
     if found["front"] == 1:
         return f"{text}. It is best in every goal."
     return f"{text}. Of {count(found['front'])} Pareto-optimal designs it is nearest to the best of every goal."
