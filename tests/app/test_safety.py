@@ -19,6 +19,8 @@ ATTACKS = [
     "results/%2e%2e/x",
 ]
 
+LARGE = {"axial_force": {"linspace": [0, 30, 1000]}, "velocity": {"linspace": [1, 9, 1000]}}
+
 
 def message(found):
     return found["errors"][0]["message"]
