@@ -11,6 +11,7 @@ import trackroller as tr
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.first_limits import reached_hours
 from trackroller.analysis.unsure import COEFFICIENT, settled, unbeaten
+from trackroller.report.numbers import factor_label
 from trackroller.report.words.limits import best_whatever, whichever_first
 from trackroller.study.file.load import parse_study
 
@@ -96,3 +97,8 @@ def test_conclusions_that_hold_for_all_combinations_of_the_ranges_are_counted():
     assert best_whatever(solved.view).text.startswith("Whatever the placeholders of materials are")
     fixed = STUDY | {"factors": {n: f for n, f in STUDY["factors"].items() if n != "placeholder_position"}}
     assert whichever_first(tr.run(parse_study(fixed), progress=False).view) is None
+
+
+def test_factors_with_and_without_a_symbol_have_a_label_that_figures_can_draw():
+    assert factor_label("required_travel").startswith("Travel that") and "$" not in factor_label("required_travel")
+    assert "$f_\\mathrm{P}$" in factor_label("placeholder_position")

@@ -14,7 +14,7 @@ GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
 POSITION = Parameter(
     "placeholder_position",
-    "",
+    "f_P",
     "-",
     0.0,
     "place of all placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end",

@@ -241,7 +241,9 @@ def long_name(name: str) -> str:
 
 
 def symbol(text: str) -> str:
-    """Write a symbol such as r_C,TR for a figure, with its index below the line."""
+    """Write a symbol such as r_C,TR for a figure, with its index below the line; an empty text for none."""
+    if not text:
+        return ""
     letter, _, index = text.partition("_")
     letter = f"\\{letter}" if len(letter) > 1 else letter  # alpha, mu
     return f"${letter}_\\mathrm{{{index}}}$" if index else f"${letter}$"
@@ -252,7 +254,7 @@ def factor_label(name: str) -> str:
     if name not in PARAMETERS:
         return capital(plain(name))
     parameter = PARAMETERS[name]
-    return with_unit(f"{capital(parameter.long_name)} {symbol(parameter.symbol)}", parameter.unit)
+    return with_unit(f"{capital(parameter.long_name)} {symbol(parameter.symbol)}".rstrip(), parameter.unit)
 
 
 def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> str:
