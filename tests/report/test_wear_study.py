@@ -41,7 +41,7 @@ def test_sentences_on_wear(study):
     view = study.view
     told = guesses(view)
     assert {name.split(" on ")[0] for name in told.values["wear"]} == {"POM", "PA6", "1.7225-quenched-tempered"}
-    assert all(f"{name}" in told.text for name in ("decide wear (", "POM", "PA6"))  # of both chunks
+    assert all(name in told.text for name in ("decide wear (", "POM", "PA6"))  # of both chunks
     km = study.data.run_in_distance.values
     beyond = worn(view)
     assert beyond.values["count"] == 16 and beyond.values["least"] == pytest.approx(km.min())
