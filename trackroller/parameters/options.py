@@ -9,7 +9,6 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters.contact_models import DECLARED, MEANINGS
 from trackroller.parameters.declared import declared
 
@@ -105,6 +104,8 @@ class Option:
             words = [self._word(word, where) for word in ([value] if isinstance(value, str) else value)]
             return tuple(dict.fromkeys(words)) if self.required else tuple(w for w in self.values if w in words)
         if self.kind in ("accuracy", "number") and isinstance(value, str) and value not in self.values:
+            from trackroller.numerics.numbers import number_or_nan  # noqa: PLC0415 - numpy, which --help does not need
+
             number = number_or_nan(value, "-", where)  # a text such as 10 %
             value = value if math.isnan(number) else number
         if self.kind == "word" or (self.kind == "accuracy" and isinstance(value, str)):
