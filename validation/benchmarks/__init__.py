@@ -9,6 +9,7 @@ from pathlib import Path
 TIMED = (
     "explorer_speed",
     "limits",
+    "live_speed",
     "million",
     "scaling",
     "shortcuts",
