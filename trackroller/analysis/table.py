@@ -148,8 +148,17 @@ class StudyView:
 
         Numbers in rising order, categories in order of appearance.
         """
+        if table is None and name in self._levels:
+            return list(self._levels[name])
         values = (self.table if table is None else table)[name].dropna().unique()
-        return sorted(values.tolist()) if self.numeric(name) else list(values)
+        found = sorted(values.tolist()) if self.numeric(name) else list(values)
+        if table is None:  # a page asks a dozen times for the levels of each factor
+            self._levels[name] = found
+        return list(found)
+
+    @cached_property
+    def _levels(self) -> dict[str, list[Any]]:
+        return {}
 
     def numeric(self, name: str) -> bool:
         """Say whether the factor is a number."""

@@ -78,9 +78,10 @@ def factor_table(view: StudyView) -> Table | None:
     rows = []
     for name in (*view.factors, *follows):
         levels, parameter = view.levels(name), PARAMETERS.get(name)
-        values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
         if view.numeric(name) and (name in follows or not view.grid) and len(levels) > 12:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
+        else:
+            values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
         symbol, unit = (parameter.symbol, unit_text(parameter.unit)) if parameter else ("", "")
         rows.append(
             [f"{capital(long_name(name))} {symbol}", unit, values, specs.get(name) or "listed values", len(levels)]
