@@ -105,7 +105,7 @@ def test_volume_is_the_friction_energy_step_by_step():
     expected = 1e-5 / 0.2 * 0.5 * (spent[1:] + spent[:-1]) * 1e3 * np.diff(ds.travel.values)[:, None]
     got = np.diff(volume, axis=0)  # once a revolution, so that the volume of the travel is that of the circumference
     assert got == pytest.approx(expected, rel=0.05)
-    assert got.sum() == pytest.approx(expected.sum(), rel=0.02)
+    assert got.sum() == pytest.approx(expected.sum(), rel=0.03)
 
 
 def test_the_first_rate_is_that_of_the_limit_wear():

@@ -33,7 +33,7 @@ from trackroller.roller.stages.scene import Results, surface_tractions
 from trackroller.roller.table import CaseTable
 
 REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
-TOLERANCE = 0.01  # largest error of the depth in a step over the elastic approach of the new bodies
+TOLERANCE = 0.02  # largest error of the depth in a step over the elastic approach of the new bodies
 FIRST = 0.05  # depth of the first step over the elastic approach of the new bodies
 LEAST = 1e-3  # least step over the first step
 GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
