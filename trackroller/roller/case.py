@@ -86,11 +86,12 @@ class Case(_Numbers):
     heat_transfer_coefficient, cooled_area, ambient_temperature : float or None
         Heat transfer of the roller [W/(m2 K)], the surface that loses heat [mm2] and the temperature of the air [degC],
         for the limit `heat`.
+    permissible_wear_depth : float or None
+        Wear depth that ends the life [mm], for the limit `wear`.
     travel : float
         Travel after which the case is solved with the profiles worn until then, >= 0 [km]; needs normal="halfspace".
-    permissible_wear_depth, required_travel, wear_coefficient_factor : float or None
-        Wear depth that ends the life [mm], travel that it has to allow [km], and a factor on the wear coefficients [1],
-        for the limit `wear`.
+    required_travel, wear_coefficient_factor : float or None
+        Travel that the limit `wear` has to allow [km], and a factor on the wear coefficients [1].
     placeholder_position : float
         Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end [1].
     bearing, catalogue, wear_table : mapping or None
