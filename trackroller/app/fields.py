@@ -78,7 +78,7 @@ def slider(parameter: Parameter) -> tuple[float, float] | None:
     -------
     tuple of float or None
         Its usual values if its bounds are close together. Otherwise a quarter of the example's value and four times
-        this value, or both signs of the latter for a number that may have either sign. None without an example.
+        this value, or both signs of the latter for a number that may have either sign. None without an example other than 0.
 
     Examples
     --------
@@ -86,7 +86,7 @@ def slider(parameter: Parameter) -> tuple[float, float] | None:
     ((5.0, 85.0), (-120.0, 120.0))
     """
     example = parameter.default
-    if math.isnan(example):
+    if math.isnan(example) or example == 0.0:
         return None
     if parameter.upper - parameter.lower <= WIDEST:
         return USUAL.get(parameter.name, (parameter.lower, parameter.upper))
