@@ -72,8 +72,7 @@ def solve(
 ) -> xr.Dataset:
     """Compute contact forces, tractions, stresses and life of track rollers.
 
-    An option that is not given takes the value of the study file that a design comes from, or otherwise its default,
-    which stands first in its list.
+    An option that is not given takes the value of the study file of a design, otherwise the first value of its list.
 
     Parameters
     ----------
