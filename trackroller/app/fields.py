@@ -78,7 +78,8 @@ def slider(parameter: Parameter) -> tuple[float, float] | None:
     -------
     tuple of float or None
         Its usual values if its bounds are close together. Otherwise a quarter of the example's value and four times
-        this value, or both signs of the latter for a number that may have either sign. None without an example other than 0.
+        this value, or both signs of the latter for a number that may have either sign. None without an
+        example other than 0.
 
     Examples
     --------
