@@ -130,3 +130,15 @@ def test_a_placeholder_that_contradicts_a_given_value_is_left_out():
     assert (
         np.isnan(ds.shakedown_utilisation.sel(body="roller")).all() and "no yield_strength" in ds.attrs["limits_notes"]
     )
+
+
+def test_places_between_the_nodes_are_exact_for_cubics():
+    y = np.linspace(-1.0, 1.0, 9)
+    twice = np.linspace(-1.0, 1.0, 17)
+
+    def cubic(t):
+        return 1.0 - 2.0 * t + 3.0 * t**2 - 4.0 * t**3
+
+    found = m._twice(np.stack([cubic(y), y]))
+    assert found[0, 2:-2] == pytest.approx(cubic(twice)[2:-2], rel=1e-12)
+    assert found[1] == pytest.approx(twice, abs=1e-12) and found[0, ::2].tolist() == cubic(y).tolist()

@@ -5,7 +5,7 @@ import pytest
 from scipy.optimize import minimize
 
 import trackroller as tr
-from trackroller.damage.ball import GAP, ball_of_plane, smallest_ball
+from trackroller.damage.ball import GAP, ball_of_plane, shakedown_shears, smallest_ball
 from trackroller.damage.histories import DEPTHS, Tractions, deep_planes, planes
 from trackroller.damage.shakedown import shears
 from trackroller.halfspace.stress import stress_from_tractions, stress_on_grid, von_mises
@@ -60,6 +60,16 @@ def test_parabolas_find_the_summits_between_the_places():
     stress = np.zeros((6, 12, 9))
     stress[4] = np.exp(-0.01 * (x[None, :] ** 2 + y[:, None] ** 2))
     assert np.max(stress[4] ** 2) < 0.997 and ball_of_plane(stress) == pytest.approx(1.0, abs=3e-4)
+
+
+def test_the_depth_of_the_largest_shear_may_lie_between_the_planes():
+    """A parabola over the logarithm of the depth is met exactly, a rise to the last plane ends there."""
+    log_depth = np.log(DEPTHS)
+    shear = np.stack([3.0 - 0.4 * (log_depth - np.log(0.43)) ** 2, 1.0 + DEPTHS])
+    stress = np.zeros((2, len(DEPTHS), 6, 2, 2))
+    stress[:, :, 4] = shear[:, :, None, None]
+    assert shakedown_shears(stress, log_depth) == pytest.approx([3.0, 1.0 + DEPTHS[-1]], rel=1e-12)
+    assert shear[0].max() < 2.995
 
 
 def test_smallest_ball_is_the_minimax():
