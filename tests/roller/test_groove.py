@@ -116,9 +116,9 @@ def test_the_first_rate_is_that_of_the_limit_wear():
     np.testing.assert_allclose(grown.values, new.wear_depth_per_km.transpose("contact", "body").values, rtol=0.05)
 
 
+@pytest.mark.slow
 def test_the_roller_becomes_the_circle_of_the_guide():
     """With a large depth the gap left is elastic: depth + gap of the unworn circles = closing over the patch."""
-    w, at = None, None
     w = Wearing(to_table(roller(motor_force=-30)), Options(normal="halfspace", outputs=("forces",), **SLIDING))
     for state, *_ in w.march():
         at = state
