@@ -14,6 +14,8 @@ from trackroller.parameters import CONTACT_MODELS, OPTIONS
 # Sums in another order (threads, processors, releases of NumPy and Numba) differ by 1e-15, and the iterations of the
 # solver pass on up to 1e5 times that. A change of a formula, a node or a draw differs by far more than 1e-9.
 TOLERANCE = 1e-9
+RESIDUAL = 1e-8  # a residual is what rounding leaves of a balance, which differs with the processor
+SECTIONS = 2e-4  # sections pass through the peak, whose place depends on rounding in the search
 SINGLE = 1e-5  # stresses on planes below a patch are sums in single precision
 # Sentences may be rewritten without a change of any number.
 SENTENCES = ("note", "treatment", "needs", "reason")
@@ -35,7 +37,10 @@ def assert_same(name: str, now: dict[str, np.ndarray], before: dict[str, np.ndar
         else:
             scale = np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
             tolerance = SINGLE if name.startswith("limits") else TOLERANCE
-            np.testing.assert_allclose(now[key], values, rtol=tolerance, atol=1e-12 * scale, err_msg=key)
+            rounding = RESIDUAL if key.endswith("residual") else max(1e-12 * scale, 1e-15)
+            if key.endswith(("_xz", "_yz")):
+                rounding = SECTIONS * scale
+            np.testing.assert_allclose(now[key], values, rtol=tolerance, atol=rounding, err_msg=key)
 
 
 @pytest.mark.parametrize("name", names())
