@@ -36,36 +36,41 @@ class Labels:
     """
 
     def __init__(self, lines: list[Line]) -> None:
-        dense = [np.linspace(start, end, 2 + int(np.hypot(*(end - start)))) for start, end in lines]
-        self.points = np.concatenate(dense)
+        starts, ends = np.array(lines, dtype=float).transpose(1, 0, 2)
+        steps = np.hypot(*(ends - starts).T).astype(int) + 1
+        share = np.concatenate([np.arange(n + 1) / n for n in steps.tolist()])[:, None]
+        self.points = np.repeat(starts, steps + 1, axis=0) * (1 - share) + np.repeat(ends, steps + 1, axis=0) * share
         self.boxes: list[tuple[np.ndarray, np.ndarray]] = []
 
     def place(self, text: str, index: str, tip: np.ndarray, direction: np.ndarray) -> dict[str, Any]:
         """Return a text with its index and its place near `tip`, at best in a direction, both (2,) [px]."""
         half = 0.5 * np.array([LETTER * (len(text) + 0.8 * len(index)), LINE]) + CLEAR
-        angle = math.atan2(direction[1], direction[0])
+        angles = math.atan2(direction[1], direction[0]) + TURNS
+        toward = np.stack([np.cos(angles), np.sin(angles)], axis=1)
         best, fewest = tip, math.inf
         for step in STEPS:
-            for turn in TURNS:
-                toward = np.array([math.cos(angle + turn), math.sin(angle + turn)])
-                middle = tip + step * toward + half * toward
-                covered = self._covered(middle, half)
-                if covered < fewest:
-                    best, fewest = middle, covered
+            middles = tip + (step + half) * toward
+            covered = self._covered(middles, half)
+            least = int(np.argmin(covered))
+            if covered[least] < fewest:
+                best, fewest = middles[least], covered[least]
             if not fewest:
                 break
         self.boxes.append((best, half))
         return {"at": best + np.array([0.0, DOWN]), "text": text, "index": index}
 
-    def _covered(self, middle: np.ndarray, half: np.ndarray) -> int:
-        """Count the points of lines and the texts that a box covers; a box outside the drawing covers a thousand."""
-        (x, y), (dx, dy), (width, height) = middle.tolist(), half.tolist(), SIZE.tolist()
-        outside = x < dx or y < dy or x + dx > width or y + dy > height
-        texts = sum(
-            bool(abs(x - other[0]) < dx + own[0] and abs(y - other[1]) < dy + own[1]) for other, own in self.boxes
-        )
-        points = (np.abs(self.points[:, 0] - x) < dx) & (np.abs(self.points[:, 1] - y) < dy)
-        return int(points.sum()) + 100 * texts + 1000 * outside
+    def _covered(self, middles: np.ndarray, half: np.ndarray) -> np.ndarray:
+        """Count the points of lines and the texts that boxes cover, (n,); a box outside the drawing covers a thousand.
+
+        Parameters
+        ----------
+        middles : middles of the boxes, (n, 2) [px]
+        half : half of their width and height, (2,) [px]
+        """
+        outside = ((middles < half) | (middles + half > SIZE)).any(axis=1)
+        texts = sum(((np.abs(middles - at) < half + own).all(axis=1) for at, own in self.boxes), np.zeros(len(middles)))
+        near = [np.abs(self.points[:, i] - middles[:, i, None]) < half[i] for i in (0, 1)]
+        return np.count_nonzero(near[0] & near[1], axis=1) + 100 * texts + 1000 * outside
 
 
 def drawing(ds: xr.Dataset) -> str:
@@ -174,6 +179,7 @@ def _forces(
     """Return the forces on the roller in the section: place [mm], index, size and vector [N]."""
     forces, axle = [], np.array([0.0, height])
     radial, axial = values["radial_force"], values["axial_force"]
+    ds = ds[["normal_force", "lateral_force"]]
     for number, sign in ((1, 1.0), (2, -1.0)):
         own = ds.sel(contact=number)
         normal = np.array([sign * math.sin(alpha), math.cos(alpha)])

@@ -124,10 +124,11 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
     ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
-    scalars = ds[[name for name in ds if ds.variables[name].ndim <= 2]]  # without the fields over the patches
-    if "peak_stress" in scalars:
-        scalars = scalars.assign(at_surface=at_surface(scalars))
-    contacts = [_contact(scalars, number, materials) for number in ds["contact"].values.tolist()]
+    needed = {*shown("contact"), "peak_stress", "peak_z"}
+    stated = ds[[name for name in ds if name in needed]]  # a selection takes its time by variable
+    if "peak_stress" in stated:
+        stated = stated.assign(at_surface=at_surface(stated))
+    contacts = [_contact(stated, number, materials) for number in ds["contact"].values.tolist()]
     lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
     said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
@@ -266,7 +267,7 @@ def quantity_rows(ds: xr.Dataset, names: Iterable[str]) -> list[Row]:
     """Return the finite ones of some results, each with its symbol and unit."""
     return [
         Row(_words(name), number(value if abs(value) > ROUNDING else 0.0), unit_text(units).replace("–", ""))
-        for name, value, units in ((n, float(ds[n]), VARIABLES[n].units) for n in names if n in ds)
+        for name, value, units in ((n, float(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds)
         if np.isfinite(value)
     ]
 

@@ -43,7 +43,7 @@ def _computed(ds: xr.Dataset) -> list[str]:
     """Return the limits that have a utilisation or a life; those of the output `life` without the verdict too."""
     if "utilisation" not in ds:
         return ["fatigue"] if "life_cycles" in ds else []
-    known = ds["utilisation"].notnull() | ds["life_hours_by_limit"].notnull()
+    known = ds.variables["utilisation"].notnull() | ds.variables["life_hours_by_limit"].notnull()
     return ds["limit"].values[known.any([dim for dim in known.dims if dim != "limit"]).values].tolist()
 
 
