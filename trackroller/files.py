@@ -19,8 +19,11 @@ from pathlib import Path
 from types import FrameType
 from typing import IO, Any
 
+import portalocker
+
 from trackroller.errors import InputError, WorkError
 
+LOCK = {True: portalocker.LockFlags.SHARED, False: portalocker.LockFlags.EXCLUSIVE}
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
 Reads = dict[Path, tuple[str, str]]  # kind and SHA-256 of each file that was read
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
@@ -301,3 +304,17 @@ def sha256(path: Path) -> str:
 def cores() -> int:
     """Return the number of processors that this process may use; of the machine where the system does not say."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
+    """Take or convert the lock of an open file, unless another process holds a conflicting lock.
+
+    Return True on a file system without locks, where two processes may solve the same case and no result is lost.
+    """
+    try:
+        portalocker.lock(stream, LOCK[shared] | portalocker.LockFlags.NON_BLOCKING)
+    except portalocker.AlreadyLocked:
+        return False
+    except (portalocker.LockException, OSError):
+        return True
+    return True

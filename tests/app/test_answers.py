@@ -55,7 +55,7 @@ def test_the_tables_hold_the_numbers_of_solve(shown):
     np.testing.assert_allclose(
         lines["peak stress of the roller (von Mises)"], ds.peak_stress.sel(body="roller"), rtol=1e-2
     )
-    assert shown["regime"] == "rolling" and shown["drawing"].lstrip().startswith("<svg")
+    assert "Rolls." in shown["verdict"] and shown["drawing"].lstrip().startswith("<svg")
 
 
 def test_the_maps_carry_the_load(shown):

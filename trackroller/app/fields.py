@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from trackroller.damage import LIMITS
 from trackroller.materials import load_database
 from trackroller.materials.tables import material_rows
 from trackroller.parameters import (
@@ -18,7 +17,6 @@ from trackroller.parameters import (
 )
 from trackroller.report.numbers import capital, unit_text
 from trackroller.roller.doubts import USUAL
-from trackroller.study.design.factors import KINDS
 from trackroller.study.design.sampling import METHODS
 
 SPAN = 4.0  # a slider goes from a quarter of the example's value to four times this value
@@ -42,8 +40,6 @@ def all_fields() -> dict[str, Any]:
         "outputs": dict(OPTIONS["outputs"].values),
         "accuracies": dict(OPTIONS["accuracy"].values),
         "designs": list(METHODS),
-        "kinds": list(KINDS),
-        "limits": [limit.title for limit in LIMITS.values() if limit.verdict is not None],
     }
 
 

@@ -15,19 +15,16 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
-from trackroller.materials import load_database
-from trackroller.parameters import OPTIONS, PARAMETERS, REGIME_LABELS
+from trackroller.parameters import PARAMETERS
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import render
 from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
-from trackroller.report.words.flags import flags_of
 from trackroller.roller.case import Case
-from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.duty import with_duty
-from trackroller.roller.limits import Limits, limits
-from trackroller.roller.record import is_default, plain_inputs, solve_command
+from trackroller.roller.limits import Limits
+from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.settings import checked_case
 from trackroller.roller.solver import solve
 from trackroller.study.outputs import outputs
@@ -75,27 +72,22 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
     InputError
         If a value is wrong.
     """
-    text, groups = json.dumps(values, sort_keys=True), (*LIVE, *_JUDGED, "limits")
-    ds = _solved(text, accuracy, (*groups, "subsurface") if inside else groups)
-    case, options, _ = read(values)
-    model = str(options.get("contact_model", OPTIONS["contact_model"].default))
-    facts = _facts(ds, limits(case, model) if complete else _UNKNOWN)
+    groups = (*LIVE, *_JUDGED, "limits", *(("subsurface",) if inside else ()))
+    ds = _solved(json.dumps(values, sort_keys=True), accuracy, groups)
     return {
-        **facts,
+        **_facts(ds, None if complete else _UNKNOWN),
         "accuracy": accuracy,
         "complete": complete,
-        "regime": REGIME_LABELS[int(ds["regime"])],
         "drawing": drawing(ds),
         "patches": [_patch(patch) for patch in patches_of(ds, "pressure", "shear_lateral", "shear_rolling")],
         "sections": _sections(ds) if inside else [],
-        "doubts": doubts_of_case(case, load_database()),
     }
 
 
 @lives_in_years
-def _facts(ds: xr.Dataset, found: Limits) -> dict[str, Any]:
-    facts: Facts = collect(ds, found)
-    told = ("verdict", "reason", "first", "not_checked", "guesses", "command", "options")
+def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
+    facts: Facts = collect(ds, ranges)
+    told = ("verdict", "reason", "not_checked", "guesses", "doubts")
     rows = {name: [asdict(row) for row in getattr(facts, name)] for name in ("inputs", "whole", "lives")}
     margins = [
         asdict(m) | {"share": m.share, "factor": m.factor, "life": m.life, "when": m.when} for m in facts.margins
@@ -105,7 +97,7 @@ def _facts(ds: xr.Dataset, found: Limits) -> dict[str, Any]:
         **rows,
         "lines": side_by_side(facts.contacts) if any(c.carries for c in facts.contacts) else [],
         "margins": margins,
-        "flags": [{"sentence": flag.sentence, "remedy": flag.remedy} for flag in flags_of(ds)],
+        "flags": [{"sentence": flag.sentence, "remedy": flag.remedy} for flag in facts.flags],
     }
 
 
@@ -206,7 +198,7 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
 def texts(values: Values) -> dict[str, str]:
     """Return the case as a case file (YAML), as a command and as lines of Python."""
     case, options, duty = read(values)
-    given = {n: v for n, v in plain_inputs(case).items() if not is_default(n, v)}
+    given = given_inputs(case)
     words = {name: list(value) if isinstance(value, tuple) else value for name, value in options.items()}
     also = {} if duty is None else {"duty": duty}
     fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())

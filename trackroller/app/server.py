@@ -8,14 +8,16 @@ no other host.
 from __future__ import annotations
 
 import asyncio
+import functools
 import hmac
 import json
 import math
 import secrets
+import threading
 import traceback
 from collections.abc import Callable, Mapping
 from http import HTTPStatus
-from importlib import resources
+from importlib import import_module, resources
 from typing import Any
 
 import pydantic
@@ -23,10 +25,7 @@ import tornado.httpserver
 import tornado.netutil
 import tornado.web
 
-from trackroller.app import studies
-from trackroller.app.fields import all_fields
 from trackroller.app.lane import Lane
-from trackroller.app.picture import curve, picture, sheet, texts
 from trackroller.errors import InputError, WorkError
 from trackroller.files import MAX_BYTES
 
@@ -54,27 +53,23 @@ class Refused(Exception):
         self.status = status
 
 
-Answer = Callable[..., Any]
-
-
-def _answers(*functions: Answer) -> dict[str, Answer]:
-    """Return functions by their names; they refuse arguments that they do not take, or of another type."""
-    return {f.__name__: pydantic.validate_call(config=pydantic.ConfigDict(strict=True))(f) for f in functions}
-
-
-SOLVING = _answers(picture, curve, texts)  # the thread of the solver answers
-FILES = _answers(  # the thread of the files answers
-    all_fields,
-    studies.checked,
-    studies.listing,
-    studies.text_of,
-    studies.start,
-    studies.resume,
-    studies.pause,
-    studies.delete,
-    studies.compare,
-)
+SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet"), "picture")  # the thread of the solver answers
+STUDIES = ("checked", "listing", "text_of", "start", "resume", "pause", "delete", "compare", "page_of")
+PAGES = ("sheet", "page_of")  # have addresses of their own
+FILES = {"all_fields": "fields"} | dict.fromkeys(STUDIES, "studies")  # the thread of the files answers
+_loading = threading.Lock()
 NEWEST = ("picture", "curve", "checked", "listing")  # an older request of the same page is not worth an answer
+
+
+@functools.cache
+def answer(name: str) -> Callable[..., Any]:
+    """Return the function that answers; it refuses arguments that it does not take, or of another type.
+
+    Its module is imported when it is first needed: the page loads while the solver does.
+    """
+    with _loading:  # two threads that import modules of one circle see them unfinished
+        module = import_module(f"trackroller.app.{(SOLVING | FILES)[name]}")
+    return pydantic.validate_call(config=pydantic.ConfigDict(strict=True))(getattr(module, name))
 
 
 def plain(value: Any) -> Any:
@@ -158,18 +153,17 @@ class _Answer(_Handler):
     """Answers to the script of the page: JSON in, JSON out."""
 
     async def post(self, token: str, name: str) -> None:
-        solving = name in SOLVING
-        if not solving and name not in FILES:
+        if name not in SOLVING | FILES or name in PAGES:
             raise Refused(404, f"The page cannot ask for '{name}'.")
         if self.request.headers.get("Content-Type", "").partition(";")[0] != "application/json":
             raise Refused(415, "The request is not of the type application/json.")
         if len(self.request.body) > LARGEST:
             raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
         body = self._body()
-        answer, lane = (SOLVING[name], self.server.solver) if solving else (FILES[name], self.server.files)
+        lane = self.server.solver if name in SOLVING else self.server.files
         page = str(body.pop("page", "")) if name in NEWEST else secrets.token_hex(8)
         body.pop("page", None)
-        found = await asyncio.wrap_future(lane.submit((name, page), lambda: answer(**body)))
+        found = await asyncio.wrap_future(lane.submit((name, page), lambda: answer(name)(**body)))
         self.set_header("Content-Type", "application/json")
         self.finish(json.dumps(plain(found), allow_nan=False).replace("<", "\\u003c"))
 
@@ -191,7 +185,9 @@ class _Sheet(_Handler):
             values = json.loads(self.get_query_argument("case", "{}"))
         except (ValueError, RecursionError):
             raise Refused(400, "The address holds no case.") from None
-        page = await asyncio.wrap_future(self.server.solver.submit(secrets.token_hex(8), lambda: sheet(values)))
+        page = await asyncio.wrap_future(
+            self.server.solver.submit(secrets.token_hex(8), lambda: answer("sheet")(values))
+        )
         self.set_header("Content-Security-Policy", SHEET)
         self.finish(page)
 
@@ -201,7 +197,7 @@ class _Result(_Handler):
 
     async def get(self, token: str, name: str, page: str) -> None:
         lane = self.server.files
-        path = await asyncio.wrap_future(lane.submit(secrets.token_hex(8), lambda: studies.page_of(name, page)))
+        path = await asyncio.wrap_future(lane.submit(secrets.token_hex(8), lambda: answer("page_of")(name, page)))
         self.set_header("Content-Security-Policy", REPORT)
         self.finish(path.read_bytes())
 
@@ -252,4 +248,4 @@ class Server:
 
     def warm_up(self) -> None:
         """Load the compiled solver before the first request."""
-        self.solver.submit("first", lambda: picture({}))
+        self.solver.submit("first", lambda: answer("all_fields")() and answer("picture")({}))

@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.study.store.folder import try_lock
+from trackroller.files import try_lock
 
 PLACE = Path(".trackroller")  # in the folder that the page works in
 USUAL_PORT = 8750
@@ -140,11 +140,10 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
     >>> page.close()
     """
     from trackroller.roller.case import Case  # the command line starts faster without the solver
-    from trackroller.roller.record import is_default, plain_inputs
+    from trackroller.roller.record import given_inputs
 
     checked = case if isinstance(case, Case) else Case.from_dict(case if isinstance(case, Mapping) else {})
-    given = {name: value for name, value in plain_inputs(checked).items() if not is_default(name, value)}
-    words = {n: json.dumps(v) if isinstance(v, (Mapping, list)) else str(v) for n, v in given.items()}
+    words = {n: json.dumps(v) if isinstance(v, (Mapping, list)) else str(v) for n, v in given_inputs(checked).items()}
     command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), "--no-browser"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
     atexit.register(process.terminate)

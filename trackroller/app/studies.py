@@ -114,27 +114,19 @@ def _check_size(cases: float) -> None:
 
 def start(text: str) -> dict[str, Any]:
     """Write a study file and run the study in a process of its own; a study that was paused goes on."""
-    name = _study(text).name
-    folder = folder_of(name)
-    if _works(name, folder):
-        raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
-    write_text(TEXTS / f"{name}.yaml", text)
-    return _spawn(name, folder)
+    return _spawn(_study(text).name, text)
 
 
 def resume(name: str) -> dict[str, Any]:
     """Let a paused study go on."""
+    return _spawn(name, text_of(name)["text"])
+
+
+def _spawn(name: str, text: str) -> dict[str, Any]:
     folder = folder_of(name)
     if _works(name, folder):
-        raise WorkError(f"The study '{name}' runs already.")
-    if not (TEXTS / f"{name}.yaml").is_file():
-        if not folder.study_file.is_file():
-            raise InputError("name", name, "a study of this folder", "Start it in the tab 'Study'.")
-        write_text(TEXTS / f"{name}.yaml", folder.study_file.read_text(encoding="utf-8"))
-    return _spawn(name, folder)
-
-
-def _spawn(name: str, folder: StudyFolder) -> dict[str, Any]:
+        raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
+    write_text(TEXTS / f"{name}.yaml", text)
     folder.root.mkdir(parents=True, exist_ok=True)
     for file in (PROGRESS, PAUSE):
         (folder.root / file).unlink(missing_ok=True)

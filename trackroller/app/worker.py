@@ -18,8 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import interrupts_wait_for_files, write_text
-from trackroller.study.store.folder import try_lock
+from trackroller.files import interrupts_wait_for_files, try_lock, write_text
 
 LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
 TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress

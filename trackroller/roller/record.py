@@ -73,6 +73,11 @@ def plain_inputs(case: Case) -> dict[str, Any]:
     return {key: _plain(value) for key, value in case.as_dict().items()}
 
 
+def given_inputs(case: Case) -> dict[str, Any]:
+    """Return the inputs of a case that differ from the example, as values that JSON can hold."""
+    return {name: value for name, value in plain_inputs(case).items() if not is_default(name, value)}
+
+
 def material_values(case: Case, database: MaterialDatabase) -> dict[str, dict[str, Any]]:
     """Return the values of both materials of a case with their sources, by `roller_material` and `guide_material`."""
     roller, guide = case.roller_material, case.guide_material

@@ -12,17 +12,14 @@ from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
-import portalocker
-
 from trackroller.errors import InputError
-from trackroller.files import disk_error, write_text
+from trackroller.files import disk_error, try_lock, write_text
 from trackroller.study.store.seal import is_sealed, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
 STORE_FORMAT = 1  # raise it when a file of the store gets another meaning; other formats are refused by name
-LOCK = {True: portalocker.LockFlags.SHARED, False: portalocker.LockFlags.EXCLUSIVE}
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
 
 
@@ -131,21 +128,6 @@ class StudyFolder:
 
 def _digest(record: Mapping[str, Any]) -> str:
     return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
-
-
-def try_lock(stream: IO[bytes], shared: bool = False) -> bool:
-    """Take or convert the lock of an open file, unless another process holds a conflicting lock.
-
-    Return True on a file system without locks: files are replaced whole there, so no result can be lost, but
-    two processes may solve the same case.
-    """
-    try:
-        portalocker.lock(stream, LOCK[shared] | portalocker.LockFlags.NON_BLOCKING)
-    except portalocker.AlreadyLocked:
-        return False
-    except (portalocker.LockException, OSError):
-        return True
-    return True
 
 
 def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = None) -> None:

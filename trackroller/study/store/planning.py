@@ -12,8 +12,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError, WorkError
+from trackroller.files import try_lock
 from trackroller.study.design.growth import with_history
-from trackroller.study.store.folder import StudyFolder, Tell, sweep, try_lock, wait_for_lock
+from trackroller.study.store.folder import StudyFolder, Tell, sweep, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder, unused_cases
