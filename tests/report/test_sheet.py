@@ -359,7 +359,8 @@ def test_no_label_of_the_drawing_lies_on_an_arrow_or_another_label(change, shape
     for i, (middle, half) in enumerate(boxes):
         assert all(np.any(np.abs(middle - other) >= half + own) for other, own in boxes[i + 1 :])
     texts = [label["text"] for label, _ in content["labels"]]
-    assert "A 21.8 mm" in texts or (shape.get("axis_distance") and "A 90 mm" in texts)
+    assert "A 21.75 mm" in texts or (shape.get("axis_distance") and "A 90 mm" in texts)
+    assert {"N1", "N2", "rad", "ax"} - {label["index"] for label, _ in content["labels"]} <= {"ax"}
     assert "r 6 mm" in texts and ("r 7 mm" in texts or "straight profile" in texts)
 
 

@@ -143,12 +143,12 @@ def _dimensions(
     """Return line [mm], text, index and direction of the label of the axis distance and of both profile radii."""
     side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
     radius = values["roller_profile_radius"]
-    profile = ("straight profile", "") if math.isinf(radius) else (f"r {rounded(abs(radius))} mm", "C,TR")
+    profile = ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):g} mm", "C,TR")
     rim = r_guide * np.array([-0.8, -0.6])
     return [
-        (np.array([(side, height / 2), (side, height)]), f"A {rounded(values['axis_distance'])} mm", "T", (1.0, 0.0)),
+        (np.array([(side, height / 2), (side, height)]), f"A {values['axis_distance']:g} mm", "T", (1.0, 0.0)),
         (np.array([(side, height / 2), (side, 0.0)]), "", "", (1.0, 0.0)),
-        (np.stack([1.25 * rim, rim]), f"r {rounded(r_guide)} mm", "C,G", (-1.0, 1.0)),
+        (np.stack([1.25 * rim, rim]), f"r {r_guide:g} mm", "C,G", (-1.0, 1.0)),
         (np.stack([groove + r_guide * np.array([0.9, -0.55]), groove]), *profile, (1.0, 1.0)),
     ]
 
@@ -186,8 +186,8 @@ def _forces(
         along = np.array([math.cos(alpha), -sign * math.sin(alpha)])
         load, lateral = float(own["normal_force"]), float(own["lateral_force"])
         if math.isfinite(load):
-            forces.append((values["guide_profile_radius"] * normal, "N", load, load * normal))
+            forces.append((values["guide_profile_radius"] * normal, f"N{number}", load, load * normal))
         if math.isfinite(lateral) and abs(lateral) > 0.02 * abs(radial):
-            forces.append((values["guide_profile_radius"] * normal, "T", lateral, lateral * along))
+            forces.append((values["guide_profile_radius"] * normal, f"T{number}", lateral, lateral * along))
     forces.append((axle, "rad", radial, np.array([0.0, radial])))
     return forces + ([(axle, "ax", axial, np.array([axial, 0.0]))] if axial else [])
