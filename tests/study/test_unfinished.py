@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import warnings
 from pathlib import Path
@@ -11,6 +12,7 @@ import pytest
 from test_edits import command
 
 import trackroller as tr
+from trackroller.report.words.in_short import in_short
 from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.run import run_study
@@ -156,3 +158,12 @@ def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monke
     assert "0 of them solved" in out and said in out and "motor_force became a factor" in out
     run_study(load_study("grown.yaml"), tell=lines.append)
     assert said in lines[0], "before the first chunk"
+
+
+def test_an_unfinished_study_asks_for_no_more_samples_than_its_file(tmp_path):
+    basis = {"name": "part", "design": "lhs", "samples": 100, "contact_model": "sliding", "accuracy": "preview"}
+    solved = tr.run(basis | {"outputs": ["forces", "life"], "factors": NUMBERS}, progress=False, results=tmp_path)
+    whole = solved.view.analysed(solved.indices())
+    part = dataclasses.replace(whole, attrs={**whole.attrs, "missing_cases": 900})
+    assert "Enough samples?" in dict(in_short(whole, []))
+    assert "Enough samples?" not in dict(in_short(part, []))

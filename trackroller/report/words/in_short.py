@@ -35,6 +35,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     models : sentences of the comparison of contact models, if the study has one
     """
     sens = view.analysis
+    complete = sens if "missing_cases" not in view.attrs else None  # the study asks for more samples than are solved
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         # first, so that the first screen answers what to build
@@ -47,7 +48,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
             "How sure",
             [friction_guess(view), guesses(view), worn(view), *known_errors(view), *accuracy(view), *compared],
         ),
-        ("Enough samples?", [samples(sens, int(view.study.get("samples", 0))) if sens is not None else None]),
+        ("Enough samples?", [samples(complete, int(view.study.get("samples", 0))) if complete is not None else None]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
 
