@@ -177,6 +177,20 @@ def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
     assert "Best valid designs" in (tmp_path / "best.html").read_text()
 
 
+@pytest.mark.parametrize(
+    ("keys", "says"),
+    [
+        ({"base": {"motor_force": 0, "roller_material": "POM", "radial_force": -300}}, "of them stay inside the model"),
+        ({"outputs": ["forces"]}, "Add life or peak_stress to its outputs"),
+    ],
+)
+def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, says):
+    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
+    tr.run(grid | keys, progress=False, results=tmp_path)
+    print_best("grid", tmp_path, None)
+    assert says in " ".join(capsys.readouterr().out.split())
+
+
 def test_a_life_beyond_the_data_is_marked(tmp_path):
     light = changed(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
     solved = tr.open_study(search_designs(light, tmp_path).folder.root)
