@@ -100,6 +100,8 @@ def test_materials_are_listed_shown_and_added(tmp_path):
         cwd=tmp_path,
     )
     assert "mine" in trackroller("materials", "list", cwd=tmp_path).stdout
+    soft = trackroller("materials", "add", "soft", "--set", "like=POM", "--set", "youngs_modulus=3.6", cwd=tmp_path)
+    assert "youngs_modulus = 3.6 MPa is 55.6 times below" in soft.stderr
 
 
 @pytest.mark.slow

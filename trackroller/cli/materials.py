@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+from trackroller.cli.usage import print_line
+
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 
 
@@ -56,6 +58,9 @@ def materials_add(
     """Write a material into your own file; comments in the file stay."""
     from trackroller.cli.case import settings_of
     from trackroller.materials import add_material
+    from trackroller.roller.doubts import doubts
 
     material = add_material(file, name, replace=replace, **settings_of(settings))
     print(f"material '{material.name}' is in {file}")
+    for text in doubts({}, [material]):
+        print_line(f"doubtful: {text}")
