@@ -35,7 +35,8 @@ class InputError(ValueError):
         self.file: str | None = None  # a file that another file or the command names
         self.line: int | None = None  # of the file, the first line being 1
         self.path: tuple[str, ...] = ()  # of the entry in the file, as far as `field` does not say it
-        text = f"{field} = {value!r} is not usable: {allowed}"
+        wrong = "is missing or empty" if value is None else f"= {value!r} is not usable"
+        text = f"{field} {wrong}: {allowed}"
         super().__init__(f"{text}. {remedy}" if remedy else text)
 
     @property
@@ -142,7 +143,7 @@ MEANS = {  # names that a word of a designer stands for, the likeliest first
     "rail track": "guide_profile_radius guide_curve_radius guide_material",
     "speed rpm": "velocity guide_overrollings_per_hour",
     "drive driving torque traction braking": "motor_force",
-    "load weight preload mass": "radial_force axial_force permissible_radial_force",
+    "load weight preload mass": "radial_force axial_force permissible_radial_force blocks",
     "rad": "radial_force",
     "thrust lateral side ax": "axial_force",
     "alpha": "contact_angle",
@@ -159,6 +160,7 @@ MEANS = {  # names that a word of a designer stands for, the likeliest first
     "tensile strength": "tensile_strength roller_material guide_material",
     "hardness": "hardness roller_material guide_material",
     "goal target objective optimise": "pareto analysis constraints",
+    "case count number run": "samples table",
     "limit": "constraints analysis stop_if",
     "variable parameter": "factors base",
     "tolerance resolution mesh": "accuracy",

@@ -70,7 +70,8 @@ def cross_check(study: Study) -> None:
         name = min(doubled)
         raise InputError(f"base.{name}", config.base[name], f"{name} is a factor too", "Remove one of them.")
     if config.design != "optimise" and (config.design == "table") != (config.table is not None):
-        raise InputError("table", config.table, "design: table and the path of a CSV belong together")
+        remedy = "Write 'design: table' too." if config.table else "Write 'table: cases.csv' too, with your file."
+        raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
     if config.design == "grid":
         check_listed(study.parsed)
     if config.design == "optimise" and (several := [n for n in OPTION_FACTORS if n in study.factors]):
