@@ -55,7 +55,8 @@ def front_view(axes: Axes, case: Case) -> None:
         axes.plot(*at, "o", color=INK, ms=4, zorder=5)
         axes.text(at[0] + 0.2 * sign, at[1] - 1.4, str(number), color=INK, ha="center", va="center", weight="bold")
         arrow(axes, tuple(at), tuple(3.4 * outward), FORCE, f"$F_{{N{number}}}$", shift=(0.95 * sign, 0.2))
-        arrow(axes, tuple(at), tuple(3.6 * tangent), FRAME, f"$x_C$, $F_{{T{number}}}$", shift=(1.5, -0.55 * sign))
+        beside = (3.6, -0.3) if number == 1 else (1.5, 0.55)  # contact 1: outside the roller, so that no edge is covered
+        arrow(axes, tuple(at), tuple(3.6 * tangent), FRAME, f"$x_C$, $F_{{T{number}}}$", shift=beside)
     turn = np.linspace(np.pi / 2 - alpha, np.pi / 2, 30)
     axes.plot(3.4 * np.cos(turn), 3.4 * np.sin(turn), color=GREY, lw=0.9)
     axes.plot([0, point[0]], [0, point[1]], color=GREY, lw=0.8, ls=(0, (4, 3)))
@@ -67,7 +68,7 @@ def front_view(axes: Axes, case: Case) -> None:
     axes.plot([-10.6, 0], [0, 0], color=GREY, lw=0.5, ls=":")
     measure(axes, (0, 0), tuple(r_guide * np.array([-0.74, -0.67])), "$r_{C,G}$", shift=(-0.9, 0.9))
     arrow(axes, (0, height), (0, 5.0), FORCE, "$F_{rad}$\n(< 0 presses)", shift=(0, 1.5))
-    arrow(axes, (0, height), (5.6, 0), FORCE, "$F_{ax}$, $x_R$", shift=(1.2, -1.0))
+    arrow(axes, (0, height), (5.6, 0), FORCE, "$F_{ax}$, $x_R$", shift=(-0.1, -1.0))
     axes.text(0, 15.6, "roller", ha="center", color=INK)
     axes.text(2.3, -2.6, "guide", ha="center", color=INK)
     axes.text(0, 11.0, r"groove $r_{C,TR} < 0$", ha="center", color=GREY)
