@@ -55,7 +55,7 @@ def front_view(axes: Axes, case: Case) -> None:
         axes.plot(*at, "o", color=INK, ms=4, zorder=5)
         axes.text(at[0] + 0.2 * sign, at[1] - 1.4, str(number), color=INK, ha="center", va="center", weight="bold")
         arrow(axes, tuple(at), tuple(3.4 * outward), FORCE, f"$F_{{N{number}}}$", shift=(0.95 * sign, 0.2))
-        beside = (3.6, -0.3) if number == 1 else (1.5, 0.55)  # contact 1: outside the roller, so that no edge is covered
+        beside = (3.6, -0.3) if number == 1 else (1.5, 0.55)  # contact 1: beside the roller, off its edge
         arrow(axes, tuple(at), tuple(3.6 * tangent), FRAME, f"$x_C$, $F_{{T{number}}}$", shift=beside)
     turn = np.linspace(np.pi / 2 - alpha, np.pi / 2, 30)
     axes.plot(3.4 * np.cos(turn), 3.4 * np.sin(turn), color=GREY, lw=0.9)
