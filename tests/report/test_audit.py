@@ -141,7 +141,7 @@ class Audit:
         solved = tr.run(self.told, progress=False)
         self.frame = rows_of(solved.data, self.told)
         self.frame["valid"] &= self.frame["pressure"] < self.limit
-        self.page = contents(solved.view.analysed(_analysis(solved)))
+        self.page = contents(solved.view.analysed(_analysis(solved.indices)))
         self.short = dict(self.page["summary"])
         names = list(self.told["factors"])
         inner = {"friction_coefficient", "axial_force"} if self.told.get("design") == "inner_outer" else set(CONDITIONS)

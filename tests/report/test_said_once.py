@@ -86,7 +86,7 @@ def page(name):
     """Return the solved study, the contents of its page, and every passage of prose with its place."""
     study = {"name": name.replace(" ", "-"), "contact_model": "sliding", "accuracy": "preview"} | STUDIES[name]
     solved = tr.run(study, progress=False)
-    view = solved.view.analysed(_analysis(solved))
+    view = solved.view.analysed(_analysis(solved.indices))
     found = contents(view)
     prose = [(head, s.text) for head, said in found["summary"] for s in said]
     before, after = _of_analysis(view.analysis) if view.analysis is not None else ([], [])
