@@ -4,7 +4,8 @@ Each body sees a heat source that moves over it with the travel speed (Carslaw a
 
 ASSUME: one factor parts the heat of a contact between the bodies, such that their largest temperatures agree.
 ASSUME: the guide stays at ambient temperature but for the flash; the roller loses its heat from `cooled_area` alone.
-ASSUME: friction, stresses and material values do not depend on temperature, and hysteresis does not change the balance.
+ASSUME: friction and the values of heat do not depend on temperature, and hysteresis does not change the balance. E and
+R_m follow the bulk temperature where a material has a table, see `roller.temperature`.
 """
 
 from __future__ import annotations
@@ -161,7 +162,8 @@ def evaluate(solved: SolvedRollers) -> Results:
     used = np.where((room <= 0.0) & ~np.isnan(rise), np.inf, rise / np.where(room > 0.0, room, np.nan))
     return {
         # the drive turns the roller against the loss; without a known loss the torque is that of the tractions alone
-        "drive_torque": v["drive_torque"] + np.nan_to_num(moments.sum(axis=(1, 2))),
+        # one axis after the other: the order of a sum over two depends on the number of cases
+        "drive_torque": v["drive_torque"] + np.nan_to_num(moments.sum(axis=2).sum(axis=1)),
         "flash_temperature_rise": flashes,
         "bulk_temperature_rise": bulks,
         "heat_utilisation": used,
@@ -211,5 +213,7 @@ LIMIT = Limit(
         "cooled_area",
     ),
     compares=("heat_utilisation", "temperature rise that the material allows"),
-    assumes=("Heat: friction, stresses and values of materials do not depend on the temperature.",),
+    assumes=(
+        "Heat: friction and values of materials do not depend on temperature, but E and R_m where a table is given.",
+    ),
 )

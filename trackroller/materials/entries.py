@@ -9,6 +9,7 @@ from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.materials.material import Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import complete_curve
+from trackroller.materials.temperature import FIELD, TemperatureTable
 from trackroller.numerics.units import split_quantity
 from trackroller.parameters import FRICTION_LEVELS, PARAMETERS, Parameter
 
@@ -145,8 +146,14 @@ class EntryParser:
         numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
         for key in contradictions(numbers).keys() - given.keys():  # inherited, but a given value excludes it
             del records[key]
+        table: Any = entry.get(FIELD)
+        if isinstance(table, Mapping) and isinstance(table.get("source"), str):
+            table = {**table, "source": self.source(table["source"])}
+        if FIELD not in entry and base and isinstance(base.temperature_dependence, TemperatureTable):
+            table = base.temperature_dependence.without(given)  # a value that is given replaces its inherited column
         fields: dict[str, Any] = {key: value.value for key, value in records.items()} | {
             "name": name,
+            FIELD: table,
             "records": records,
             "family": entry.get("family") or (base.family if base else ""),
             "description": entry.get("description") or (base.description if base and "like" not in entry else ""),
@@ -154,14 +161,14 @@ class EntryParser:
         try:
             return Material(**fields)
         except InputError as error:
-            field = error.field.rpartition(".")[2]
-            raise InputError(f"{where}.{field}", error.value, error.allowed, error.remedy) from None
+            field = error.field.removeprefix(f"material '{name}'")
+            raise InputError(f"{where}{field}", error.value, error.allowed, error.remedy) from None
 
     def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
         """Return the numbers that an entry gives; raise the errors of all its fields together."""
         wrong, given = Collector(), {}
         with wrong.part():
-            check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS))
+            check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS, FIELD))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 wrong.errors.append(InputError(f"{where}.{key}", entry[key], "it must be a text", "Put it in quotes."))

@@ -10,6 +10,7 @@ from typing import Any
 from trackroller.errors import InputError
 from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
 from trackroller.materials.sn_curve import curve_exponent
+from trackroller.materials.temperature import FIELD, TemperatureTable, read_table
 
 LESS_IS_BETTER = ("loss_fraction", "wear_coefficient")
 _OfLimits = make_dataclass(
@@ -62,6 +63,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         T_S = S_90/S_10 [1]. None: not known.
     description : str
         A short description.
+    temperature_dependence : TemperatureTable or mapping, optional
+        E and R_m over temperature, for the output `heat`; see `trackroller.materials.temperature`.
     records : mapping of str to Value
         Unit, source and mark of each value, as far as known.
 
@@ -86,6 +89,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     scatter_in_cycles: float | None = None
     scatter_in_stress: float | None = None
     description: str = ""
+    temperature_dependence: Any = None
     records: Mapping[str, Value] = field(default_factory=dict, compare=False, repr=False, hash=False)
 
     def __post_init__(self) -> None:
@@ -105,6 +109,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
 
         for name, allowed in contradictions(vars(self) | {"fatigue_limit": self.fatigue_limit}).items():
             raise InputError(f"{where}.{name}", getattr(self, name), allowed, "Correct one of the two values.")
+        if self.temperature_dependence is not None:
+            object.__setattr__(self, FIELD, read_table(self.temperature_dependence, vars(self), where))
 
     @property
     def fatigue_limit(self) -> float:
@@ -125,7 +131,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     @property
     def placeholders(self) -> tuple[str, ...]:
         """Return the names of the values that are guesses without a source, those of single limits left out."""
-        return tuple(name for name, record in self.records.items() if record.placeholder and name not in OF_LIMITS)
+        guessed = [name for name, record in self.records.items() if record.placeholder and name not in OF_LIMITS]
+        table: TemperatureTable | None = self.temperature_dependence
+        return (*guessed, FIELD) if table is not None and table.placeholder else tuple(guessed)
 
     @property
     def guesses_of_limits(self) -> dict[str, str]:
@@ -168,6 +176,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     def as_dict(self) -> dict[str, Any]:
         """Return plain numbers and texts, which a case accepts as a material."""
         values = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "records"}
+        if self.temperature_dependence is not None:
+            values[FIELD] = self.temperature_dependence.as_dict()
         return {key: value for key, value in values.items() if value not in (None, "")}
 
     def with_sources(self) -> dict[str, Any]:

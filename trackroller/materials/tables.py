@@ -40,6 +40,12 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
         rows.append(_row(prop.name, prop.symbol, record))
     limit = Value(material.fatigue_limit, "MPa", "R_m times sigma_D/R_m", origin="derived")
     exponent = Value(material.woehler_exponent, "-", "ln(N_k/N_Rm) / ln(R_m/sigma_D)", origin="derived")
+    if (table := material.temperature_dependence) is not None:
+        over = ", ".join(f"{value:g}" for value in table.temperature)
+        for name, column in table.columns.items():
+            record = Value(column[0], PROPERTIES[name].unit, table.source, table.placeholder, f"at {over} degC")
+            row = _row(f"{name} over temperature", f"{PROPERTIES[name].symbol}(theta)", record)
+            rows.append(row | {"value": ", ".join(f"{value:g}" for value in column)})
     return [*rows, _row("fatigue_limit", "sigma_D", limit), _row("woehler_exponent", "k", exponent)]
 
 

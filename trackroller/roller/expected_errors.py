@@ -3,12 +3,22 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from trackroller.contact.settings import Accuracy
+import numpy as np
+
+from trackroller.contact.friction_laws import law_of
+from trackroller.contact.settings import Accuracy, converged_up_to
 from trackroller.numerics.numbers import rounded_up
+from trackroller.parameters import CONTACT_MODELS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import Levels, ladders, own_errors
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.roller.options import Options
+    from trackroller.roller.table import CaseTable
 
 _QUANTITY_OF = {
     "normal_force": "normal_force",
@@ -73,3 +83,16 @@ def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
         for variable, q in _QUANTITY_OF.items()
         if q in levels
     }
+
+
+def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
+    """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
+    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
+    constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
+    cheaper = DECLARED[options.contact_model].cheaper
+    model = options.contact_model
+    if cheaper and np.any(ds.variables["contact_model_used"].values == CONTACT_MODELS.index(cheaper)):
+        model = cheaper
+    for name, errors in error_attributes(options.expected_errors(model, constant)).items():
+        if name in ds.variables:
+            ds.variables[name].attrs.update(errors)

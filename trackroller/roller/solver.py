@@ -9,19 +9,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller.contact.friction_laws import law_of
-from trackroller.contact.settings import converged_up_to
 from trackroller.damage import computed, fatigue, judged, of_mechanics, of_patches, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.contact_models import DECLARED
-from trackroller.roller import requirements
+from trackroller.roller import requirements, temperature
 from trackroller.roller.accuracy import Accuracy
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
-from trackroller.roller.expected_errors import error_attributes
+from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
@@ -181,11 +179,12 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
     block = join(windows)
     block.fail(list(lost))
-    ds = with_reasons(assemble(block, options, single), table, options, lost)
-    _tell_errors(ds, table, options)
+    ds = with_reasons(assemble(block, options, single), table, options, temperature.reasons(block) | lost)
+    tell_errors(ds, table, options)
     told = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
-    if told or of_mechanics(options.outputs, options.life_criterion):
-        ds.attrs[NOTES] = "\n".join(stages_case.notes_on_limits(table, options))
+    warm = temperature.notes(table, block)
+    if told or warm or of_mechanics(options.outputs, options.life_criterion):
+        ds.attrs[NOTES] = "\n".join([*stages_case.notes_on_limits(table, options), *warm])
     return ds
 
 
@@ -216,8 +215,11 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
     # limits of patches depend on the speed and on all values of the materials
     if options.shortcuts and len(table) > 1 and not of_patches(options.outputs, options.life_criterion):
         rows, number = requirements.distinct_mechanics(table)
-    distinct = join([meet(part, options, _solve_block) for part in _cut(table.take(rows), BLOCK)])
-    block = distinct.take(number)
+
+    def solve_all(cases: CaseTable) -> Block:
+        return join([meet(part, options, _solve_block) for part in _cut(cases, BLOCK)])
+
+    table, block = temperature.settle(table, solve_all(table.take(rows)).take(number), options, solve_all)
     stages_case.finish(table, block, options)
     reflect(block.values, mirrored)
     return block
@@ -305,16 +307,3 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     return build({name: block.values[name] for name in keep}, flags, attrs, single)
-
-
-def _tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
-    """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
-    ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
-    constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
-    cheaper = DECLARED[options.contact_model].cheaper
-    model = options.contact_model
-    if cheaper and np.any(ds.variables["contact_model_used"].values == CONTACT_MODELS.index(cheaper)):
-        model = cheaper
-    for name, errors in error_attributes(options.expected_errors(model, constant)).items():
-        if name in ds.variables:
-            ds.variables[name].attrs.update(errors)

@@ -14,6 +14,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
 from trackroller.report.tables.lives import overrollings
+from trackroller.roller import temperature
 from trackroller.roller.dataset import NOTES
 
 if TYPE_CHECKING:
@@ -232,7 +233,7 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
     lacking: dict[str, list[str]] = {}
     for note in _notes(ds):
-        if GUESSES not in note:
+        if GUESSES not in note and not note.startswith(temperature.HEAD):
             name, _, text = note.partition(": ")
             lacking.setdefault(text, []).append(name)
     out = [f"Not checked, or in part: {listing(names)}; {text}" for text, names in lacking.items()]
@@ -242,8 +243,8 @@ def not_checked(ds: xr.Dataset) -> list[str]:
 
 
 def placeholders(ds: xr.Dataset) -> list[str]:
-    """Return the placeholders of materials on which the limits rest, one sentence for a limit and a material."""
-    return [note for note in _notes(ds) if GUESSES in note]
+    """Return what the limits rest on, a sentence each: placeholders of materials, and tables over temperature."""
+    return [note for note in _notes(ds) if GUESSES in note or note.startswith(temperature.HEAD)]
 
 
 def _notes(ds: xr.Dataset) -> list[str]:

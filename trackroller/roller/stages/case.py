@@ -17,6 +17,7 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.table import TEXTS
 
 if TYPE_CHECKING:
     from trackroller.roller.blocks import Block
@@ -40,7 +41,7 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
 
 def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> SolvedRollers:
     """Return cases, materials and results as the limits receive them."""
-    names = [field.name for field in dataclasses.fields(table.roller) if field.name not in ("name", "guesses")]
+    names = [field.name for field in dataclasses.fields(table.roller) if field.name not in TEXTS]
     return SolvedRollers(
         {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
         {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},

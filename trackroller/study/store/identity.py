@@ -31,13 +31,14 @@ from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.case import CaseTable, MaterialArrays, to_table
 from trackroller.roller.options import options_of_cases
+from trackroller.roller.table import TEXTS
 from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
 BLOCK = 100_000  # cases whose table is in memory at once; the table of millions of cases would take gigabytes
-_MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in ("name", "guesses"))
+_MATERIAL_VALUES = tuple(field.name for field in fields(MaterialArrays) if field.name not in TEXTS)
 
 
 def _prefix(options: Mapping[str, Any]) -> bytes:
@@ -77,6 +78,7 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     heads = [hashlib.sha256(_prefix(told)) for told in options]
     numbers = [0] * len(rows) if group is None else group.tolist()
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
+    texts += [body.temperature_dependence for body in (table.roller, table.guide)]
     given = any(np.any(column != "") for column in texts)
     data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
     digests = bytearray()

@@ -1,0 +1,189 @@
+"""E and R_m of a material at the temperature of its body, as a fixed point."""
+
+import json
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.errors import InputError
+from trackroller.materials import Material, load_database
+from trackroller.materials.tables import material_details
+from trackroller.report.tables.limits import not_checked, placeholders
+from trackroller.roller import temperature
+from trackroller.roller.case import to_table
+from trackroller.study.store.identity import fingerprints
+
+TABLE = {
+    "temperature": [20, 40, 60, 80, 100],
+    "youngs_modulus": [3000, 2600, 2000, 1500, 1100],
+    "tensile_strength": [80, 70, 55, 42, 32],
+    "source": "own tests",
+}
+CASE = {"guide_material": "1.7225-normalised", "friction_coefficient": 0.2, "radial_force": -1500.0, "motor_force": 0.0}
+CASE |= {"axial_force": 100.0, "velocity": 120.0, "heat_transfer_coefficient": 15.0, "cooled_area": 8000.0}
+OUTPUTS = ("heat", "forces", "contact", "peak_stress", "life")
+
+
+def pom(**table):
+    return {"like": "POM", "temperature_dependence": TABLE | table}
+
+
+def solve(material, outputs=OUTPUTS, **fields):
+    return tr.solve(tr.Case(**CASE | {"roller_material": material} | fields), outputs, contact_model="sliding")
+
+
+def roller_temperature(ds):
+    return 20.0 + float(ds.bulk_temperature_rise.sel(contact=1, body="roller"))
+
+
+def same_bits(one, other):
+    return all(np.array_equal(one[name], other[name], equal_nan=True) for name in other.data_vars if name != "reason")
+
+
+@pytest.fixture(scope="module")
+def warm():
+    return solve(pom())
+
+
+@pytest.fixture(scope="module")
+def cold():
+    return solve("POM")
+
+
+def test_fixed_point_is_the_one_found_by_hand(warm, cold):
+    """Repeat single solutions with constant values; the strength of the S-N curve follows as well."""
+    reached = roller_temperature(cold)
+    for _ in range(12):
+        values = {
+            name: float(np.interp(reached, TABLE["temperature"], TABLE[name]))
+            for name in ("youngs_modulus", "tensile_strength")
+        }
+        by_hand = solve({"like": "POM", **values})
+        reached = roller_temperature(by_hand)
+    assert reached > 50.0 and roller_temperature(warm) == pytest.approx(reached, abs=1e-3)
+    for name in ("max_pressure", "peak_stress", "patch_area", "life_cycles", "flash_temperature_rise"):
+        assert warm[name].values == pytest.approx(by_hand[name].values, rel=1e-3), name
+
+
+def test_warm_roller_is_softer(warm, cold):
+    assert (warm.max_pressure < 0.9 * cold.max_pressure).all() and (warm.patch_area > 1.1 * cold.patch_area).all()
+    slow, fast = (solve(pom(), velocity=v).max_pressure for v in (20.0, 240.0))
+    assert (slow > warm.max_pressure).all() and (warm.max_pressure > fast).all()
+
+
+def test_constant_table_changes_no_bit(cold):
+    constant = solve(pom(youngs_modulus=[3000] * 5, tensile_strength=[80] * 5))
+    assert same_bits(constant, cold) and "at its bulk temperature" in constant.limits_notes
+
+
+def test_without_heat_a_table_changes_no_bit():
+    outputs = ("forces", "contact", "peak_stress", "life")
+    with_table, without = (solve(material, outputs) for material in (pom(), "POM"))
+    assert same_bits(with_table, without) and "limits_notes" not in with_table.attrs
+
+
+def test_alone_and_in_a_batch(warm, cold):
+    """A mirrored case, too; a case without a table keeps its bits beside one with a table."""
+    fields = [{"roller_material": pom()}, {"roller_material": "POM"}, {"roller_material": pom(), "axial_force": -100.0}]
+    batch = tr.solve([tr.Case(**CASE | own) for own in fields], OUTPUTS, contact_model="sliding")
+    assert same_bits(batch.isel(case=0), warm) and same_bits(batch.isel(case=1), cold)
+    assert np.array_equal(batch.max_pressure[2], batch.max_pressure[0, ::-1])
+
+
+def test_guide_has_the_ambient_temperature():
+    ds = solve("1.7225-normalised", guide_material=pom(), ambient_temperature=40.0)
+    by_hand = {"like": "POM", "youngs_modulus": 2600.0, "tensile_strength": 70.0}
+    assert ds.max_pressure.values == pytest.approx(
+        solve("1.7225-normalised", guide_material=by_hand).max_pressure.values, rel=1e-12
+    )
+
+
+def test_end_of_the_table_is_told(cold):
+    ds = solve(pom(), velocity=600.0)
+    end = solve({"like": "POM", "youngs_modulus": 1100.0, "tensile_strength": 32.0}, velocity=600.0)
+    assert roller_temperature(ds) > 100.0 and ds.max_pressure.values == pytest.approx(end.max_pressure.values)
+    assert "leaves its table from 20 to 100 degC" in ds.limits_notes and ds.converged == 1
+
+
+def test_sheet_names_the_table_among_what_the_data_rest_on(warm):
+    assert any(sentence.startswith("temperature: youngs_modulus and") for sentence in placeholders(warm))
+    assert not any("bulk temperature" in sentence for sentence in not_checked(warm))
+
+
+def test_unknown_temperature_is_told():
+    ds = solve(pom(), cooled_area=None)
+    assert "is not known, its table is not used" in ds.limits_notes
+    assert np.array_equal(ds.max_pressure, solve("POM", cooled_area=None).max_pressure)
+
+
+def test_unsettled_case_says_so(monkeypatch):
+    monkeypatch.setattr(temperature, "PASSES", 1)
+    ds = solve(pom())
+    assert ds.converged == 0 and "the temperature still changes" in str(ds.reason.values)
+
+
+def test_strength_values_keep_their_ratio():
+    table = to_table(tr.Case(**CASE | {"roller_material": pom()}))
+    hot = temperature.at_temperatures(table, np.array([[60.0, np.nan]])).roller
+    for name in ("tensile_strength", "fatigue_limit", "yield_strength", "fatigue_limit_torsion"):
+        assert getattr(hot, name) == pytest.approx(55 / 80 * getattr(table.roller, name), rel=1e-14), name
+    assert hot.youngs_modulus == 2000.0 and hot.poisson_ratio == table.roller.poisson_ratio
+
+
+def test_given_value_replaces_its_inherited_column():
+    database = load_database()
+    base = database.material(pom())
+    assert Material(**json.loads(json.dumps(base.as_dict()))) == base and hash(base) != hash(database.material("POM"))
+    assert Material(**base.as_dict() | {"temperature_dependence": None}) != base
+    rows = {row["field"]: row["value"] for row in material_details(database, base)}
+    assert rows["youngs_modulus over temperature"] == "3000, 2600, 2000, 1500, 1100"
+
+
+def test_like_inherits_the_table(tmp_path):
+    path = tmp_path / "materials.yaml"
+    path.write_text(json.dumps({"materials": {"warm": pom()}}))
+    database = load_database(path)
+    assert database.material({"like": "warm", "poisson_ratio": 0.35}).temperature_dependence is not None
+    stiff = database.material({"like": "warm", "youngs_modulus": 2500.0}).temperature_dependence
+    assert list(stiff.columns) == ["tensile_strength"]
+    assert (
+        database.material({"like": "warm", "youngs_modulus": 1, "tensile_strength": 60}).temperature_dependence is None
+    )
+
+
+def test_table_is_part_of_the_identity():
+    one, other = (
+        fingerprints(to_table(tr.Case(**CASE | {"roller_material": material})), {})
+        for material in (pom(), pom(temperature=[20, 41, 60, 80, 100]))
+    )
+    assert one[0] != other[0]
+
+
+@pytest.mark.parametrize(
+    ("table", "field", "words"),
+    [
+        ([20, 60], "temperature_dependence", "a mapping with the lists"),
+        ({"temperature": [20, 60]}, "temperature_dependence", "youngs_modulus or tensile_strength"),
+        (TABLE | {"youngs_moduls": [1]}, "temperature_dependence", "youngs_modulus"),
+        (TABLE | {"temperature": [20, 60, 40, 80, 100]}, "temperature_dependence.temperature", "rising"),
+        (TABLE | {"temperature": [20, 20, 40, 80, 100]}, "temperature_dependence.temperature", "rising"),
+        (TABLE | {"temperature": [20, 60]}, "temperature_dependence.youngs_modulus", "each of the 2 temperatures"),
+        (TABLE | {"temperature": 20}, "temperature_dependence.temperature", "at least two"),
+        (TABLE | {"temperature": [-300, 40, 60, 80, 100]}, "temperature_dependence.temperature", "-273"),
+        (TABLE | {"youngs_modulus": [3e9, 2, 1, 1, 1]}, "temperature_dependence.youngs_modulus", "MPa"),
+        (TABLE | {"youngs_modulus": [3000, "soft", 1, 1, 1]}, "temperature_dependence.youngs_modulus", "number"),
+        (TABLE | {"youngs_modulus": [2900, 2, 1, 1, 1]}, "temperature_dependence.youngs_modulus", "3000"),
+        (TABLE | {"placeholder": "yes"}, "temperature_dependence.placeholder", "true or false"),
+    ],
+)
+def test_bad_tables_are_refused_by_name(table, field, words):
+    with pytest.raises(InputError) as error:
+        load_database().material({"name": "warm", "like": "POM", "temperature_dependence": table})
+    assert f"warm.{field}" in str(error.value) and words in str(error.value)
+
+
+def test_units_of_a_table():
+    given = pom(youngs_modulus=["3 GPa", "2.6 GPa", 2000, 1500, 1100], temperature=["293.15 K", 40, 60, 80, 100])
+    table = load_database().material(given).temperature_dependence
+    assert table.youngs_modulus[:3] == (3000.0, 2600.0, 2000.0) and table.temperature[0] == 20.0
