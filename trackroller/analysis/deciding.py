@@ -5,7 +5,6 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
-from trackroller.analysis.optimum import search_designs
 from trackroller.study.file.study import Study
 from trackroller.study.run import run_study
 from trackroller.study.store.plan import Plan
@@ -23,4 +22,6 @@ def run_any(study: Study, results: Path | str = "results", *, rerun_failed: bool
     """
     if not decides(study):
         return run_study(study, results, rerun_failed=rerun_failed, **how)
+    from trackroller.analysis.optimum import search_designs  # heavy: scipy.stats, which no job of a workflow needs
+
     return search_designs(study, results, rerun_failed=rerun_failed, **how)
