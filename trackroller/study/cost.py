@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 _LEVELS = ("preview", "standard", "reference")
 _TRACTIONS, _SUBSURFACE = 1e-3, 0.1
 START = 3.0  # seconds of one core: to import, plan and load the compiled solver
-PAGES_OF_ARRAY, PAGES_OF_SAMPLE = 4.3, 7.5  # seconds: figures and page; a random sample has given-data measures
+PAGES_OF_ARRAY, PAGES_OF_SAMPLE = 3.0, 5.0  # seconds: figures and page; a random sample has given-data measures
 PAGES_A_CASE = 3.5e-4  # seconds: gathering, analysis, figures and page of a large study
 _BYTES = {
     "forces": 200,
