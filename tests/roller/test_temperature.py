@@ -9,6 +9,7 @@ import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.materials import Material, load_database
 from trackroller.materials.tables import material_details
+from trackroller.report.pages.sheet_facts import collect
 from trackroller.report.tables.limits import not_checked, placeholders
 from trackroller.roller import temperature
 from trackroller.roller.case import to_table
@@ -107,8 +108,9 @@ def test_end_of_the_table_is_told(cold):
 
 
 def test_sheet_names_the_table_among_what_the_data_rest_on(warm):
-    assert any(sentence.startswith("temperature: youngs_modulus and") for sentence in placeholders(warm))
-    assert not any("bulk temperature" in sentence for sentence in not_checked(warm))
+    words = "temperature: youngs_modulus and tensile_strength of material 'inline' are those at its bulk temperature."
+    assert words in collect(warm).guesses
+    assert not any("temperature: " in sentence for sentence in (*placeholders(warm), *not_checked(warm)))
 
 
 def test_unknown_temperature_is_told():

@@ -14,7 +14,15 @@ from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OF_LIM
 from trackroller.parameters.example import not_given_text
 from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
 from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
-from trackroller.report.tables.limits import GUESSED, Margin, first_limits, margins, not_checked, placeholders
+from trackroller.report.tables.limits import (
+    GUESSED,
+    Margin,
+    at_temperature,
+    first_limits,
+    margins,
+    not_checked,
+    placeholders,
+)
 from trackroller.report.tables.lives import life_rows
 from trackroller.report.words.assumptions import (
     assumptions,
@@ -153,7 +161,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
         assumptions=assumptions(ds),
         standards=standards(ds),
         data=list(said),
-        guesses=placeholders(ds),
+        guesses=[*placeholders(ds), *at_temperature(ds)],
         options=", ".join(f"{plain(name)} {ds.attrs[name]}{_used(ds, name)}" for name in OPTIONS if ds.attrs.get(name)),
         command=command_of(ds),
         versions=versions_text(),

@@ -243,8 +243,13 @@ def not_checked(ds: xr.Dataset) -> list[str]:
 
 
 def placeholders(ds: xr.Dataset) -> list[str]:
-    """Return what the limits rest on, a sentence each: placeholders of materials, and tables over temperature."""
-    return [note for note in _notes(ds) if GUESSES in note or note.startswith(temperature.HEAD)]
+    """Return the placeholders of materials on which the limits rest, one sentence for a limit and a material."""
+    return [note for note in _notes(ds) if GUESSES in note]
+
+
+def at_temperature(ds: xr.Dataset) -> list[str]:
+    """Return one sentence for each table over temperature that the results rest on."""
+    return [note for note in _notes(ds) if note.startswith(temperature.HEAD)]
 
 
 def _notes(ds: xr.Dataset) -> list[str]:
