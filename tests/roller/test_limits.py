@@ -65,3 +65,7 @@ def test_a_lifted_roller_still_has_the_axial_force_that_would_hold():
     lifted = limits(replace(CASE, axial_force=300))
     assert lifted.axial_force[1] == pytest.approx(limits(replace(CASE, axial_force=0)).axial_force[1], rel=1e-6)
     assert np.isnan(lifted.motor_force).all()
+
+
+def test_a_travel_changes_no_distance_to_lift_off():
+    assert searched.limits(tr.Case(travel=10.0)) == searched.limits(tr.Case())

@@ -71,9 +71,9 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     Notes
     -----
     Equilibria are solved with `accuracy="preview"`, in batches, about 450 in all.
-    ASSUME: drawn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the shape of the
-    patch. ASSUME: friction that falls with the slip speed is searched with full sliding, which is a thousand times
-    cheaper and has the same complete friction.
+    ASSUME: drawn and worn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the
+    shape of the patch. ASSUME: friction that falls with the slip speed is searched with full sliding, which is a
+    thousand times cheaper and has the same complete friction.
 
     Examples
     --------
@@ -81,7 +81,7 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     >>> round(high, 2)  # F_rad tan(alpha)
     115.47
     """
-    nominal = replace(case, **dict.fromkeys(("guide_profile", "roller_profile")))
+    nominal = replace(case, **{"guide_profile": None, "roller_profile": None, "travel": 0.0})
     model = contact_model if law_of(case.friction_law).is_constant else "sliding"
     span = 4.0 * (abs(case.radial_force) + abs(case.axial_force))
 
