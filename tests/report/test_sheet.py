@@ -23,6 +23,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.parameters.validity import VALIDITY
+from trackroller.report.figures.roller_section import _roller as roller_outline
 from trackroller.report.figures.roller_section import content_of
 from trackroller.report.pages.sheet import render
 from trackroller.report.pages.sheet_facts import collect
@@ -343,6 +344,22 @@ def test_the_sheet_names_what_it_rests_on(complete):
     assert any(
         row.words.startswith("scatter of the life T_N") and row.value == "not given" for row in facts.materials[0][1]
     )
+
+
+def test_a_drawn_profile_stands_in_the_drawing_as_given():
+    alpha, nominal = np.radians(30.0), 6.0 * np.sin(np.radians(30.0))
+    curve = lambda x: -np.tan(alpha) * (x - nominal) - 0.05 * (x - nominal) ** 2  # noqa: E731
+    x = np.linspace(0.3, 5.7, 109)
+    points = np.stack([x, curve(x)], axis=1).tolist()
+    values = {"contact_angle": 30.0, "guide_profile_radius": 6.0, "roller_profile_radius": -7.0}
+    outline = roller_outline(values | {"roller_profile": {"points": points, "frame": "section"}}, 20.0)
+    flank = outline[(outline[:, 0] > 0) & (outline[:, 1] < 12.0) & (outline[:, 0] < 7.0)]
+    away = flank[:, 1] - 6.0 * np.cos(alpha) - curve(flank[:, 0])
+    assert len(flank) > 20 and np.abs(away).max() < 1e-6
+    circle = roller_outline(values, 20.0)
+    centre = (6.0 - 7.0) * np.array([np.sin(alpha), np.cos(alpha)])
+    flank = circle[(circle[:, 0] > 0) & (circle[:, 1] < 12.0) & (circle[:, 0] < 7.0)]
+    np.testing.assert_allclose(np.hypot(*(flank - centre).T), 7.0, rtol=1e-9)
 
 
 @pytest.mark.parametrize(

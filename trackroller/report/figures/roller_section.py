@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.contact.drawn_profiles import cross_section
+from trackroller.errors import ShapeError
 from trackroller.report import html
 from trackroller.report.numbers import rounded
 from trackroller.roller.record import inputs_of
@@ -21,6 +24,8 @@ LETTER, LINE = 6.4, 13.0  # width of a letter and height of a line of text [px]
 CLEAR = 2.5  # free space around a label [px]
 DOWN = 4.0  # from the middle of a label to the line on which it stands [px]
 ARC = 40  # points of an arc
+REACH = 0.5  # guide radii; a profile is drawn so far on both sides of its contact
+PROFILES = ("guide_profile", "roller_profile")
 TURNS = np.deg2rad([0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180])  # label directions from an arrow's
 STEPS = (6.0, 14.0, 24.0, 36.0, 50.0)  # from the tip of an arrow to its label [px]
 Line = tuple[np.ndarray, np.ndarray]
@@ -83,8 +88,9 @@ def drawing(ds: xr.Dataset) -> str:
 
     Notes
     -----
-    Lengths are to scale, and so are the forces relative to each other. The width of the roller is no parameter; it is
-    drawn as twice the guide's radius. An axis farther than 4.2 guide radii is drawn nearer.
+    Lengths are to scale, and so are the forces relative to each other. Drawn profiles appear as given. The width of
+    the roller is no parameter; it is drawn as twice the guide's radius. An axis farther than 4.2 guide radii is drawn
+    nearer.
     """
     return html.render("drawing.svg.j2", content_of(ds))
 
@@ -100,9 +106,8 @@ def content_of(ds: xr.Dataset) -> dict[str, Any]:
     def place(points: Any) -> np.ndarray:
         return origin + scale * np.asarray(points, dtype=float) * (1, -1)
 
-    turn = np.linspace(0.0, 2.0 * np.pi, 2 * ARC)
-    outline = _roller(alpha, r_guide, values["roller_profile_radius"], height)
-    outlines = [place(r_guide * np.stack([np.cos(turn), np.sin(turn)], 1)), place(outline)]
+    outline = _roller(values, height)
+    outlines = [place(_guide(values)), place(outline)]
     axes = [place([(-1.8 * r_guide, height), (1.8 * r_guide, height)]), place([(-0.4, 0), (1.5 * r_guide, 0)])]
     forces = _forces(ds, values, alpha, height)
     largest = max((float(np.hypot(*force)) for *_, force in forces), default=1.0)
@@ -144,6 +149,7 @@ def _dimensions(
     side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
     radius = values["roller_profile_radius"]
     profile = ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):g} mm", "C,TR")
+    profile = ("drawn profile", "") if values.get("roller_profile") else profile
     rim = r_guide * np.array([-0.8, -0.6])
     return [
         (np.array([(side, height / 2), (side, height)]), f"A {values['axis_distance']:g} mm", "T", (1.0, 0.0)),
@@ -153,24 +159,46 @@ def _dimensions(
     ]
 
 
-def _roller(alpha: float, r_guide: float, r_roller: float, height: float) -> np.ndarray:
-    """Outline of the roller's section: an arc about each contact, the outer ends, and the axis."""
-    half = 1.25 * r_guide
-    contact = r_guide * np.array([math.sin(alpha), math.cos(alpha)])
-    normal = contact / r_guide
-    if math.isinf(r_roller):
-        reach = np.linspace(-0.35 * r_guide, 0.35 * r_guide, ARC)
-        flank = contact + reach[:, None] * np.array([math.cos(alpha), -math.sin(alpha)])
-    else:
-        centre = contact + normal * r_roller  # behind the guide for a groove, in the roller for a convex profile
-        sign = -math.copysign(1.0, r_roller)
-        spread = min(0.45, 0.5 * r_guide / abs(r_roller))
-        turn = alpha + np.linspace(-spread, spread, ARC)
-        flank = centre + abs(r_roller) * sign * np.stack([np.sin(turn), np.cos(turn)], axis=1)
-    flank = flank[(flank[:, 0] > 0) & (flank[:, 0] < half)]
-    flank = flank[np.argsort(flank[:, 0])]
-    ends = np.array([[half, flank[-1, 1]], [half, height], [-half, height], [-half, flank[-1, 1]]])
-    return np.concatenate([(flank * (-1, 1))[::-1], flank, ends])
+def _flank(values: dict[str, Any], body: str, side: int) -> np.ndarray:
+    """Return a body's section about a contact, from inside to outside, as seen at contact 1, (n, 2) [mm]."""
+    alpha, r_guide, radius = math.radians(values["contact_angle"]), *(values[f"{b}_radius"] for b in PROFILES)
+    radius = r_guide if body == PROFILES[0] else radius
+    try:
+        shape = cross_section(
+            json.dumps(values.get(body)) if values.get(body) else "", body, radius, alpha, r_guide, side
+        )
+    except ShapeError:  # the case has failed, and its verdict names the shape; the nominal circle is drawn
+        shape = cross_section("", body, radius, alpha, r_guide, side)
+    low, high = shape.limits
+    u = np.linspace(max(low, -REACH * r_guide), min(high, REACH * r_guide), ARC)[:, None]
+    height = shape.full_height(u) * (1.0 if body == PROFILES[0] else -1.0)  # over the tangent plane, out of the body
+    normal, outward = np.array([math.sin(alpha), math.cos(alpha)]), np.array([math.cos(alpha), -math.sin(alpha)])
+    flank = (r_guide + height) * normal + u * outward
+    return flank[flank[:, 0] > 0]
+
+
+def _guide(values: dict[str, Any]) -> np.ndarray:
+    """Outline of the guide's section: a circle, or its drawn profile about both contacts."""
+    radius = values["guide_profile_radius"]
+    if not values.get("guide_profile"):
+        return _arc(radius, 0.0, 2.0 * np.pi)
+    right, left = (_flank(values, "guide_profile", side) * (sign, 1) for side, sign in ((1, 1), (2, -1)))
+    (inner, outer), (far, near) = (np.arctan2(flank[[0, -1], 1], flank[[0, -1], 0]) for flank in (right, left))
+    below, above = _arc(radius, outer, near - 2.0 * np.pi), _arc(radius, far, inner)
+    return np.concatenate([right, below[1:-1], left[::-1], above[1:-1]])
+
+
+def _arc(radius: float, start: float, end: float) -> np.ndarray:
+    turn = np.linspace(start, end, 2 * ARC)
+    return radius * np.stack([np.cos(turn), np.sin(turn)], axis=1)
+
+
+def _roller(values: dict[str, Any], height: float) -> np.ndarray:
+    """Outline of the roller's section: its profile about each contact, the outer ends, and the axis."""
+    half = 1.25 * values["guide_profile_radius"]
+    right, left = (_flank(values, "roller_profile", side) for side in (1, 2))
+    ends = np.array([[half, right[-1, 1]], [half, height], [-half, height], [-half, left[-1, 1]]])
+    return np.concatenate([(left * (-1, 1))[::-1], right, ends])
 
 
 def _forces(
