@@ -31,7 +31,7 @@ def browser():
 
 @pytest.fixture
 def page(browser, live):
-    with closing(Page(browser, live.address, width=1280, height=800)) as shown:
+    with closing(Page(browser, live.address + "#tab=roller", width=1280, height=800)) as shown:
         shown.until(SETTLED)
         yield shown
         assert [c for c in shown.complaints if "422" not in c] == []  # a wrong value is an answer with this status
@@ -67,6 +67,52 @@ def test_a_slider_moves_the_picture_first_in_preview_then_in_standard(page):
     page.run("[...document.querySelectorAll('header button')].find((b) => b.textContent === 'Undo').click()")
     page.until("!location.hash.includes('axial_force')")  # one movement is one step
     page.until(SETTLED)
+
+
+def test_the_page_begins_with_the_roller_of_the_readme(browser, live):
+    readme = (Path(__file__).resolve().parents[2] / "README.md").read_text(encoding="utf-8")
+    with closing(Page(browser, live.address, width=1280, height=800)) as shown:
+        shown.until(SETTLED)
+        given = dict(pair.split("=") for pair in shown.run("location.hash.slice(1)").split("&"))
+        assert given["roller_material"] in readme and given["guide_material"] in readme
+        call = readme.partition("tr.solve(tr.Case(")[2].partition(", **")[0]
+        assert call == ", ".join(f"{name}={value}" for name, value in given.items() if not name.endswith("material"))
+        assert float(verdict(shown).partition("lasts ")[2].split()[0]) > 8.0
+        shown.run("document.querySelector('[data-field=axial_force]').focus()")
+        type_into(shown, "axial_force", "70")
+        shown.until(SETTLED)
+        shown.run("[...document.querySelectorAll('header button')].find((b) => b.textContent === 'Reset').click()")
+        shown.until("!location.hash.includes('axial_force')")
+        assert dict(pair.split("=") for pair in shown.run("location.hash.slice(1)").split("&")) == given
+
+
+def test_a_profile_is_chosen_among_the_files_of_the_folder(browser, live):
+    rows = [f"{0.05 * i:.2f},{-(7 - (49 - (0.05 * i) ** 2) ** 0.5):.6f}" for i in range(-120, 121)]
+    (live.folder / "groove one.csv").write_text("x [mm],z [mm]\n" + "\n".join(rows))
+    with closing(Page(browser, live.address + "#normal=halfspace", width=1280, height=800)) as shown:
+        shown.until(SETTLED)
+        assert "r 7 mm" in shown.run("document.querySelector('.drawing').textContent").replace("C,TR", "")
+        field = "document.querySelector('[data-field=roller_profile]')"
+        offered = shown.run(f"[...{field}.list.options].map((option) => option.value)")
+        type_into(shown, "roller_profile", next(one for one in offered if "groove one" in one))
+        shown.until(SETTLED)
+        assert "drawn profile" in shown.run("document.querySelector('.drawing').textContent")
+        shown.run("document.querySelectorAll('.stage').forEach((s) => (s.dataset.stage = 'old'))")
+
+
+def test_wear_over_a_travel_waits_until_the_fields_rest(browser, live):
+    address = live.address + "#normal=halfspace&wear_coefficient_factor=1"
+    with closing(Page(browser, address, width=1280, height=800)) as shown:
+        shown.until(SETTLED)
+        new = verdict(shown)
+        told = shown.run("""(async () => { const seen = []; const stage = document.querySelector('.stage');
+            new MutationObserver(() => seen.push(stage.textContent)).observe(stage, {childList: true});
+            const field = document.querySelector('[data-field=travel]'); field.value = '1';
+            stage.dataset.stage = 'old'; field.dispatchEvent(new Event('change'));
+            while (stage.dataset.stage !== 'complete') await new Promise((done) => setTimeout(done, 50));
+            return seen; })()""")
+        assert all("before the travel" in text for text in told[:2]) and "travel" not in told[-1]
+        assert verdict(shown) != new
 
 
 def test_a_wrong_value_is_named_beside_its_field_and_the_last_picture_stays(page):

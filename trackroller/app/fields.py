@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
 from typing import Any
 
 from trackroller.materials import load_database
@@ -15,6 +16,7 @@ from trackroller.parameters import (
     PARAMETERS,
     Parameter,
 )
+from trackroller.parameters.example import LASTING
 from trackroller.report.numbers import capital, unit_text
 from trackroller.roller.doubts import USUAL
 from trackroller.study.design.sampling import METHODS
@@ -31,6 +33,8 @@ def all_fields() -> dict[str, Any]:
         "parameters": [_parameter(parameter) for parameter in PARAMETERS.values()],
         "materials": [_material(row) for row in material_rows(load_database())],
         "bodies": list(MATERIAL_FIELDS),
+        "first": {name: value if isinstance(value, str) else f"{value:g}" for name, value in LASTING.items()},
+        "files": sorted(path.as_posix() for pattern in ("*.csv", "*/*.csv") for path in Path().glob(pattern)),
         "mappings": [{"name": name, "meaning": meaning} for name, meaning in MAPPING_FIELDS.items()],
         "options": [
             {"name": o.name, "value": o.default, "meaning": o.meaning, "values": dict(o.values), "kind": o.kind}

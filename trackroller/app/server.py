@@ -248,4 +248,4 @@ class Server:
 
     def warm_up(self) -> None:
         """Load the compiled solver before the first request."""
-        self.solver.submit("first", lambda: answer("all_fields")() and answer("picture")({}))
+        self.solver.submit("first", lambda: answer("picture")(answer("all_fields")()["first"]))

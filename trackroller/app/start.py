@@ -113,7 +113,7 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
     Parameters
     ----------
     case : Case or mapping, optional
-        The roller with which the page begins; the paper's example if not given.
+        The roller with which the page begins; the long-lived example of the README if not given.
     folder : path
         The folder in which the page keeps studies and results.
     height : int
@@ -142,7 +142,7 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
     from trackroller.roller.case import Case  # the command line starts faster without the solver
     from trackroller.roller.record import given_inputs
 
-    checked = case if isinstance(case, Case) else Case.from_dict(case if isinstance(case, Mapping) else {})
+    checked = case if isinstance(case, Case) else Case.from_dict(case or {})
     words = {n: json.dumps(v) if isinstance(v, (Mapping, list)) else str(v) for n, v in given_inputs(checked).items()}
     command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), "--no-browser"]
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
@@ -151,4 +151,5 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
     if "http://" not in line:
         raise WorkError("the server of the page does not start; `trackroller app` says why in a terminal")
     address = line[line.index("http://") :].split()[0]
-    return Frame(f"{address}#{urllib.parse.urlencode(words)}" if words else address, process, height)
+    hash_ = "" if case is None else f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"
+    return Frame(address + hash_, process, height)

@@ -20,6 +20,13 @@ class DefaultName(str):
 EXAMPLE: dict[str, Any] = {
     name: Default(p.default) for name, p in PARAMETERS.items() if not math.isnan(p.default)
 } | dict.fromkeys(("roller_material", "guide_material"), DefaultName("1.7225-normalised"))
+# A free roller that lives long, with which the live page and the README begin; the paper's lives for hours.
+LASTING: dict[str, Any] = {
+    "motor_force": 0.0,
+    "friction_coefficient": 0.1,
+    "roller_profile_radius": -6.4,
+    **dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered"),
+}
 _PAIR = ("material_pair", "roller_material", "guide_material")
 
 

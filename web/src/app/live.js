@@ -4,6 +4,7 @@ import { ask } from "./api.js";
 
 const REST = 150; // ms without a change until `standard` is solved
 const LATER = 250; // ms after it until the distances are searched, which takes longest
+const WORN = 1000; // ms instead if the profiles wear over a travel first, whose steps take seconds
 
 export function live({ values, inside, shown, failed }) {
   let version = 0; // of the case
@@ -26,7 +27,7 @@ export function live({ values, inside, shown, failed }) {
     busy = false;
     if (own.version === version && !wish) {
       if (own.accuracy === "preview") later(REST - (performance.now() - own.at), { accuracy: "standard", inside: inside() });
-      else if (!own.complete) later(LATER, { accuracy: "standard", complete: true, inside: inside() });
+      else if (!own.complete) later(own.unworn ? WORN : LATER, { accuracy: "standard", complete: true, inside: inside() });
     }
     work();
   }
@@ -38,7 +39,9 @@ export function live({ values, inside, shown, failed }) {
   }
 
   function want(more) {
-    wish = { values: { ...values() }, version, at: performance.now(), accuracy: "preview", complete: false, inside: false, ...more };
+    const { travel, ...unworn } = values();
+    const before = travel !== undefined && !more.complete;
+    wish = { values: before ? unworn : { ...values() }, unworn: before, version, at: performance.now(), accuracy: "preview", complete: false, inside: false, ...more };
     work();
   }
 

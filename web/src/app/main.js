@@ -29,9 +29,9 @@ async function start() {
   const flow = live({
     values: () => state.values,
     inside: () => view.inside() && state.tab === "roller",
-    shown(picture) {
+    shown(picture, { unworn }) {
       for (const row of rows.values()) row.complain("");
-      view.show(picture);
+      view.show(picture, unworn);
       if (since) requestAnimationFrame(() => (times.push(performance.now() - since), (since = 0)));
     },
     failed(errors) {
@@ -66,18 +66,19 @@ async function start() {
   const datalist = el("datalist", { id: "materials" }, offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.search.replace(m.name.toLowerCase(), "").trim()}` })));
   const bodies = offered.bodies.map((name) => add(name, wordRow({ name, label: `${name.replace("_", " ")}`.replace(/^./, (c) => c.toUpperCase()), meaning: "a name of the database; type a part of it, or of its description", list: "materials", fallback: offered.materials[0].name }, { change: change(name), factor: () => study.add(name) })));
   const options = offered.options.map((o) => add(o.name, wordRow({ name: o.name, label: o.name.replaceAll("_", " "), meaning: o.meaning, words: o.kind === "word" ? o.values : o.kind === "switch" ? { true: "", false: "" } : null, fallback: Array.isArray(o.value) ? "" : String(o.value) }, { change: change(o.name) })));
-  const more = [...offered.mappings, { name: "duty", meaning: "{hours_per_day: 16, days_per_year: 250}: lives in years, too" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning }, { change: change(m.name) })));
+  const more = [...offered.mappings, { name: "duty", meaning: "{hours_per_day: 16, days_per_year: 250}: lives in years, too" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning, list: m.name.endsWith("_profile") ? "files" : null }, { change: change(m.name) })));
+  const files = el("datalist", { id: "files" }, offered.files.map((file) => el("option", { value: `{file: ${JSON.stringify(file)}}`, label: file })));
   fields.append(
     group(OPEN[0], parameters(OPEN[0])),
     group(OPEN[1], parameters(OPEN[1]), bodies, datalist),
     group("Limits: what they need", [...grouped.keys()].filter((title) => !OPEN.includes(title)).flatMap(parameters)),
     group("Model and conventions", options),
-    group("Profiles, friction law, bearing, catalogue, duty", el("p", { class: "soft" }, "Written as in a case file, such as {file: groove.csv}; files stand in the folder of this page."), more),
+    group("Profiles, friction law, bearing, catalogue, duty", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
   );
 
   const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => state.undo() }, "Undo");
   const redo = el("button", { type: "button", title: "Ctrl+Y", onclick: () => state.redo() }, "Redo");
-  const reset = el("button", { type: "button", onclick: () => state.replace({}) }, "Reset");
+  const reset = el("button", { type: "button", onclick: () => state.replace(offered.first) }, "Reset");
   const pin = el("button", { type: "button", onclick: () => state.pin() }, "Pin");
   const sheet = el("a", { target: "_blank", rel: "noopener" }, "Printable sheet");
   const link = el("button", { type: "button", title: "without the address of this server", onclick: () => copy(location.href, link) }, "Copy link");
@@ -135,7 +136,7 @@ async function start() {
   addEventListener("hashchange", () => location.hash !== own && state.read(location.hash));
   addEventListener("resize", () => (view.redraw(), variants.redraw()));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (view.redraw(), variants.redraw()));
-  state.read(location.hash);
+  state.read(location.hash || new URLSearchParams(offered.first).toString());
   if (!TABS.some(([name]) => name === state.tab)) state.show("roller");
   results.look();
   window.trackroller = { state, times };

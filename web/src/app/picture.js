@@ -98,11 +98,11 @@ export function pictureView({ again }) {
     lives: section("Life", lives),
     inside,
     redraw: draw,
-    show(picture) {
+    show(picture, unworn) {
       if (last && picture.accuracy === "standard" && !picture.sections.length && inside()) picture.sections = last.sections;
       last = picture;
       verdict.textContent = picture.verdict;
-      stage.textContent = `shown: ${SHOWN[picture.accuracy] ?? picture.accuracy}`;
+      stage.textContent = `shown: ${SHOWN[picture.accuracy] ?? picture.accuracy}${unworn ? ", before the travel; wear follows at rest, after seconds" : ""}`;
       stage.dataset.stage = picture.complete ? "complete" : picture.accuracy;
       node.classList.toggle("preview", picture.accuracy === "preview");
       const said = [...picture.flags.map((flag) => [flag.sentence, flag.remedy]), ...picture.doubts.map((text) => ["Doubtful.", text])];

@@ -67,7 +67,7 @@ export function createState() {
 
   state.written = () => {
     const found = new URLSearchParams(Object.entries(state.values));
-    if (state.tab !== "roller") found.set("tab", state.tab);
+    if (state.tab !== "roller" || ![...found].length) found.set("tab", state.tab); // an empty address is the first example
     for (const pin of state.pins) found.append(PIN, new URLSearchParams(Object.entries(pin)));
     return found.toString();
   };
