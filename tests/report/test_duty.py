@@ -20,6 +20,7 @@ DUTY = {"hours_per_day": 8, "days_per_year": 220}
 
 def test_a_year_of_travel_at_all_hours_is_a_year():
     assert years(24 * 365, checked_duty({"hours_per_day": 24, "days_per_year": "365"})) == 1.0
+    assert checked_duty({"hours_per_day": 16}) == {"hours_per_day": 16.0, "days_per_year": 365.0}
     assert years(4400, checked_duty(DUTY)) == 2.5
 
 
@@ -35,7 +36,7 @@ def test_hours_have_their_years_only_where_a_duty_is_known():
     ("value", "words"),
     [
         ({"hours_per_day": 25, "days_per_year": 200}, "duty.hours_per_day = 25"),
-        ({"hours_per_day": 16}, "duty.days_per_year = None"),
+        ({"days_per_year": 16}, "duty.hours_per_day is missing"),
         ({"hours_per_day": 16, "days_per_yaer": 3}, "days_per_year"),
         (16, "duty = 16"),
     ],

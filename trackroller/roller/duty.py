@@ -20,16 +20,23 @@ ATTRIBUTE = "duty"  # of the result of one case: JSON
 
 
 def checked_duty(value: Any) -> dict[str, float]:
-    """Return a duty with both numbers; raise `InputError` if a number is missing or impossible."""
+    """Return a duty with both numbers, every day of the year unless `days_per_year` is given.
+
+    Raises
+    ------
+    InputError
+        If `hours_per_day` is missing, or a number is impossible.
+    """
     if not isinstance(value, Mapping):
         raise InputError("duty", value, "hours_per_day and days_per_year", EXAMPLE)
     wrong, duty = Collector(), {}
     with wrong.part():
         check_names("duty", value, MOST)
+    value = {"days_per_year": 365.0, **value}
     for name, most in MOST.items():
         with wrong.part():
             if name not in value:
-                raise InputError(f"duty.{name}", None, "a number for each of hours_per_day and days_per_year", EXAMPLE)
+                raise InputError(f"duty.{name}", None, "a number of hours", EXAMPLE)
             least = math.nextafter(0.0, 1.0)
             duty[name] = number_in(
                 value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most, UNITS[name]

@@ -185,7 +185,9 @@ def test_a_table_of_blocks_names_all_its_errors_in_order(tmp_path):
 
 
 def test_options_and_duty_stand_among_the_errors_of_a_case(tmp_path):
-    (tmp_path / "c.yaml").write_text("radial_force: 130\naccuracy: fine\nduty: {hours_per_day: 40}\nhertz: exct\n")
+    (tmp_path / "c.yaml").write_text(
+        "radial_force: 130\naccuracy: fine\nduty: {hours_per_day: 40, days_per_year: 400}\nhertz: exct\n"
+    )
     told = starts_of(lines(trackroller("solve", "c.yaml", cwd=tmp_path, code=2).stderr))
     assert [line.replace(" is missing", " =").split(" =")[0] for line in told] == [
         "line 1: radial_force",
