@@ -118,6 +118,7 @@ def test_a_search_finds_the_front_of_all_designs(tmp_path):
         solved.indices()
 
 
+@pytest.mark.slow
 def test_a_search_goes_on_where_it_was_stopped(tmp_path):
     whole = tr.open_study(search_designs(changed(), tmp_path / "whole").folder.root)
     calls = []

@@ -75,7 +75,7 @@ def check(count, seed, **options):
     return ds
 
 
-@pytest.mark.parametrize("seed", [1, 2])
+@pytest.mark.parametrize("seed", [1])
 def test_thirty_random_extremes_have_all_limits(seed):
     check(30, seed, contact_model="kalker" if seed == 1 else "sliding")
 

@@ -41,6 +41,7 @@ def read(path):
         return ds.load()
 
 
+@pytest.mark.slow
 def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(place):
     call(place, "4km", "parts.nc", "--quiet")
     said = call(place, "9km", "parts.nc", "--report", str(place / "page.html"))

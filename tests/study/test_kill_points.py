@@ -74,6 +74,7 @@ def same(one: Path, other: Path) -> None:
     xr.testing.assert_identical(*sets)
 
 
+@pytest.mark.slow
 def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, solved):
     data = GROWN | {"samples": 8}
     run(data, tmp_path / "calm")
