@@ -1,5 +1,7 @@
 """The groove over travel: limits, conservation, geometry, order, symmetry, ends and resumption."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -179,6 +181,28 @@ def test_where_the_travel_ends():
     assert ds.attrs["end"] == "lift_off" and ds.sizes["travel"] == 1
     ds = tr.wear(roller(motor_force=-60), 100, FORCES, **SLIDING)
     assert ds.attrs["end"] == "full_slip"
+
+
+def test_a_march_ends_after_a_limited_number_of_states(monkeypatch):
+    monkeypatch.setattr(groove, "STEPS", 4)
+    case, kept = roller(k=1.0), []
+    ds = tr.wear(case, 1e3, FORCES, tell=lambda ds, goal: kept.append(ds), **SLIDING)
+    assert ds.attrs["end"] == "steps" and ds.sizes["travel"] == 4 and float(ds.travel[-1]) < 1e3
+    assert "states were not enough" in ds.attrs["end_meaning"]
+    assert tr.wear(case, 1e3, FORCES, resume=kept[1], **SLIDING).identical(ds)
+    late = tr.solve(roller(k=1.0, travel=1e3), FORCES, normal="halfspace", **SLIDING)
+    assert not late.converged and "states were not enough" in str(late.reason.item())
+
+
+def test_a_deep_groove_is_followed_in_larger_steps():
+    """Beyond the elastic approach the depth of a step grows with the depth so far, at any wear coefficient."""
+    w = Wearing(to_table(roller(k=1.0)), Options(normal="halfspace", outputs=("forces",), **SLIDING))
+    at = replace(w.start, depth=w.start.depth + 0.1)
+    patches = w._patches(w.new, w.table)
+    _, shallow, _ = w._two_ways(w.start, patches, 1e-5)
+    _, deep, _ = w._two_ways(at, patches, 1e-5)
+    more = groove.SHARE * (0.1 - groove.DEEP * w.scale)
+    assert deep == pytest.approx(shallow * groove.TOLERANCE * w.scale / (groove.TOLERANCE * w.scale + more), rel=0.1)
 
 
 def test_refused_input():

@@ -34,17 +34,18 @@ from trackroller.roller.table import CaseTable
 
 REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
 TOLERANCE = 0.02  # largest error of the depth in a step over the elastic approach of the new bodies
+DEEP, SHARE = 2.0, 0.1  # beyond DEEP elastic approaches, this share of the depth beyond them is allowed in addition
 FIRST = 0.05  # depth of the first step over the elastic approach of the new bodies
-LEAST = 1e-3  # least step over the first step
+LEAST = 0.02  # depth of the least step over that of the first step, or of a step that wears SHARE of the depth
 GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
-STEPS = 400  # largest number of steps
+STEPS = 40  # largest number of states, which bounds the processor time of a groove that goes on growing
 ENDS = {
     "travel": "the travel asked for is reached",
     "permissible": "the permissible wear depth is reached",
     "lift_off": "a contact has lifted off",
     "full_slip": "friction can no longer transmit the motor force, so that wear per travel has no limit",
     "failed": "no balance of the forces was found",
-    "steps": f"the steps became too small, or {STEPS} steps were not enough",
+    "steps": f"the steps became too small, or {STEPS} states were not enough",
     "wide": f"the patch has grown beyond {REACH:g} times the new one",
 }
 
@@ -251,11 +252,14 @@ class Wearing:
         wore = np.any(two.depth > at.depth, axis=1)
         squares = [float(np.mean(one[cells] ** 2)) for one, cells in zip(apart, wore, strict=True) if cells.any()]
         error = max(squares, default=0.0) ** 0.5
+        allowed = TOLERANCE * self.scale + SHARE * max(float(at.depth.max()) - DEEP * self.scale, 0.0)
         depth = np.maximum(2.0 * two.depth - full.depth, at.depth)
         new = replace(two, depth=depth, closing=2.0 * two.closing - full.closing, error=at.error + error)
-        return new, error / (TOLERANCE * self.scale), ""
+        return new, error / allowed, ""
 
-    def march(self, state: Groove | None = None, step: float = 0.0) -> Iterator[tuple[Groove, Results, float, str]]:
+    def march(
+        self, state: Groove | None = None, step: float = 0.0, states: int = 1
+    ) -> Iterator[tuple[Groove, Results, float, str]]:
         """Yield states with their results, the next step [km], and at the last one why it cannot go on.
 
         A state and its next step determine all that follows, so that a march that goes on has the same bits. Without
@@ -267,11 +271,13 @@ class Wearing:
             State from which the march goes on; default: the new groove.
         step : float
             Next step of a march that goes on [km].
+        states : int
+            Number of states so far, which counts towards the limit.
         """
         at = self.start if state is None else state
         results, reason = (self.new if state is None else self.solve(at)), self.end(self.new)
         yield at, results, step, reason
-        for _ in range(0 if reason else STEPS):
+        for _ in range(states, states if reason else STEPS):
             patches, at = self._patches(results, self.worn_table(at)), self.turned(at, results)
             if any(p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width for p in patches):
                 yield at, results, step, "wide"
@@ -280,7 +286,7 @@ class Wearing:
             if not fastest > 0.0:
                 return
             step = step or FIRST * self.scale / fastest
-            least = LEAST * FIRST * self.scale / fastest
+            least = LEAST * max(FIRST * self.scale, SHARE * float(at.depth.max())) / fastest
             while True:
                 new, ratio, reason = self._two_ways(at, patches, step)
                 if new is not None and ratio <= 1.0:
@@ -294,6 +300,8 @@ class Wearing:
                     return
             at, results, step = new, after, step * min(GROWTH, 0.9 / np.sqrt(max(ratio, 1e-12)))
             yield at, results, step, ""
+        if not reason:
+            yield at, results, step, "steps"
 
 
 def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:

@@ -115,14 +115,14 @@ def wear(
     case = case if isinstance(case, Case) else Case.from_dict(case)
     to = number_in(to, "to", "a travel > 0 [km]", np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     given = Options(**{"normal": "halfspace", "outputs": tuple(OUTPUTS if outputs is None else outputs)} | options)
-    record = _Record(case, given, known, tell or (lambda ds, goal: None), to)
+    record = _Record(case, given, known, tell, to)
     return record.run(resume)
 
 
 class _Record:
     """The run of one roller: its march, and the results that were made of its states."""
 
-    def __init__(self, case: Case, options: Options, database: MaterialDatabase, tell: Tell, to: float) -> None:
+    def __init__(self, case: Case, options: Options, database: MaterialDatabase, tell: Tell | None, to: float) -> None:
         self.case, self.options, self.database, self.tell, self.to = case, options, database, tell, to
         self.table, self.mirrored = handed(to_table(case, database))
         self.wearing = Wearing(self.table, options)
@@ -132,7 +132,7 @@ class _Record:
         """Return the results up to the end."""
         state, step = (None, 0.0) if resume is None else self._taken_up(resume)
         before: Groove | None = None
-        for at, results, onward, reason in self.wearing.march(state, step):
+        for at, results, onward, reason in self.wearing.march(state, step, len(self.rows) or 1):
             if reason and (before is None or at.travel == before.travel):
                 if before is None and state is None:
                     self._add(at, at, results, np.nan)
@@ -171,7 +171,8 @@ class _Record:
                 array = np.asarray(values[v.name])
                 row[v.name] = v.dims, self._seen(array, v.dims), {"units": v.units, "long_name": v.long_name}
         self.rows.append(row.assign_coords(travel=state.travel))
-        self.tell(self._joined("running"), self.to)
+        if self.tell is not None:
+            self.tell(self._joined("running"), self.to)
 
     def _seen(self, array: np.ndarray, dims: tuple[str, ...]) -> np.ndarray:
         """Return an array with contacts 1 and 2 swapped if the mirror image of the roller was solved, and back."""
