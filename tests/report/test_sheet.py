@@ -243,7 +243,8 @@ def written(tmp_path_factory):
 
 def test_the_command_line_writes_sheet_and_text(written):
     page = written[0].read_text(encoding="utf-8")
-    assert "my-roller" in page and page.count("<figure") == 3
+    assert "my-roller" in page and page.count("<figure") == 4  # one of them is small: the worn depth
+    assert "(run-in distance) the profiles have changed" in page
     rows = {cells[1].strip(): cells[2:5] for line in written[1].splitlines() if len(cells := line.split("│")) == 6}
     assert [cell.strip() for cell in rows["radial force F_rad"]] == ["−20", "N", "given"]
     assert rows["friction coefficient mu"][0].strip() == "0.3"

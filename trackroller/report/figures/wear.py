@@ -60,6 +60,41 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     return figure, style.FigureInfo("wear_profiles", caption, f"{wide} while {rounded(depth)} µm are worn off.")
 
 
+def over_patch(ds: xr.Dataset) -> style.Drawn:
+    """Draw the depth over both patches after the run-in distance, at the rate of the new profiles.
+
+    Parameters
+    ----------
+    ds : result of `solve` for one case
+        With the outputs `tractions` and `wear`, by Archard's law. Otherwise no figure is drawn.
+
+    Returns
+    -------
+    The figure and its caption, or None.
+    """
+    names = {"run_in_distance", "wear_depth_per_km", "pressure", "slip_lateral", "slip_rolling"}
+    if not names <= set(ds) or ds.attrs.get("wear_law") != "archard" or not np.isfinite(float(ds["run_in_distance"])):
+        return None
+    rate = (ds["pressure"] * np.hypot(ds["slip_lateral"], ds["slip_rolling"])).sum("y")
+    shape = rate / rate.max("x")
+    figure = style.new_figure(45, 88)
+    panels = figure.subplots(1, ds.sizes["contact"], sharey=True, squeeze=False)[0]
+    for axes, contact in zip(panels, ds["contact"].values.tolist(), strict=True):
+        for body, colour, line in zip(BODIES, style.palette(2), style.LINES, strict=False):
+            own = ds.sel(contact=contact, body=body)
+            depth = 1e3 * float(own["run_in_distance"] * own["wear_depth_per_km"])
+            if np.isfinite(depth):
+                x = ds["patch_x"].sel(contact=contact)
+                axes.plot(x, depth * shape.sel(contact=contact), color=colour, ls=line, lw=1.2, label=body)
+        axes.set_title(f"contact {contact}")
+        axes.set_xlabel("lateral place [mm]")
+    panels[0].set_ylabel("worn depth [µm]")
+    panels[0].set_ylim(bottom=0)
+    panels[-1].legend(frameon=False)
+    caption = f"Worn depth after the run-in distance of {rounded(float(ds['run_in_distance']))} km, at the first rate."
+    return figure, style.FigureInfo("wear_depth", caption, "")
+
+
 def course(ds: xr.Dataset) -> style.Drawn:
     """Draw depth, largest pressure and damage sum over the travel.
 

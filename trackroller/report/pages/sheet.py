@@ -14,6 +14,7 @@ from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import collect, side_by_side
+from trackroller.report.words.wear import run_in
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -57,6 +58,9 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
 
         drawn = _pictures(partial(plot_case, ds))
+        from trackroller.report.figures import style, wear
+
+        drawn |= _pictures(partial(style.draw_all, [partial(wear.over_patch, ds)]))
     facts = collect(ds)
     content = {
         "facts": facts,
@@ -65,6 +69,8 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         "name": name or "Track roller",
         "drawing": drawing(ds) if "normal_force" in ds else "",
         "figures": [drawn[name] for name in SHOWN if name in drawn],
+        "worn": run_in(ds),
+        "depth": drawn.get("wear_depth"),
         "full": FULL,
         "probability": f"{100 * float(ds.attrs['failure_probability']):g} %",
     }

@@ -21,6 +21,21 @@ def deeper_contact(ds: xr.Dataset) -> int:
     return int(ds["contact"].values[int(np.argmax(depth.values > 0.999 * depth.values.max()))])
 
 
+def run_in(ds: xr.Dataset) -> str:
+    """Return how fast the groove of a new roller wears, in one sentence; an empty text if wear was not computed."""
+    if "run_in_distance" not in ds or not np.isfinite(float(ds["run_in_distance"])):
+        return ""
+    rates = ds["wear_depth_per_km"]
+    first = rates.max("contact")
+    lost = [
+        f"the {body} {rounded(1e3 * float(first.sel(body=body)))} µm" for body in BODIES if first.sel(body=body) > 0
+    ]
+    return (
+        f"At first {' and '.join(lost)} a km are worn off; after {rounded(float(ds['run_in_distance']))} km (run-in "
+        "distance) the profiles have changed as much as their gap at the edge of the patch."
+    )
+
+
 def sentences(ds: xr.Dataset) -> list[Sentence]:
     """Return what a user asks first: how far, how deep, how pressure and patch change, and the life with wear."""
     return [_end(ds), _pressure(ds), *(s for body in BODIES if (s := _life(ds, body)) is not None)]
