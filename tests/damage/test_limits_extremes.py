@@ -1,5 +1,6 @@
 """Random extremes over all limits: a number, or the reason why there is none."""
 
+import os
 import warnings
 
 import numpy as np
