@@ -12,6 +12,10 @@ if "PYTEST_XDIST_WORKER" in os.environ:
     os.environ.setdefault("OMP_NUM_THREADS", "1")
     os.environ.setdefault("NUMBA_NUM_THREADS", "1")
 
+# what the developer's terminal says about itself must not fold the lines that tests read
+for name in ("COLUMNS", "LINES", "FORCE_COLOR", "TTY_COMPATIBLE"):
+    os.environ.pop(name, None)
+
 # a busy machine must not fail a test: the benchmarks in validation/ measure what an example costs
 settings.register_profile("trackroller", deadline=None)
 settings.load_profile("trackroller")

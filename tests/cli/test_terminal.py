@@ -72,8 +72,9 @@ def test_a_wide_table_is_parted_and_repeats_its_first_column(capsys, monkeypatch
     assert lines[0].startswith("life     a sentence") and lines[1].startswith(" " * 9) and max(map(len, lines)) <= 40
 
 
-def test_a_pipe_has_lines_of_any_length(capsys, monkeypatch):
-    monkeypatch.delenv("COLUMNS", raising=False)
+@pytest.mark.parametrize("name", ["COLUMNS", "FORCE_COLOR", "TTY_COMPATIBLE"])
+def test_a_pipe_has_lines_of_any_length(name, capsys, monkeypatch):
+    monkeypatch.setenv(name, "" if name == "COLUMNS" else "1")
     print_text("word " * 100)
     print_table(["name", "text"], [["a", "word " * 100]])
     assert len(capsys.readouterr().out.splitlines()) == 6

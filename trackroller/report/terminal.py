@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import sys
 import textwrap
 from collections.abc import Sequence
 from typing import TextIO
@@ -16,9 +17,10 @@ WIDE = 10_000  # letters of a line in a file or a pipe, which no window limits
 
 
 def room() -> int:
-    """Return the letters of a line: those of the terminal, or of COLUMNS; a file or a pipe has no limit."""
-    console = Console()
-    return console.width if console.is_terminal or "COLUMNS" in os.environ else WIDE
+    """Return the letters of a line: COLUMNS, else those of the terminal; a file or a pipe has no limit."""
+    asked = os.environ.get("COLUMNS", "").lstrip("0")
+    # not `Console.is_terminal`: that is true for a file, too, where FORCE_COLOR asks for colours
+    return Console().width if asked.isdigit() or sys.stdout.isatty() else WIDE
 
 
 def print_table(
