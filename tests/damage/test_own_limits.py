@@ -2,6 +2,7 @@
 
 import hashlib
 import json
+import os
 import re
 import subprocess
 import sys
@@ -83,3 +84,22 @@ def test_names_that_exist_and_empty_folders_are_refused(place):
     assert "new materials: these exist" in solve(place, "--allow-code", code=2)
     file.unlink()
     assert "a folder with limits" in solve(place, "--allow-code", code=2)
+
+
+@pytest.mark.slow
+def test_the_file_of_a_limit_is_an_input_of_a_study(place):
+    file = place / "config" / "limits" / "lining.py"
+    used = file.read_bytes()
+    (place / "edit.py").write_text(
+        "import sys\nfrom pathlib import Path\nfrom trackroller.study.file.load import load_study\n"
+        "from trackroller.study.run import run_study\nstudy = load_study('study.yaml')\n"
+        "def told(line):\n    Path('config/limits/lining.py').open('a').write('# later\\n')\n"
+        "try:\n    run_study(study, tell=told)\nexcept Exception as exc:\n    sys.exit(str(exc))\n"
+    )
+    (place / "study.yaml").write_text(STUDY + "chunk_size: 1\n")
+    allowed = os.environ | {"TRACKROLLER_ALLOW_CODE": "config/limits"}
+    words = [sys.executable, "edit.py"]
+    done = subprocess.run(words, cwd=place, env=allowed, capture_output=True, text=True)
+    assert done.returncode == 1 and re.search("lining.py was edited.*SHA-256 was .* and is", done.stderr), done.stderr
+    assert (place / "results" / "own" / "inputs" / "limits" / "lining.py").read_bytes() == used
+    assert len(list((place / "results" / "own" / "chunks").iterdir())) == 1

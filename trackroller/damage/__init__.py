@@ -23,7 +23,7 @@ from trackroller.parameters import own_limits
 
 _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
-LIMITS |= {path.stem: own.load(path) for path in own_limits.files()}
+LIMITS |= {path.stem: own.load(path) for path in own_limits.digests()}
 
 
 def asked(outputs: Collection[str]) -> tuple[Limit, ...]:

@@ -20,15 +20,12 @@ from trackroller.errors import InputError
 VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
 
 
-def files() -> tuple[Path, ...]:
-    """Return the files with limits that the user allows, sorted by name."""
+@cache
+def digests() -> dict[Path, str]:
+    """Return the SHA-256 of each allowed file, sorted by name; the files are read once, before they are loaded."""
     folder = os.environ.get(VARIABLE)
-    return tuple(sorted(Path(folder).glob("*.py"))) if folder else ()
-
-
-def digests() -> dict[str, str]:
-    """Return the SHA-256 of each allowed file by the name of its limit."""
-    return {path.stem: hashlib.sha256(path.read_bytes()).hexdigest() for path in files()}
+    files = sorted(Path(folder).resolve().glob("*.py")) if folder else ()
+    return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
 
 
 @cache
@@ -44,10 +41,10 @@ def declarations() -> dict[str, Any]:
     """
     if VARIABLE not in os.environ:
         return {"groups": {}, "mappings": {}, "parameters": [], "materials": []}
-    if not files():
+    if not digests():
         allowed = "a folder with limits, one file NAME.py each"
         raise InputError("--allow-code", os.environ[VARIABLE], allowed, "Add a file, or leave out --allow-code.")
-    words = [sys.executable, "-m", "trackroller.damage.own", *map(str, files())]
+    words = [sys.executable, "-m", "trackroller.damage.own", *map(str, digests())]
     bare = {name: value for name, value in os.environ.items() if name != VARIABLE}
     done = subprocess.run(words, env=bare, capture_output=True, text=True, check=False)
     if done.returncode:

@@ -13,6 +13,7 @@ from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.parameters.example import not_given
+from trackroller.parameters.own_limits import digests
 from trackroller.roller.aliases import study_with_radii
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check
 from trackroller.study.file.config import StudyFile
@@ -73,6 +74,7 @@ def parse_study(
 ) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     with noted_reads() as inputs:
+        inputs |= {path: ("limit", digest) for path, digest in digests().items()}
         study, wrong = complete(Study(checked_keys(data), path, database, inputs)), Collector()
         with wrong.part():
             cross_check(study)

@@ -46,7 +46,8 @@ def store_inputs(study: Study, folder: StudyFolder) -> dict[str, dict[str, str]]
     for path, (kind, digest) in study.inputs.items():
         content = path.read_bytes() if path.is_file() else b""
         _compare(path, digest, hashlib.sha256(content).hexdigest())
-        name = {"table": path.name, "materials file": MATERIALS}.get(kind, f"given/{digest[:8]}-{path.name}")
+        names = {"table": path.name, "materials file": MATERIALS, "limit": f"limits/{path.name}"}
+        name = names.get(kind, f"given/{digest[:8]}-{path.name}")
         stored[name] = {"sha256": digest, "path": str(path)}
         _write(folder.inputs / name, digest, content)
     table = None if study.config.table is None else Path(study.config.table).name

@@ -50,7 +50,7 @@ def git_commit() -> str:
 
 def versions() -> dict[str, str]:
     """Return the versions of all that computes the numbers: this package, Python, packages, limits of a user's own."""
-    own = {f"config/limits/{name}.py": f"sha256 {digest}" for name, digest in digests().items()}
+    own = {f"config/limits/{path.name}": f"sha256 {digest}" for path, digest in digests().items()}
     return {"trackroller": __version__, "python": platform.python_version()} | own | _packages()
 
 

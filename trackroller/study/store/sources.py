@@ -107,7 +107,7 @@ def code_digest(modules: str | Iterable[str], leave_out: Iterable[str] = ()) -> 
 @cache
 def solver_digest() -> str:
     """Return the digest of all that `trackroller.solve` depends on except the values in a fingerprint."""
-    digest, own = code_digest(SOLVER, BY_VALUE), digests()
+    digest, own = code_digest(SOLVER, BY_VALUE), {path.stem: sha for path, sha in digests().items()}
     return hashlib.sha256(f"{digest} {sorted(own.items())}".encode()).hexdigest()[:16] if own else digest
 
 
