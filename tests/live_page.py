@@ -22,7 +22,7 @@ contact_model: sliding
 accuracy: preview
 """
 LONG = """name: long
-factors: {friction_coefficient: {linspace: [0.05, 0.4, 60]}, axial_force: {linspace: [0, 60, 20]}}
+factors: {friction_coefficient: {linspace: [0.05, 0.4, 60]}, axial_force: {linspace: [0, 60, 200]}}
 outputs: [forces, peak_stress, life, shakedown]
 chunk_size: 60
 """

@@ -26,7 +26,7 @@ RULES = {
     "RT01": "no section Returns",
     "RT03": "the result without description",
 }
-CALLED = {"report": "report.write", "app": "app.start.frame"}  # rooms that are functions, too
+CALLED = {"report": "report.write", "app": "app.frame"}  # rooms that are functions, too
 REFERENCE = Path(__file__).resolve().parents[1] / "docs" / "reference.md"
 
 

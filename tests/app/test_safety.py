@@ -163,10 +163,10 @@ def test_a_study_survives_its_server_and_is_found_again(tmp_path):
     assert first.ask("delete", name="long", confirm="long")[0] == 409
     first.stop(signal.SIGKILL)
     second = LivePage(tmp_path)
-    assert second.until("long", "running")["total"] == 1200
+    assert second.until("long", "running")["total"] == 12_000
     assert second.ask("pause", name="long")[0] == 200
     paused = second.until("long", "paused")
-    assert 0 < paused["done"] < 1200
+    assert 0 < paused["done"] < 12_000
     assert second.ask("resume", name="long")[0] == 200
     second.until("long", "running", cases=paused["done"])
     assert second.ask("pause", name="long")[0] == 200

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 import trackroller as tr
-from trackroller.app.start import frame
+from trackroller.app import frame
 from trackroller.report import write
 
 PACKAGE = Path(tr.__file__).parent

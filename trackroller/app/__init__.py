@@ -1,23 +1,89 @@
 """The live page: one roller to play with, studies that start from it, and the server of both on this machine.
 
-The module itself can be called: `tr.app(case)` shows the page in a notebook, see `trackroller.app.start.frame`.
+The module itself can be called: `tr.app(case)` shows the page in a notebook.
 """
 
 from __future__ import annotations
 
+import atexit
+import subprocess
 import sys
+import urllib.parse
+from html import escape
 from pathlib import Path
 from types import ModuleType
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    from trackroller.app.start import Frame
+from trackroller.errors import WorkError
+
+
+class Frame:
+    """The live page in a notebook; `address` opens it elsewhere, and `close` ends its server."""
+
+    def __init__(self, address: str, process: subprocess.Popen[str], height: int) -> None:
+        self.address, self.height, self._process = address, height, process
+
+    def close(self) -> None:
+        """End the server; studies that run go on."""
+        self._process.terminate()
+        self._process.wait()
+
+    def _repr_html_(self) -> str:
+        address = escape(self.address, quote=True)
+        style = f'width="100%" height="{self.height}" style="border: 0"'
+        return f'<iframe src="{address}" title="trackroller" allow="clipboard-write" {style}></iframe>'
+
+
+def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Frame:
+    """Show the live page of one roller in a notebook.
+
+    Parameters
+    ----------
+    case : Case or mapping, optional
+        The roller with which the page begins; the long-lived example of the README if not given.
+    folder : path
+        The folder in which the page keeps studies and results.
+    height : int
+        Height of the frame [px].
+
+    Returns
+    -------
+    Frame
+        A notebook shows it as a frame. Its server ends with Python.
+
+    Raises
+    ------
+    InputError
+        If the case is wrong.
+    WorkError
+        If the server does not start.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> page = tr.app({"axial_force": 70})
+    >>> page.address.endswith("#axial_force=70.0")
+    True
+    >>> page.close()
+    """
+    from trackroller.roller.case import Case  # the worker of a study starts faster without the solver
+    from trackroller.roller.record import given_inputs, setting_text
+
+    checked = case if isinstance(case, Case) else Case.from_dict(case or {})
+    words = {name: setting_text(value) for name, value in given_inputs(checked).items()}
+    command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), "--no-browser"]
+    process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
+    atexit.register(process.terminate)
+    line = process.stdout.readline() if process.stdout else ""
+    if "http://" not in line:
+        raise WorkError("the server of the page does not start; `trackroller app` says why in a terminal")
+    address = line[line.index("http://") :].split()[0]
+    hash_ = "" if case is None else f"#{urllib.parse.urlencode(words or {'tab': 'roller'})}"
+    return Frame(address + hash_, process, height)
 
 
 class _CallableModule(ModuleType):
     def __call__(self, case: Any = None, folder: Path | str = ".", height: int = 820) -> Frame:
-        from trackroller.app.start import frame  # the command line starts faster without it
-
         return frame(case, folder, height)
 
 

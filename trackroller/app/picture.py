@@ -6,7 +6,6 @@ import base64
 import functools
 import json
 import math
-from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Any
 
@@ -15,7 +14,6 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
-from trackroller.parameters import PARAMETERS
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
@@ -35,13 +33,12 @@ POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
 _JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None))
 _UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes 0.2 s
+DERIVED = ("share", "factor", "life", "when")  # properties of a margin that the page shows
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
 
 
 def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return case, options and duty of the fields of the page; texts are read as the command line reads `--set`."""
-    if not isinstance(values, Mapping):
-        raise InputError("case", values, "a mapping of fields to values")
     given = {n: parse_yaml(v, n) if isinstance(v, str) else v for n, v in values.items() if v not in ("", None)}
     return checked_case(given)
 
@@ -87,17 +84,13 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
 @lives_in_years
 def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
     facts: Facts = collect(ds, ranges)
-    told = ("verdict", "reason", "not_checked", "guesses", "doubts")
-    rows = {name: [asdict(row) for row in getattr(facts, name)] for name in ("inputs", "whole", "lives")}
-    margins = [
-        asdict(m) | {"share": m.share, "factor": m.factor, "life": m.life, "when": m.when} for m in facts.margins
-    ]
+    words = ("verdict", "reason", "not_checked", "guesses", "doubts")
+    rows = ("inputs", "whole", "lives", "flags")
     return {
-        **{name: getattr(facts, name) for name in told},
-        **rows,
+        **{name: getattr(facts, name) for name in words},
+        **{name: [asdict(row) for row in getattr(facts, name)] for name in rows},
         "lines": side_by_side(facts.contacts) if any(c.carries for c in facts.contacts) else [],
-        "margins": margins,
-        "flags": [{"sentence": flag.sentence, "remedy": flag.remedy} for flag in facts.flags],
+        "margins": [asdict(m) | {name: getattr(m, name) for name in DERIVED} for m in facts.margins],
     }
 
 
@@ -171,8 +164,6 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     dict
         The values, every result with one number a case by name, and what is wrong with values that are refused.
     """
-    if over not in PARAMETERS:
-        raise InputError("over", over, "a parameter of a case", "Choose one of the list.")
     if len(ends) != 2 or not all(map(math.isfinite, ends)) or ends[0] == ends[1]:
         raise InputError(over, ends, "a first and a last value that differ", "Write two numbers.")
     low, high = ends
@@ -199,13 +190,11 @@ def texts(values: Values) -> dict[str, str]:
     """Return the case as a case file (YAML), as a command and as lines of Python."""
     case, options, duty = read(values)
     given = given_inputs(case)
-    words = {name: list(value) if isinstance(value, tuple) else value for name, value in options.items()}
-    also = {} if duty is None else {"duty": duty}
     fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())
-    more = "".join(f", {name}={value!r}" for name, value in words.items())
+    more = "".join(f", {name}={value!r}" for name, value in options.items())
     return {
-        "YAML": write_yaml({**given, **words, **also}) if given or words or also else "{}\n",
-        "command": solve_command(given | words),
+        "YAML": write_yaml(given | options | ({"duty": duty} if duty else {})),
+        "command": solve_command(given | options),
         "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n",
     }
 

@@ -16,7 +16,6 @@ import secrets
 import threading
 import traceback
 from collections.abc import Callable, Mapping
-from http import HTTPStatus
 from importlib import import_module, resources
 from typing import Any
 
@@ -45,12 +44,19 @@ REPORT = (
 ASSETS = {"": ("index.html", "text/html"), "app.js": ("app.js", "text/javascript"), "app.css": ("app.css", "text/css")}
 
 
-class Refused(Exception):
+MAPPING = pydantic.TypeAdapter(dict[str, Any])  # what every request holds as JSON
+STATUS = {InputError: 422, WorkError: 409, pydantic.ValidationError: 400}
+
+
+class Refused(tornado.web.HTTPError):
     """A request that is not answered, with its HTTP status and the reason in words."""
 
-    def __init__(self, status: int, message: str) -> None:
-        super().__init__(message)
-        self.status = status
+    def __init__(self, status: int, words: str) -> None:
+        super().__init__(status)
+        self.words = words
+
+    def __str__(self) -> str:
+        return self.words
 
 
 SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet"), "picture")  # the thread of the solver answers
@@ -84,9 +90,6 @@ def plain(value: Any) -> Any:
 class _Handler(tornado.web.RequestHandler):
     """What all answers share: who may ask, the headers, and errors in words."""
 
-    def initialize(self, server: Server) -> None:
-        self.server = server
-
     def set_default_headers(self) -> None:
         for name, text in {
             "Content-Security-Policy": OWN,
@@ -100,41 +103,42 @@ class _Handler(tornado.web.RequestHandler):
 
     def prepare(self) -> None:
         """Refuse who does not know the token, who asks under another name of this machine, and other sites."""
-        server, headers = self.server, self.request.headers
+        server, headers = self.settings["server"], self.request.headers
         if self.request.host not in server.names:
             raise Refused(403, f"This server answers at {HOST}:{server.port} only.")
         if not hmac.compare_digest(str(self.path_args[0]).encode(), server.token.encode()):
             raise Refused(
                 403, "The token in the address is missing or wrong. Open the address that the terminal shows."
             )
+        own = f"http://{self.request.host}"
         foreign = headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin")
-        if self.request.method == "POST" and (foreign or headers.get("Origin") not in (None, *server.origins)):
+        if self.request.method == "POST" and (foreign or headers.get("Origin", own) != own):
             raise Refused(403, "Another site asked. Only the page of this server may.")
+
+    async def answered(self, question: str, newest_of: str = "", /, **arguments: Any) -> Any:
+        """Answer in the thread of the solver or of the files; `newest_of` names a page that needs the newest only."""
+        server: Server = self.settings["server"]
+        lane = server.solver if question in SOLVING else server.files
+        key = question, newest_of or secrets.token_hex(8)
+        return await asyncio.wrap_future(lane.submit(key, lambda: answer(question)(**arguments)))
 
     def write_error(self, status_code: int, **info: Any) -> None:
         """Answer with the reason in words; an error of the program leaves its traceback in the terminal only."""
-        exc = info.get("exc_info", (None, None, None))[1]
-        errors = [{"field": "", "message": str(exc) or HTTPStatus(status_code).phrase}]
-        if isinstance(exc, Refused):
-            self.set_status(exc.status)
-        elif isinstance(exc, InputError):
-            self.set_status(422)
+        exc = info["exc_info"][1]
+        self.set_status(next((status for kind, status in STATUS.items() if isinstance(exc, kind)), status_code))
+        errors = [{"field": "", "message": str(exc)}]
+        if isinstance(exc, InputError):
             errors = [{"field": e.field, "message": str(e)} for e in exc.errors]
-        elif isinstance(exc, WorkError):
-            self.set_status(409)
         elif isinstance(exc, pydantic.ValidationError):
-            self.set_status(400)
             found = exc.errors()[0]
-            errors[0]["message"] = f"The request is not complete: {'.'.join(map(str, found['loc']))}, {found['msg']}."
-        elif isinstance(exc, tornado.web.HTTPError):
-            errors[0]["message"] = f"{HTTPStatus(status_code).phrase}. The page asks for nothing of this kind."
-        elif exc is not None:
+            errors[0]["message"] = f"The request is wrong: {': '.join(map(str, (*found['loc'], found['msg'])))}."
+        elif not isinstance(exc, (tornado.web.HTTPError, WorkError)):
             errors[0]["message"] = f"Internal error, {type(exc).__name__}. The terminal shows more."
         self.finish({"errors": errors})
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
         """Print the traceback of an error of the program; refusals and wrong input are answers."""
-        if not isinstance(value, (Refused, InputError, WorkError, pydantic.ValidationError, tornado.web.HTTPError)):
+        if not isinstance(value, (tornado.web.HTTPError, *STATUS)):
             traceback.print_exception(typ, value, tb)
 
 
@@ -159,35 +163,18 @@ class _Answer(_Handler):
             raise Refused(415, "The request is not of the type application/json.")
         if len(self.request.body) > LARGEST:
             raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
-        body = self._body()
-        lane = self.server.solver if name in SOLVING else self.server.files
-        page = str(body.pop("page", "")) if name in NEWEST else secrets.token_hex(8)
-        body.pop("page", None)
-        found = await asyncio.wrap_future(lane.submit((name, page), lambda: answer(name)(**body)))
+        body = MAPPING.validate_json(self.request.body)
+        page = str(body.pop("page", ""))
+        found = await self.answered(name, page if name in NEWEST else "", **body)
         self.set_header("Content-Type", "application/json")
         self.finish(json.dumps(plain(found), allow_nan=False).replace("<", "\\u003c"))
-
-    def _body(self) -> dict[str, Any]:
-        try:
-            body = json.loads(self.request.body)
-        except (ValueError, RecursionError):
-            raise Refused(400, "The request is not JSON.") from None
-        if not isinstance(body, dict):
-            raise Refused(400, "The request is not a JSON object.")
-        return body
 
 
 class _Sheet(_Handler):
     """The printable sheet of the case that the query holds as JSON."""
 
     async def get(self, token: str) -> None:
-        try:
-            values = json.loads(self.get_query_argument("case", "{}"))
-        except (ValueError, RecursionError):
-            raise Refused(400, "The address holds no case.") from None
-        page = await asyncio.wrap_future(
-            self.server.solver.submit(secrets.token_hex(8), lambda: answer("sheet")(values))
-        )
+        page = await self.answered("sheet", values=MAPPING.validate_json(self.get_query_argument("case", "{}")))
         self.set_header("Content-Security-Policy", SHEET)
         self.finish(page)
 
@@ -196,8 +183,7 @@ class _Result(_Handler):
     """Report and explorer of a study."""
 
     async def get(self, token: str, name: str, page: str) -> None:
-        lane = self.server.files
-        path = await asyncio.wrap_future(lane.submit(secrets.token_hex(8), lambda: answer("page_of")(name, page)))
+        path = await self.answered("page_of", name=name, page=page)
         self.set_header("Content-Security-Policy", REPORT)
         self.finish(path.read_bytes())
 
@@ -222,30 +208,21 @@ class Server:
         try:
             sockets = tornado.netutil.bind_sockets(port, HOST)
         except OSError as exc:
-            remedy = "Give another number with --port, or none."
-            raise WorkError(f"port {port} is not free ({exc.strerror}). {remedy}") from None
+            raise WorkError(f"port {port} is not free ({exc.strerror}). Give another number with --port.") from None
         self.port = sockets[0].getsockname()[1]
+        self.address = f"http://{HOST}:{self.port}/{self.token}/"
         self.names = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
-        self.origins = tuple(f"http://{name}" for name in self.names)
-        own = {"server": self}
         application = tornado.web.Application(
             [
-                (r"/([^/]*)/sheet", _Sheet, own),
-                (r"/([^/]*)/results/([^/]+)/([^/]+)", _Result, own),
-                (r"/([^/]*)/api/(\w+)", _Answer, own),
-                (r"/([^/]*)/?([\w.]*)", _Page, own),
-                (r"/(.*?)(?:/(.*))?", _Page, own),
+                (r"/([^/]*)/sheet", _Sheet),
+                (r"/([^/]*)/results/([^/]+)/([^/]+)", _Result),
+                (r"/([^/]*)/api/(\w+)", _Answer),
+                (r"/([^/]*)/?(.*)", _Page),
             ],
+            server=self,
             log_function=lambda handler: None,  # its lines would hold the token
         )
         self.http = tornado.httpserver.HTTPServer(application, max_body_size=MAX_BYTES, max_header_size=65_536)
         self.http.add_sockets(sockets)
-
-    @property
-    def address(self) -> str:
-        """Return the address of the page with its token."""
-        return f"http://{HOST}:{self.port}/{self.token}/"
-
-    def warm_up(self) -> None:
-        """Load the compiled solver before the first request."""
+        # the compiled solver is loaded before the first request
         self.solver.submit("first", lambda: answer("picture")(answer("all_fields")()["first"]))

@@ -9,10 +9,11 @@ import contextlib
 import datetime
 import json
 import math
+import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Mapping
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,6 @@ from trackroller.files import files_beside, write_text
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
-from trackroller.study.design.factors import LISTS
 from trackroller.study.design.sampling import ARRAYS
 from trackroller.study.file.config import check_name
 from trackroller.study.file.load import parse_study
@@ -49,20 +49,6 @@ def folder_of(name: Any) -> StudyFolder:
     return StudyFolder(root)
 
 
-def _least_cases(mapping: Mapping[str, Any]) -> float:
-    """Return about how many cases a study has, found without drawing its design, which may fill the memory."""
-    count, factors, design = 1.0, mapping.get("factors"), mapping.get("design", "grid")
-    for spec in factors.values() if isinstance(factors, Mapping) and design in ("grid", "inner_outer") else ():
-        for kind, value in spec.items() if isinstance(spec, Mapping) else ():
-            if kind == "values" and isinstance(value, list):
-                count *= max(1, len(value))
-            elif kind in LISTS and isinstance(value, list) and len(value) == 3:
-                count *= value[2] if isinstance(value[2], (int, float)) else 1
-    samples = mapping.get("samples", 1)
-    sampled = design not in (*ARRAYS, "table") and isinstance(samples, (int, float))
-    return count * samples if sampled else count
-
-
 def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dict[str, Any]:
     """Check a study and plan it.
 
@@ -81,7 +67,8 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
     """
     out: dict[str, Any] = {"text": text, "study": None, "errors": [], "plan": [], "doubts": []}
     try:
-        out["text"] = write_yaml(_without_empty(study or {})) if text is None else text
+        given = {key: value for key, value in (study or {}).items() if value not in (None, "", {}, [])}
+        out["text"] = write_yaml(given) if text is None else text
         out["study"] = parse_mapping(out["text"], "study file")
         parsed = _study(out["text"])
         out |= {"plan": plan_rows(parsed, status_of(parsed, RESULTS)), "doubts": parsed.doubts()}
@@ -92,37 +79,29 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
     return out
 
 
-def _without_empty(mapping: Mapping[str, Any]) -> dict[str, Any]:
-    return {key: value for key, value in mapping.items() if value not in (None, "", {}, [])}
-
-
 def _study(text: str) -> Study:
     """Return the checked study of a text, unless it is too large for the page."""
-    data = parse_mapping(text, "study file")
-    _check_size(_least_cases(data))
     with errors_by_line(text), files_beside(TEXTS / "study.yaml"):
-        study = parse_study(data, TEXTS / "study.yaml")
-    _check_size(study.drawn.size)
+        study = parse_study(parse_mapping(text, "study file"), TEXTS / "study.yaml")
+    cases = _least_cases(study)
+    if cases <= MOST_CASES:  # a larger design may fill the memory when it is drawn
+        cases = study.drawn.size
+    if cases > MOST_CASES:
+        allowed = f"at most {MOST_CASES:,} cases on this page"
+        raise InputError("design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`.")
     return study
 
 
-def _check_size(cases: float) -> None:
-    if cases > MOST_CASES:
-        allowed = f"at most {MOST_CASES:,} cases on this page"
-        raise InputError("design", f"{cases:,.0f} cases", allowed, "Start larger studies with `trackroller run`.")
+def _least_cases(study: Study) -> int:
+    """Return about how many cases a study has, found without drawing its design."""
+    method = study.config.design
+    crossed = [len(f.levels) for f in study.parsed.values() if f.levels] if method in (*ARRAYS, "inner_outer") else []
+    return math.prod(crossed) * (1 if method in (*ARRAYS, "table") else int(study.config.samples))
 
 
 def start(text: str) -> dict[str, Any]:
     """Write a study file and run the study in a process of its own; a study that was paused goes on."""
-    return _spawn(_study(text).name, text)
-
-
-def resume(name: str) -> dict[str, Any]:
-    """Let a paused study go on."""
-    return _spawn(name, text_of(name)["text"])
-
-
-def _spawn(name: str, text: str) -> dict[str, Any]:
+    name = _study(text).name
     folder = folder_of(name)
     if _works(name, folder):
         raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
@@ -141,16 +120,20 @@ def _spawn(name: str, text: str) -> dict[str, Any]:
     return {"name": name}
 
 
-def pause(name: str) -> dict[str, Any]:
+def resume(name: str) -> dict[str, Any]:
+    """Let a paused study go on, or make the pages of a study that was run on the command line."""
+    return start(text_of(name)["text"])
+
+
+def pause(name: str) -> None:
     """Ask a running study to stop; its finished chunks stay."""
     folder = folder_of(name)
     if not (_starts(name) or is_held(folder.root / LOCK)):
         raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
     (folder.root / PAUSE).touch()
-    return {"name": name}
 
 
-def delete(name: str, confirm: str = "") -> dict[str, Any]:
+def delete(name: str, confirm: str = "") -> None:
     """Delete the results of a study; its file in `studies/` stays."""
     folder = folder_of(name)
     if confirm != name:
@@ -160,7 +143,6 @@ def delete(name: str, confirm: str = "") -> dict[str, Any]:
     if not folder.root.is_dir():
         raise InputError("name", name, "a study of this folder", "It may be deleted already.")
     shutil.rmtree(folder.root)
-    return {"name": name}
 
 
 def _works(name: str, folder: StudyFolder) -> bool:
@@ -175,11 +157,10 @@ def _starts(name: str) -> bool:
 
 def listing() -> list[dict[str, Any]]:
     """Return the studies of the folder, the newest first."""
-    names = {path.name for path in RESULTS.glob("*") if path.is_dir() and not path.is_symlink()}
     found = []
-    for name in names:
-        with contextlib.suppress(InputError):  # a folder of something else
-            found.append(_entry(name))
+    for path in RESULTS.glob("*"):
+        with contextlib.suppress(InputError):  # a link, or a folder of something else
+            found.append(_entry(path.name))
     return sorted((e for e in found if e is not None), key=lambda e: str(e["date"]), reverse=True)
 
 
@@ -193,20 +174,19 @@ def _entry(name: str) -> dict[str, Any] | None:
         return None
     chunks = folder.record().get("chunks", {})
     total = progress.get("total") or sum(chunks.values()) or None
-    done = progress.get("done") if works or progress.get("step") == "done" else None
-    done = sum(n for key, n in chunks.items() if folder.chunk(key).is_file()) if done is None and chunks else done
-    files = [path.stat() for path in folder.root.rglob("*") if path.is_file()]
+    solved = sum(n for key, n in chunks.items() if folder.chunk(key).is_file())
+    whole = folder.gathered.is_file() and solved == sum(chunks.values())
+    files = list(_stats(folder.root))
     newest = max((stat.st_mtime for stat in files), default=0.0)
-    step = str(progress.get("step", "")) if works or progress.get("error") else ""
-    state = "running" if works else "stopped" if progress.get("error") else "done" if _whole(folder) else "paused"
+    state = "running" if works else "stopped" if progress.get("error") else "done" if whole else "paused"
     return {
         "name": name,
-        "question": _question(name, folder),
+        "question": folder.earlier().get("description", ""),
         "state": state,
-        "step": step or ("starting" if works else ""),
+        "step": progress.get("step", "starting"),
         "error": progress.get("error", ""),
         "total": total,
-        "done": total if state == "done" else done,
+        "done": total if state == "done" else progress.get("done", solved) if works else solved,
         "failed": progress.get("failed"),
         "bytes": sum(stat.st_size for stat in files),
         "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
@@ -215,9 +195,12 @@ def _entry(name: str) -> dict[str, Any] | None:
     }
 
 
-def _whole(folder: StudyFolder) -> bool:
-    """Return whether every chunk is solved and gathered."""
-    return folder.gathered.is_file() and all(folder.chunk(n).is_file() for n in folder.record().get("chunks", {}))
+def _stats(root: Path) -> Iterator[os.stat_result]:
+    """Return size and date of each file; the files of a study that runs may vanish meanwhile."""
+    for place, _, names in os.walk(root):
+        for name in names:
+            with contextlib.suppress(FileNotFoundError):
+                yield os.lstat(Path(place, name))
 
 
 def text_of(name: str) -> dict[str, Any]:
@@ -228,25 +211,12 @@ def text_of(name: str) -> dict[str, Any]:
     raise InputError("name", name, "a study of this folder", "Choose one of the list.")
 
 
-def _question(name: str, folder: StudyFolder) -> str:
-    with contextlib.suppress(InputError, OSError, ValueError):
-        text = folder.record().get("study") or text_of(name)["text"]
-        return str(parse_mapping(str(text), name).get("description") or "")
-    return ""
-
-
 def page_of(name: str, page: str) -> Path:
-    """Return the report of a study, or its explorer, which is written when it is first asked for."""
-    folder = folder_of(name)
-    path = folder.root / page
-    if page not in PAGES or path.is_symlink():
-        raise InputError("page", page, f"one of {', '.join(PAGES)}")
-    if page == "explorer.html" and not path.is_file() and folder.gathered.is_file():
-        from trackroller.solved import open_study  # heavy: SALib
-
-        open_study(folder.root).explore(path)
-    if not path.is_file():
-        raise InputError("page", f"{name}/{page}", "a page that was made", "Let the study run to its end.")
+    """Return the report of a study, or its explorer."""
+    path = folder_of(name).root / page
+    if page not in PAGES or path.is_symlink() or not path.is_file():
+        allowed = f"{' or '.join(PAGES)} of a study that was run"
+        raise InputError("page", f"{name}/{page}", allowed, "Let the study run to its end.")
     return path
 
 
@@ -276,7 +246,6 @@ def _numbers(view: StudyView) -> dict[str, list[str]]:
     for one in outputs(view.data, view.dims, default_names(view.data, view.dims, view.dims), scale="natural"):
         values = sorted(v for v in one.values.tolist() if math.isfinite(v))
         if values:
-            unit = unit_text(one.units).replace("–", "")
-            ends = (values[0], values[len(values) // 2], values[-1])
-            out[f"{one.long_name} [{unit}]" if unit else one.long_name] = [rounded(v) for v in ends]
+            label = f"{one.long_name} [{unit_text(one.units)}]".removesuffix(" [–]")
+            out[label] = [rounded(v) for v in (values[0], values[len(values) // 2], values[-1])]
     return out

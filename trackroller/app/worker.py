@@ -8,8 +8,8 @@ stops as at Ctrl-C once the file `results/NAME/.pause` is there.
 from __future__ import annotations
 
 import _thread
-import contextlib
 import json
+import signal
 import sys
 import threading
 import time
@@ -19,6 +19,7 @@ from typing import Any
 
 from trackroller.errors import InputError, WorkError
 from trackroller.files import interrupts_wait_for_files, try_lock, write_text
+from trackroller.study.store.folder import wait_for_lock
 
 LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
 TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress
@@ -62,8 +63,8 @@ def _watch(pause: Path) -> None:
     _thread.interrupt_main()
 
 
-def run(name: str) -> int:
-    """Solve a study and make its report; return the exit code.
+def run(name: str) -> None:
+    """Solve a study, and make its report and its explorer.
 
     Parameters
     ----------
@@ -73,8 +74,7 @@ def run(name: str) -> int:
     root = Path("results", name)
     root.mkdir(parents=True, exist_ok=True)
     with open(root / LOCK, "ab") as lock:
-        if not try_lock(lock):
-            return 1
+        wait_for_lock(lock)  # a look at the lock holds it for a moment
         progress = Progress(root)
         progress.say(step="starting", error="")
         threading.Thread(target=_watch, args=(root / PAUSE,), daemon=True).start()
@@ -88,12 +88,12 @@ def run(name: str) -> int:
         except Exception as exc:
             traceback.print_exc()
             progress.say(step="stopped", error=f"internal error, {type(exc).__name__}; see {root / 'page.log'}")
-        return int(progress.told["step"] != "done")
 
 
 def _work(name: str, progress: Progress) -> None:
     from trackroller.analysis.deciding import run_any  # heavy: analysis
     from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
+    from trackroller.solved import open_study
     from trackroller.study.file.load import load_study
     from trackroller.study.status import status_of
 
@@ -102,10 +102,11 @@ def _work(name: str, progress: Progress) -> None:
     status = status_of(study)
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
     build_report(plan.folder, lambda line: progress.say(step=line))
+    progress.say(step="making the explorer")
+    open_study(plan.folder.root).explore(plan.folder.root / "explorer.html")
     progress.say(step="done")
 
 
 if __name__ == "__main__":
-    with contextlib.suppress(IndexError):
-        sys.exit(run(sys.argv[1]))
-    sys.exit(2)
+    signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may start the server with SIGINT ignored
+    run(sys.argv[1])

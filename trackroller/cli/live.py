@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated
 
@@ -19,3 +20,4 @@ def live_page(
     from trackroller.app.start import serve
 
     serve(folder, port, not no_browser)
+    os._exit(0)  # Python aborts if it is torn down while a thread of the solver is inside compiled code

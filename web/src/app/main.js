@@ -16,6 +16,10 @@ const TABS = [
   ["results", "Results"],
 ];
 const OPEN = ["Loads and use", "Roller and guide"];
+const DECIDED = ["outputs", "accuracy", "stop_if", "shortcuts"]; // options that the page sets itself
+
+// The values of a material that have a unit.
+const facts = (material = {}) => Object.entries(material).filter(([key]) => key.includes("[")).map((entry) => entry.join(" ")).join(", ");
 
 async function start() {
   const root = document.querySelector("#app");
@@ -63,9 +67,9 @@ async function start() {
   const add = (name, row) => (rows.set(name, row), row.node);
   const grouped = Map.groupBy ? Map.groupBy(offered.parameters, (p) => p.group) : offered.parameters.reduce((m, p) => m.set(p.group, [...(m.get(p.group) ?? []), p]), new Map());
   const parameters = (title) => (grouped.get(title) ?? []).map((p) => add(p.name, parameterRow(p, { change: change(p.name), curve: () => variants.curve(p.name), factor: () => study.add(p.name) })));
-  const datalist = el("datalist", { id: "materials" }, offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.search.replace(m.name.toLowerCase(), "").trim()}` })));
+  const datalist = el("datalist", { id: "materials" }, offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.family}, ${m.description}` })));
   const bodies = offered.bodies.map((name) => add(name, wordRow({ name, label: `${name.replace("_", " ")}`.replace(/^./, (c) => c.toUpperCase()), meaning: "a name of the database; type a part of it, or of its description", list: "materials", fallback: offered.materials[0].name }, { change: change(name), factor: () => study.add(name) })));
-  const options = offered.options.map((o) => add(o.name, wordRow({ name: o.name, label: o.name.replaceAll("_", " "), meaning: o.meaning, words: o.kind === "word" ? o.values : o.kind === "switch" ? { true: "", false: "" } : null, fallback: Array.isArray(o.value) ? "" : String(o.value) }, { change: change(o.name) })));
+  const options = offered.options.filter((o) => !DECIDED.includes(o.name)).map((o) => add(o.name, wordRow({ name: o.name, label: o.name.replaceAll("_", " "), meaning: o.meaning, words: o.kind === "word" ? o.values : o.kind === "switch" ? { true: "", false: "" } : null, fallback: Array.isArray(o.value) ? "" : String(o.value) }, { change: change(o.name) })));
   const more = [...offered.mappings, { name: "duty", meaning: "{hours_per_day: 16, days_per_year: 250}: lives in years, too" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning, list: m.name.endsWith("_profile") ? "files" : null }, { change: change(m.name) })));
   const files = el("datalist", { id: "files" }, offered.files.map((file) => el("option", { value: `{file: ${JSON.stringify(file)}}`, label: file })));
   fields.append(
@@ -114,7 +118,7 @@ async function start() {
   state.onChange((what) => {
     if (what === "case" || what === "moving") {
       for (const row of rows.values()) row.set(state.values[row.name]);
-      for (const name of offered.bodies) rows.get(name).tell(offered.materials.find((m) => m.name === (state.values[name] ?? offered.materials[0].name))?.facts ?? "");
+      for (const name of offered.bodies) rows.get(name).tell(facts(offered.materials.find((m) => m.name === (state.values[name] ?? offered.materials[0].name))));
       undo.disabled = !state.canUndo();
       redo.disabled = !state.canRedo();
       sheet.href = `sheet?case=${encodeURIComponent(JSON.stringify(state.values))}`;

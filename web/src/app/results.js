@@ -39,15 +39,15 @@ export function resultsView(state, { open, told }) {
 
   function line(study) {
     const share = study.total ? Math.round((100 * (study.done ?? 0)) / study.total) : 0;
-    const button = (label, action) => el("button", { type: "button", class: "mini", "aria-label": `${label} ${study.name}`, onclick: action }, label);
+    const button = (label, action, of = "") => el("button", { type: "button", class: "mini", "aria-label": `${label} ${of}${study.name}`, onclick: action }, label);
     const link = (page, label) => el("a", { href: `results/${encodeURIComponent(study.name)}/${page}`, target: "_blank", rel: "noopener", "aria-label": `${label} of ${study.name}` }, label);
     const box = el("input", { type: "checkbox", "aria-label": `Compare ${study.name}`, checked: chosen.has(study.name), onchange: () => choose(study.name, box.checked) });
     const state_ = study.state === "running" ? [el("progress", { max: 100, value: share, "aria-label": `${study.name}: ${share} % solved` }), ` ${study.step}`] : [study.error ? `stopped: ${study.error}` : study.state];
-    const solved = study.pages.length > 0;
+    const done = study.state === "done";
     return el(
       "tr",
       {},
-      el("td", {}, solved ? box : null),
+      el("td", {}, done ? box : null),
       el("th", { scope: "row" }, study.name),
       el("td", {}, study.question),
       el("td", {}, state_),
@@ -58,7 +58,8 @@ export function resultsView(state, { open, told }) {
         "td",
         { class: "actions" },
         study.pages.includes("report.html") ? link("report.html", "Report") : null,
-        solved ? link("explorer.html", "Explorer") : null,
+        study.pages.includes("explorer.html") ? link("explorer.html", "Explorer") : null,
+        done && study.pages.length < 2 ? button("Make the pages", () => act("resume", { name: study.name }), "of ") : null,
         study.state === "running" ? button("Pause", () => act("pause", { name: study.name })) : null,
         ["paused", "stopped"].includes(study.state) ? button("Resume", () => act("resume", { name: study.name })) : null,
         study.text ? button("Edit", async () => open((await ask("text_of", { name: study.name })).text)) : null,

@@ -59,9 +59,10 @@ export function studyView(state, offered, { started }) {
   const question = input("description", "Question");
   const design = select("Design", offered.designs.map((d) => [d, `${d}: ${DESIGNS[d] ?? d}`]), "grid", (value) => set("design", value));
   const samples = input("samples", "Samples", { inputmode: "numeric", placeholder: "1024" });
-  const model = select("Contact model", Object.keys(offered.options.find((o) => o.name === "contact_model").values).map((m) => [m, m]), "kalker", (value) => set("contact_model", value));
-  const accuracy = select("Accuracy", Object.keys(offered.accuracies).map((a) => [a, a]), "standard", (value) => set("accuracy", value));
-  const outputs = Object.entries(offered.outputs).map(([group, meaning]) => {
+  const words = (option) => offered.options.find((o) => o.name === option).values;
+  const model = select("Contact model", Object.keys(words("contact_model")).map((m) => [m, m]), "kalker", (value) => set("contact_model", value));
+  const accuracy = select("Accuracy", Object.keys(words("accuracy")).map((a) => [a, a]), "standard", (value) => set("accuracy", value));
+  const outputs = Object.entries(words("outputs")).map(([group, meaning]) => {
     const box = el("input", { type: "checkbox", value: group, onchange: () => set("outputs", outputs.filter((o) => o.box.checked).map((o) => o.group)) });
     return { group, box, node: el("label", { title: meaning }, box, ` ${group.replaceAll("_", " ")}`) };
   });
