@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 
+from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.errors import WorkError
 from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
@@ -20,7 +21,7 @@ from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import chunk_name
 from trackroller.study.store.inventory import take_inventory
-from trackroller.study.store.seal import sealing
+from trackroller.study.store.seal import altered, recorded, sealing
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
 TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))
@@ -201,3 +202,34 @@ def test_a_crate_without_the_plan_still_notices_an_altered_result(tmp_path, monk
 
     with pytest.raises(WorkError, match=r"study\.nc was altered.*ro-crate-metadata"):
         read_result("posted/study.nc")
+
+
+def test_a_report_of_earlier_results_leaves_the_crate_and_the_figures(tmp_path, monkeypatch):
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    monkeypatch.chdir(tmp_path)
+    _grow(7)
+    folder = StudyFolder(Path("results/grown"))
+    build_report(folder)
+    sealed = folder.gathered.read_bytes()
+    _grow(7)
+    assert folder.gathered.read_bytes() == sealed, "equal results are equal files"
+    write_crate(folder.root)
+    assert "report.html" in read_crate(folder.root)
+    assert stored_analysis(read_results(folder.root), folder.root) is not None
+    _grow(13)
+    write_crate(folder.root)
+    assert {"study.nc"} == {name for name in read_crate(folder.root) if not name.startswith(("inputs", "design"))}
+    assert stored_analysis(read_results(folder.root), folder.root) is None
+    build_report(folder)
+    assert "report.html" in read_crate(folder.root) and damaged_files(folder.root) == {}
+
+
+def test_a_result_that_is_written_while_it_is_checked_does_not_look_altered(tmp_path, monkeypatch):
+    path = tmp_path / "study.nc"
+    for text in ("old", "new"):
+        with sealing(path):
+            path.write_text(text)
+    now = recorded(path)
+    records = iter([{"study.nc": "0" * 64}, now, now])
+    monkeypatch.setattr("trackroller.study.store.seal.recorded", lambda path: next(records))
+    assert altered(path) is None

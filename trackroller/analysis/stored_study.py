@@ -27,7 +27,7 @@ from trackroller.study.store.gather import collect
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import locate
-from trackroller.study.store.seal import read_result
+from trackroller.study.store.seal import digest_of, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
@@ -75,6 +75,12 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
         results = {name: v.variable for name, v in block.data_vars.items()}
         data = labelled(study, design, data.drop_vars(list(values)), results, axes, data.attrs)
     return StudyResults(study, design, data)
+
+
+def stored_analysis(results: StudyResults, root: Path) -> xr.Dataset | None:
+    """Return the analysis that a report of these results has written into the folder of their study, or None."""
+    stored = root / "sensitivity.nc"
+    return read_result(stored) if stored.is_file() and not results.unfinished and digest_of(stored) else None
 
 
 def _gathered(path: Path) -> xr.Dataset | None:

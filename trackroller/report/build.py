@@ -6,7 +6,7 @@ import contextlib
 import logging
 import shutil
 import tempfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -14,14 +14,14 @@ from typing import Any
 import xarray as xr
 
 from trackroller.analysis.sensitivity import analyse
-from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files, whole_folder, write_whole
 from trackroller.report.pages.study import contents, page_text, write_report
 from trackroller.study.store.crate import write_crate
-from trackroller.study.store.folder import StudyFolder, locked
-from trackroller.study.store.seal import read_result, sealing
+from trackroller.study.store.folder import StudyFolder, reporting
+from trackroller.study.store.seal import sealing
 
 log = logging.getLogger("trackroller")
 UNFINISHED = "unfinished"  # folder in the folder of a study
@@ -53,7 +53,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     WorkError
         If a result was altered after it was written, or the folder cannot be written.
     """
-    with _alone(folder, tell):
+    with reporting(folder, tell):
         results = read_results(folder.root)
         place = place_of_pages(results, folder)
         tell("analyse the results")
@@ -77,11 +77,10 @@ def place_of_pages(results: StudyResults, folder: StudyFolder) -> Path:
 
 def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path, list[Any]]:
     """Draw the figures of a study, of its solved cases if it is unfinished; return their folder and the figures."""
-    with _alone(folder):
+    with reporting(folder):
         results = read_results(folder.root)
-        out, stored = out_dir or place_of_pages(results, folder) / "figures", folder.root / "sensitivity.nc"
-        analysis = read_result(stored) if stored.is_file() and not results.unfinished else None
-        return out, draw_figures(results.view.analysed(analysis), out)
+        out = out_dir or place_of_pages(results, folder) / "figures"
+        return out, draw_figures(results.view.analysed(stored_analysis(results, folder.root)), out)
 
 
 def report_text(results: StudyResults, indices: Callable[[], xr.Dataset] | None = None) -> str:
@@ -131,10 +130,3 @@ def write_pages(view: StudyView, figures: Path, out: Path) -> Path:
     """Write the report and its tables, with the figures in a folder, and return the report's path."""
     with _sealed(out), _sealed(out.with_name("tables")):
         return write_report(view, figures, out)
-
-
-@contextlib.contextmanager
-def _alone(folder: StudyFolder, tell: Callable[[str], None] | None = None) -> Iterator[None]:
-    """Keep other reports from being made, and the plan from being changed."""
-    with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
-        yield

@@ -25,14 +25,14 @@ from trackroller.study.repeat import compare
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.provenance import versions
-from trackroller.study.store.seal import METADATA, check_sealed, files_of, read_result, recorded, sealing
+from trackroller.study.store.seal import METADATA, REPORT, check_sealed, files_of, read_result, recorded, sealing
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
 INPUTS = "inputs"
 STUDY_FILE = f"{INPUTS}/study.yaml"
-DATA, REPORT = ("design.nc", "study.nc"), ("sensitivity.nc", "report.html", "figures", "tables")
+DATA = ("design.nc", "study.nc")
 LICENCE = "https://spdx.org/licenses/MIT"
 PROFILES = tuple(f"https://w3id.org/ro/wfrun/{name}" for name in ("process/0.5", "workflow/0.5"))
 

@@ -150,6 +150,13 @@ def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterat
         yield
 
 
+@contextlib.contextmanager
+def reporting(folder: StudyFolder, tell: Tell | None = None) -> Iterator[None]:
+    """Keep others from making a report, gathering results and changing the plan."""
+    with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
+        yield
+
+
 def sweep(folder: StudyFolder) -> None:
     """Remove temporary files and folders of killed processes; only the sole holder of the lock may call this."""
     for path in (*folder.root.glob(".*.tmp"), *folder.root.glob("*/.*.tmp")):

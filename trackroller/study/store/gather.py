@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import math
 import tempfile
 from collections.abc import Hashable, Mapping
@@ -12,14 +13,14 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import WorkError
-from trackroller.files import reserve, write_whole
+from trackroller.files import reserve, sha256, write_whole
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import Tell
+from trackroller.study.store.folder import Tell, reporting
 from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan
-from trackroller.study.store.seal import is_sealed, sealing
+from trackroller.study.store.seal import forget_report, is_sealed, recorded, sealing
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
@@ -71,12 +72,18 @@ def gather(plan: Plan, tell: Tell | None = None, attrs: Mapping[str, str] | None
         damaged = "".join(f" Corrupt: {why}." for why in found.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
+    last = max(path.stat().st_mtime for path in found.paths)  # so that equal results are equal files
+    date = datetime.datetime.fromtimestamp(last, datetime.UTC).isoformat(timespec="seconds")
+
     def save(beside: Path) -> None:
         results = labelled(study, study.drawn, design, *collect(found, place, folder.root))
-        results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
+        results.assign_attrs({"date_created": date} | dict(attrs or {})).to_netcdf(beside, engine="netcdf4")
 
-    with sealing(folder.gathered):
+    before = recorded(folder.gathered) or {}
+    with reporting(folder), sealing(folder.gathered):
         write_whole(folder.gathered, save)
+        if sha256(folder.gathered) not in before.values():
+            forget_report(folder.root)
     if tell is not None:
         tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered

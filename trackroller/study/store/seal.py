@@ -18,6 +18,7 @@ from trackroller.errors import InputError, WorkError
 from trackroller.files import sha256, write_text
 
 METADATA = "ro-crate-metadata.json"
+REPORT = ("sensitivity.nc", "report.html", "figures", "tables")  # what is made from study.nc
 
 
 def _record(path: Path) -> Path:
@@ -47,6 +48,12 @@ def sealing(path: Path) -> Iterator[None]:
     write_text(_record(path), "".join(lines))
 
 
+def forget_report(root: Path) -> None:
+    """Remove the records of analysis, figures and report, which were made from earlier results of the study."""
+    for name in REPORT:
+        _record(root / name).unlink(missing_ok=True)
+
+
 def recorded(path: Path) -> dict[str, str] | None:
     """Return the recorded SHA-256 of a result by file, relative to the study's folder; None without a record."""
     try:
@@ -70,11 +77,19 @@ def altered(path: Path) -> str | None:
     if known is None:
         return None
     now = {file.relative_to(path.parent).as_posix(): sha256(file) for file in files_of(path)}
+    if known != now and known != recorded(path):  # another process has just written the result
+        return altered(path)
     for name in sorted({*known, *now}):
         if known.get(name) != now.get(name):
-            here, before = now.get(name, "nothing"), known.get(name, "nothing")
-            return f"{path.parent / name} has the SHA-256 {here}, but {before} stands in {_record(path)}"
+            return _altered(path.parent / name, now.get(name), known.get(name), _record(path))
     return None
+
+
+def _altered(path: Path, now: str | None, before: str | None, record: Path) -> str:
+    if now is None:
+        return f"{path} is missing, but its SHA-256 stands in {record}"
+    stands = f"{before} stands" if before else "no digest stands"
+    return f"{path} was altered or damaged after it was written: its SHA-256 is {now}, but {stands} in {record}"
 
 
 def is_sealed(path: Path) -> bool:
@@ -91,18 +106,21 @@ def check_sealed(path: Path) -> Path:
         If the result was altered or damaged after it was written.
     """
     why = altered(path)
-    if why is None and recorded(path) is None and (known := _digest_in_crate(path)) is not None:
+    if why is None and recorded(path) is None and (known := digest_of(path)) is not None:
         if (now := sha256(path)) != known:
-            why = f"{path} has the SHA-256 {now}, but {known} stands in {path.parent / METADATA}"
+            why = _altered(path, now, known, path.parent / METADATA)
     if why is not None:
-        raise WorkError(
-            f"{path} was altered or damaged after it was written: {why}. `trackroller run STUDY --report` makes it "
-            "again from the chunks, which are kept."
-        )
+        raise WorkError(f"{why}. `trackroller run STUDY --report` makes it again from the chunks, which are kept.")
     return path
 
 
-def _digest_in_crate(path: Path) -> str | None:
+def digest_of(path: Path) -> str | None:
+    """Return the digest of a file in its record, otherwise in the RO-Crate beside it; None if it has neither.
+
+    A file without a digest may describe earlier results.
+    """
+    if known := recorded(path):
+        return known.get(path.name, "")
     try:
         graph = json.loads((path.parent / METADATA).read_text(encoding="utf-8"))["@graph"]
         return next((str(entry["sha256"]) for entry in graph if entry.get("@id") == path.name), None)
