@@ -6,6 +6,7 @@ import base64
 import threading
 import time
 
+import fake_solver
 import numpy as np
 import pytest
 import yaml
@@ -14,9 +15,13 @@ import trackroller as tr
 from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
 from trackroller.app.picture import curve, picture, texts
-from trackroller.app.studies import checked
+from trackroller.app.studies import checked, compare, listing, page_of
+from trackroller.errors import WorkError
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
 from trackroller.report.pages.sheet_facts import collect
+from trackroller.study.file.load import load_study
+from trackroller.study.run import run_study
+from trackroller.study.store.seal import sealing
 
 
 def test_every_parameter_stands_on_the_page():
@@ -140,6 +145,22 @@ def test_errors_of_a_study_name_field_and_line(tmp_path, monkeypatch):
     ]
     assert found["plan"] == [] and found["study"]["name"] == "two"
     assert "line" in checked("name: [")["errors"][0]["message"]
+
+
+def test_altered_results_are_named_in_the_list_and_their_pages_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    mapping = {"name": "two", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
+    root = run_study(load_study(mapping), solver=fake_solver.solve).folder.root
+    with sealing(root / "report.html"):
+        (root / "report.html").write_text("sound")
+    assert listing()[0]["state"] == "done" and page_of("two", "report.html").read_text() == "sound"
+    for name in ("report.html", "study.nc"):
+        (root / name).write_bytes((root / name).read_bytes()[:-1])
+    assert listing()[0]["state"] == "stopped" and "study.nc was altered" in listing()[0]["error"]
+    with pytest.raises(WorkError, match=r"report\.html was altered"):
+        page_of("two", "report.html")
+    with pytest.raises(WorkError, match=r"study\.nc was altered"):
+        compare(["two"])
 
 
 def test_only_the_newest_request_of_a_page_is_worked_on():

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import contextlib
 import datetime
+import functools
 import json
 import math
 import os
@@ -17,7 +18,7 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from trackroller.analysis.stored_study import read_results
+from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.analysis.table import StudyView
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.errors import InputError, WorkError
@@ -32,7 +33,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.seal import read_result
+from trackroller.study.store.seal import altered, check_sealed
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
 TEXTS, RESULTS = Path("studies"), Path("results")
@@ -178,13 +179,14 @@ def _entry(name: str) -> dict[str, Any] | None:
     whole = folder.gathered.is_file() and solved == sum(chunks.values())
     files = list(_stats(folder.root))
     newest = max((stat.st_mtime for stat in files), default=0.0)
-    state = "running" if works else "stopped" if progress.get("error") else "done" if whole else "paused"
+    error = "" if works else progress.get("error") or _altered(folder.gathered)
+    state = "running" if works else "stopped" if error else "done" if whole else "paused"
     return {
         "name": name,
         "question": folder.earlier().get("description", ""),
         "state": state,
         "step": progress.get("step", "starting"),
-        "error": progress.get("error", ""),
+        "error": error,
         "total": total,
         "done": total if state == "done" else progress.get("done", solved) if works else solved,
         "failed": progress.get("failed"),
@@ -203,6 +205,17 @@ def _stats(root: Path) -> Iterator[os.stat_result]:
                 yield os.lstat(Path(place, name))
 
 
+def _altered(path: Path) -> str:
+    """Return what is wrong with a result that was altered after it was written, '' if it is as it was written."""
+    found = path.stat() if path.is_file() else None
+    return _altered_of(path, found.st_mtime_ns, found.st_size) if found else ""
+
+
+@functools.lru_cache(1000)
+def _altered_of(path: Path, date: int, size: int) -> str:
+    return altered(path) or ""  # the list is made every few seconds, and a digest takes up to a second
+
+
 def text_of(name: str) -> dict[str, Any]:
     """Return the file of a study, as it was written or as it was stored with the results."""
     for path in (TEXTS / f"{check_name(name)}.yaml", folder_of(name).study_file):
@@ -217,7 +230,7 @@ def page_of(name: str, page: str) -> Path:
     if page not in PAGES or path.is_symlink() or not path.is_file():
         allowed = f"{' or '.join(PAGES)} of a study that was run"
         raise InputError("page", f"{name}/{page}", allowed, "Let the study run to its end.")
-    return path
+    return check_sealed(path)
 
 
 def compare(names: list[str]) -> list[dict[str, Any]]:
@@ -227,9 +240,8 @@ def compare(names: list[str]) -> list[dict[str, Any]]:
 
 def _headlines(name: str) -> dict[str, Any]:
     folder = folder_of(name)
-    view = read_results(folder.root).view
-    if (stored := folder.root / "sensitivity.nc").is_file() and not view.solved.unfinished:
-        view = view.analysed(read_result(stored))
+    results = read_results(folder.root)
+    view = results.view.analysed(stored_analysis(results, folder.root))
     table = factor_table(view)
     return {
         "name": name,
