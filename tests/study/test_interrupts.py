@@ -175,3 +175,11 @@ def test_an_interrupt_at_once_is_not_swallowed():
     with pytest.raises(KeyboardInterrupt), interrupts_wait_for_files():
         os.kill(os.getpid(), signal.SIGINT)
         time.sleep(1)
+
+
+def test_an_interrupt_before_the_command_line_is_imported_ends_in_the_sentence(tmp_path):
+    (tmp_path / "portalocker.py").write_text("raise KeyboardInterrupt")
+    env = os.environ | {"PYTHONPATH": str(tmp_path)}
+    done = subprocess.run([*PROGRAM, "--version"], env=env, cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode in STOPPED_CODES and done.stderr.startswith("trackroller: stopped. The finished chunks")
+    assert len(done.stderr.splitlines()) == 1

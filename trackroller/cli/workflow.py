@@ -13,7 +13,7 @@ from types import TracebackType
 from typing import Any, TextIO
 
 from trackroller.analysis.deciding import decides
-from trackroller.cli import STOPPED
+from trackroller.cli import tell_stopped
 from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.files import interrupts_wait_for_files
 from trackroller.materials.file import find_user_file
@@ -203,7 +203,5 @@ def _tell_error(kind: type[BaseException], error: BaseException, trace: Tracebac
     """Print an error of the input or the work in one line, any other error with its traceback."""
     if isinstance(error, (InputError, WorkError)):
         print(f"trackroller: {error}", file=sys.stderr)
-    elif isinstance(error, KeyboardInterrupt):
-        print(f"trackroller: {STOPPED}", file=sys.stderr)
     else:
-        sys.__excepthook__(kind, error, trace)
+        tell_stopped(kind, error, trace)
