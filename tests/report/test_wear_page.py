@@ -41,12 +41,17 @@ def read(path):
         return ds.load()
 
 
+@pytest.fixture(scope="module")
+def whole(place):
+    call(place, "9 km", "whole.nc", "--quiet")
+    return read(place / "whole.nc")
+
+
 @pytest.mark.slow
-def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(place):
+def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(place, whole):
     call(place, "4km", "parts.nc", "--quiet")
     said = call(place, "9km", "parts.nc", "--report", str(place / "page.html"))
-    call(place, "9 km", "whole.nc", "--quiet")
-    parts, whole = read(place / "parts.nc"), read(place / "whole.nc")
+    parts = read(place / "parts.nc")
     for name in whole.variables:
         np.testing.assert_array_equal(parts[name].values, whole[name].values, err_msg=str(name))
     page = (place / "page.html").read_text(encoding="utf-8")
@@ -62,8 +67,7 @@ def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(pla
     assert tr.report(whole, place / "again.html").exists()
 
 
-def test_the_surfaces_touch_and_hold_the_worn_depth(place):
-    ds = read(place / "whole.nc")
-    gap = ds.roller_surface - ds.guide_surface
+def test_the_surfaces_touch_and_hold_the_worn_depth(whole):
+    gap = whole.roller_surface - whole.guide_surface
     assert gap.min("place").values == pytest.approx(0.0, abs=1e-12)
-    np.testing.assert_array_equal(ds.guide_surface.values, -ds.worn_depth.sel(body="guide").values)
+    np.testing.assert_array_equal(whole.guide_surface.values, -whole.worn_depth.sel(body="guide").values)

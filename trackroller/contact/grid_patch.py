@@ -167,8 +167,9 @@ def _moved(values: np.ndarray, step: int, axis: int) -> np.ndarray:
 def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
     """Continue values (ny, nx) by one ring of elements around the `known` ones.
 
-    With `onward` a new value lies on the line through the two nearest known values; otherwise it repeats the nearest
-    one. Where several directions give a value, the ring has their mean.
+    With `onward` a new value lies on the line through the two nearest known values, otherwise it repeats the nearest
+    one. Where several directions give a value, the ring has their mean. Onward it is not above 0, because the rim lies
+    before it: without this limit an element that becomes loaded would change its neighbours in a jump.
     """
     total, count = np.zeros_like(values), np.zeros_like(values)
     for axis in (0, 1):
@@ -177,7 +178,8 @@ def _spread(values: np.ndarray, known: np.ndarray, onward: bool) -> np.ndarray:
             ring = ~known & _moved(known, step, axis)
             total[ring] += (2.0 * near - next_one if onward else near)[ring]
             count[ring] += 1.0
-    return np.where(count > 0, total / np.maximum(count, 1.0), values)
+    new = total / np.maximum(count, 1.0)
+    return np.where(count > 0, np.minimum(new, 0.0) if onward else new, values)
 
 
 def rim_means(pressure: np.ndarray) -> np.ndarray:

@@ -18,7 +18,7 @@ from trackroller.contact.cross_sections import Gap
 from trackroller.contact.drawn_profiles import gap, treats_sides_alike, with_wear
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.normal.measure import Box
-from trackroller.contact.normal.wearing import WearingPatch, on_cells
+from trackroller.contact.normal.wearing import WearingPatch, on_cells, resolved
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.errors import InputError
@@ -85,9 +85,8 @@ class Groove:
 def between(one: Groove, two: Groove, travel: float) -> Groove:
     """Return the state at a travel [km] between two states of a march, by linear interpolation."""
     part = (travel - one.travel) / (two.travel - one.travel)
-    names = ("depth", "closing", "inclined", "error")
-    mixed = {name: (1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in names}
-    return Groove(travel, **mixed)
+    names = "depth", "closing", "inclined", "error"
+    return Groove(travel, *((1.0 - part) * getattr(one, name) + part * getattr(two, name) for name in names))
 
 
 def travel_to_depth(one: Groove, two: Groove, depth: float) -> float:
@@ -238,6 +237,7 @@ class Wearing:
             worn, closes = patch.worn(float(self.rates.sum()) * travel)
             depth[k, 0] += share[0] * on_cells(patch.edges - moved[k], worn, self.cells)
             depth[k, 1] += share[1] * on_cells(patch.edges, worn, self.cells)
+            depth[k] = [resolved(own, self.cells, patch.width) for own in depth[k]]
             closing[k] += closes
         return replace(state, travel=state.travel + travel, depth=depth, closing=closing)
 
@@ -249,12 +249,13 @@ class Wearing:
             return None, np.inf, reason
         two = self._advanced(self.turned(half, middle), self._patches(middle, self.worn_table(half)), 0.5 * step)
         apart = np.abs(two.depth - full.depth).sum(axis=1)
-        wore = np.any(two.depth > at.depth, axis=1)
-        squares = [float(np.mean(one[cells] ** 2)) for one, cells in zip(apart, wore, strict=True) if cells.any()]
-        error = max(squares, default=0.0) ** 0.5
+        wore = np.any(two.depth > at.depth, axis=1).sum(axis=1)
+        error = float(np.max((apart**2).sum(axis=1) / np.maximum(wore, 1))) ** 0.5
         allowed = TOLERANCE * self.scale + SHARE * max(float(at.depth.max()) - DEEP * self.scale, 0.0)
-        depth = np.maximum(2.0 * two.depth - full.depth, at.depth)
-        new = replace(two, depth=depth, closing=2.0 * two.closing - full.closing, error=at.error + error)
+        beyond = TOLERANCE * self.scale / allowed  # extrapolation makes the noise of long steps larger
+        depth = np.maximum(two.depth + beyond * (two.depth - full.depth), at.depth)
+        closing = two.closing + beyond * (two.closing - full.closing)
+        new = replace(two, depth=depth, closing=closing, error=at.error + error)
         return new, error / allowed, ""
 
     def march(

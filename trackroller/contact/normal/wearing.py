@@ -134,3 +134,17 @@ def on_cells(edges: np.ndarray, depth: np.ndarray, cells: np.ndarray) -> np.ndar
 
     volume = PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(depth * np.diff(edges))]))
     return np.maximum(np.diff(volume(np.clip(cells, edges[0], edges[-1]))) / np.diff(cells), 0.0)
+
+
+def resolved(depth: np.ndarray, cells: np.ndarray, width: float) -> np.ndarray:
+    """Return depths (m,) of cells with the edges `cells`, smoothed to what columns of a `width` [mm] resolve.
+
+    The patch grows while it wears, and its columns with it. Their centres would see details of narrower cells at
+    random, and wear would turn these details into noise. Means over groups of cells keep the volume.
+    """
+    count = 2 ** max(round(np.log2(width / (cells[1] - cells[0]))), 0)
+    if count == 1:
+        return depth
+    whole = np.pad(depth, (0, -depth.size % count)).reshape(-1, count).mean(axis=1)
+    groups = cells[0] + (cells[1] - cells[0]) * count * np.arange(whole.size + 1)
+    return on_cells(groups, whole, cells)
