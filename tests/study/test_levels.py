@@ -15,6 +15,11 @@ from trackroller.study.status import status_of
 POINTS = [[float(x), -0.01 * x * x] for x in range(-5, 6)]
 
 
+BEARING = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 3000, "static_rating": 1500}
+BEARING |= {"e": 0.3, "X": 0.56, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
+CATALOGUE = {"radial": 800, "axial": 300, "moment": 2000, "basic_life_km": 100, "law": "dry"}
+
+
 @pytest.mark.parametrize(
     ("name", "levels"),
     [
@@ -57,6 +62,9 @@ POINTS = [[float(x), -0.01 * x * x] for x in range(-5, 6)]
                 {"kind": "table", "speed": [0, 20, 50], "friction": [0.3, 0.15, 0.1]},
             ],
         ),
+        ("bearing", [BEARING, BEARING | {"kind": "roller"}, BEARING | {"Y0": 0.6}]),
+        ("catalogue", [CATALOGUE, CATALOGUE | {"law": "cubic"}]),
+        ("wear_table", [{"work_rate": [0, 10], "roller": [0, top], "guide": [0, 55]} for top in (55, 66)]),
     ],
 )
 def test_levels_of_a_factor_read_differently(name, levels):

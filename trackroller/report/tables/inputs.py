@@ -10,11 +10,11 @@ from typing import Any
 from trackroller.analysis.table import StudyView
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES, REQUIRED
-from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.roller.record import friction_records, is_default
-from trackroller.study.design.levels import NAMED
+from trackroller.study.design.levels import NAMED, entries
 
 MATERIAL_ROWS = (  # attribute, words, unit
     ("youngs_modulus", "Young's modulus E", "MPa"),
@@ -54,7 +54,9 @@ def input_row(name: str, value: Any) -> Row:
         shown = "not given" if value is None else number(value) if isinstance(value, (int, float)) else str(value)
         words = f"{parameter.long_name} {parameter.symbol}"
         return Row(words, shown, unit_text(parameter.unit).replace("–", ""), is_default(name, value))
-    if name in MAPPING_FIELDS:
+    if name in MAPPING_FIELDS and name not in MECHANICAL_MAPPINGS:
+        shown = entries(json.loads(value) if isinstance(value, str) else value)
+    elif name in MAPPING_FIELDS:
         shown = level_text(name, value if isinstance(value, str) else json.dumps(value, sort_keys=True))
     else:
         shown = str(value.get("name", "inline")) if isinstance(value, Mapping) else str(value)
@@ -176,5 +178,5 @@ def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:
                 text = ", ".join(f"{k} {v}" for k, v in json.loads(text).items())
             except (ValueError, AttributeError):
                 pass
-        rows += [Row(capital(plain(str(key))), text)] if key not in skip else []
+        rows += [Row(capital(plain(str(key))), text)] if text and key not in skip else []
     return rows

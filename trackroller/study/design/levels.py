@@ -11,7 +11,7 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
-from trackroller.parameters import MAPPING_FIELDS
+from trackroller.parameters import MAPPING_FIELDS, MECHANICAL_MAPPINGS
 from trackroller.study.design.factors import label
 
 OF_MATERIALS = ("material_pair", "roller_material", "guide_material")
@@ -33,10 +33,21 @@ def short(name: str, value: Any) -> str:
     """
     try:
         mapping = value if isinstance(value, Mapping) else json.loads(str(value) or "{}")
-        return _law(mapping) if name == "friction_law" else _profile(mapping)
+        if name == "friction_law":
+            return _law(mapping)
+        if name in MECHANICAL_MAPPINGS:
+            return _profile(mapping)
+        text = entries(mapping)
     except (ValueError, KeyError, TypeError, AttributeError, IndexError):
         text = str(value)
-        return text if len(text) <= 40 else f"{text[:34]}… {_mark(text)}"
+    return text if len(text) <= 40 else f"{text[:34]}… {_mark(text)}"
+
+
+def entries(mapping: Mapping[str, Any]) -> str:
+    """Return the entries of a mapping as text, such as 'kind ball, rows 2'; keys in capitals come last."""
+    keys = sorted(mapping, key=lambda key: (key[:1].isupper(), key))
+    values = {key: v if isinstance(v := mapping[key], (str, list)) else _number(v) for key in keys}
+    return ", ".join(f"{key} {value}".replace("_", " ") for key, value in values.items())
 
 
 def in_words(name: str, value: Any) -> str:
