@@ -114,6 +114,7 @@ LIMIT = Limit(
         ("pair_life_hours", (), "h", "L_h", "hours to the first failure of roller or guide"),
     ),
     requires=("guide_overrollings_per_hour",),
+    requires_by={"life_criterion": dict.fromkeys(("findley", "dang_van"), ("fatigue_limit_torsion",))},
     ends_at_once=False,
     distribution=SN_SCATTER,
     compares=("fatigue_stress peak_stress", "fatigue limit sigma_D; above it the life is finite"),

@@ -133,7 +133,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     regime = REGIMES[int(ds["regime"])]
     ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     needed = {*shown("contact"), "peak_stress", "peak_z"}
-    stated = ds[[name for name in ds if name in needed]]  # a selection takes its time by variable
+    stated = ds[["contact", *(name for name in ds if name in needed)]]  # a selection takes its time by variable
     if "peak_stress" in stated:
         stated = stated.assign(at_surface=at_surface(stated))
     contacts = [_contact(stated, number, materials) for number in ds["contact"].values.tolist()]

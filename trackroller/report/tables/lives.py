@@ -67,18 +67,21 @@ def _of_body(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Mat
         return [Row(f"{body}, no fatigue life", lifeless)]
     if math.isnan(float(ds[f"{body}_life_hours"])):
         return [Row(f"{body}, median life", UNKNOWN[body])]
-    if not (material.scatter_in_cycles or material.scatter_in_stress):
-        return [Row(f"{body}, median life (its material has no scatter T_N)", _life(ds, body, inputs, material, 0.5))]
+    curve, stress = SNCurve.of(material, str(ds.attrs["life_rule"])), ds.get("fatigue_stress", ds.get("peak_stress"))
+    scatters = bool(curve.scatters)
+    if not scatters or stress is None:
+        cycles = float(ds["life_cycles"].sel(body=body).min())
+        remark = " (its material has no scatter T_N)" * (not scatters)
+        return [Row(f"{body}, median life{remark}", _life(cycles, body, inputs, material))]
+    lives = [curve.changed(failure_probability=p).life_cycles(stress.sel(body=body).values) for p in PROBABILITIES]
     return [
-        Row(f"{body}, until {100 * p:.0f} % have failed", _life(ds, body, inputs, material, p)) for p in PROBABILITIES
+        Row(f"{body}, until {100 * p:.0f} % have failed", _life(float(np.min(cycles)), body, inputs, material))
+        for p, cycles in zip(PROBABILITIES, lives, strict=True)
     ]
 
 
-def _life(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Material, probability: float) -> str:
-    """Write the life of a body as hours, kilometres of travel and overrollings."""
-    curve = SNCurve.of(material, str(ds.attrs["life_rule"])).changed(failure_probability=probability)
-    stress = ds["fatigue_stress" if "fatigue_stress" in ds else "peak_stress"]
-    cycles = float(np.min(curve.life_cycles(stress.sel(body=body).values)))
+def _life(cycles: float, body: str, inputs: Mapping[str, Any], material: Material) -> str:
+    """Write a life in cycles as hours, kilometres of travel and overrollings."""
     hours = cycles / overrollings(inputs, body)
     beyond = bool(past_data(cycles, material.cycles_at_fatigue_limit))
     return _text(hours, inputs, beyond, f"{rounded(cycles)} {'turns' if body == 'roller' else 'overrollings'}")
