@@ -71,3 +71,20 @@ def test_static_failure_is_the_peak_stress_over_the_tensile_strength():
 def test_a_yield_strength_above_the_tensile_strength_is_refused():
     with pytest.raises(InputError, match=r"yield_strength = 800.*R_m = 720"):
         tr.solve(tr.Case(roller_material=STEEL | {"yield_strength": 800.0}), outputs="rating")
+
+
+def test_a_hardened_surface_needs_its_yield_strength_instead_of_a_hardness():
+    case = {"motor_force": 0, "guide_overrollings_per_hour": 30, "guide_material": STEEL}
+    polymer = {"like": "POM", "surface_hardened": 1}
+    ds = tr.solve(tr.Case(**case, roller_material=polymer), outputs=("rating", "limits"), contact_model="sliding")
+    assert np.isfinite(ds.rating_utilisation_static).all()
+    told = "rating: placeholders of material 'inline': yield_strength (expected from 60 to 72 MPa)."
+    assert ds.attrs["limits_notes"] == told
+    bare = {"name": "new", "like": "POM", "yield_strength": 65.0, "surface_hardened": 0}
+    for name, how in ((None, "Add hardness: NUMBER to the material of the case."), ("new", "Enter it in config")):
+        ds = tr.solve(
+            tr.Case(**case, roller_material=bare | {"name": name}), ("rating", "limits"), contact_model="sliding"
+        )
+        assert f"material '{name or 'inline'}' has no hardness. {how}" in ds.attrs["limits_notes"]
+    with pytest.raises(InputError, match=r"surface_hardened = 0.5 .*0 or 1"):
+        tr.solve(tr.Case(**case, roller_material=STEEL | {"surface_hardened": 0.5}), outputs="rating")

@@ -1,5 +1,7 @@
 """The verdict over the limits: which one comes first, and when."""
 
+import re
+
 import numpy as np
 import pytest
 from typer.testing import CliRunner
@@ -102,3 +104,24 @@ def test_the_command_line_prints_one_table():
     assert groups_of("all")[-1] == "limits" and "multiaxial" not in groups_of("all")
     with pytest.raises(InputError, match="Did you mean 'rating'"):
         groups_of("ratings")
+
+
+@pytest.mark.parametrize("limits", ["fatigue", "heat,fatigue", "rating"])
+def test_the_table_of_single_limits_marks_guesses_of_the_own_body(limits):
+    """The roller's values are given; the guide's stay placeholders. The peak stress is no result here."""
+    given = "roller_material={like: 1.7225-normalised, hardness: 220, fatigue_limit_torsion: 210}"
+    options = ["contact_model=sliding", "guide_overrollings_per_hour=60", "life_criterion=findley", given]
+    ran = CliRunner().invoke(app, ["solve", "--limits", limits, *(word for o in options for word in ("--set", o))])
+    told = " ".join(ran.output.split())
+    assert ran.exit_code == 0
+    for body in ("roller", "guide"):
+        (first,) = re.findall(rf"First limit of the {body}: (.*?)\.", told)
+        assert ("rests on placeholders" in first) == (body == "guide")
+
+
+@pytest.mark.parametrize("outputs", ["life", "life,limits,heat"])
+def test_a_life_is_told_without_peaks_and_forces(outputs):
+    scattered = "roller_material={like: 1.7225-normalised, scatter_in_cycles: 4}"
+    words = ["solve", "--set", f"outputs={outputs}", "--set", "contact_model=sliding", "--set", scattered]
+    ran = CliRunner().invoke(app, words)
+    assert ran.exit_code == 0 and "h (median); contact 2 decides" in " ".join(ran.output.split())

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import asdict, dataclass, field
 from typing import Any
 
@@ -19,6 +19,7 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage.histories import Tractions
 from trackroller.damage.mapping import MappingField
+from trackroller.materials.material import UNNAMED
 from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS, Parameter
 from trackroller.parameters.variables import Variable
 
@@ -133,7 +134,9 @@ class Limit:
     requires : tuple of str
         Fields of a case and values of a material without which there is no verdict.
     requires_by : mapping of str to mapping of str to tuple of str
-        What else is required, by option and by the value of the option.
+        What else is required, by option and by those of its values that require more.
+    instead : mapping of str to tuple of str
+        By a required value of a material, the mark and the value that takes its place where the mark is 1.
     bodies : tuple of str
         Bodies that the limit concerns.
     ends_at_once : bool
@@ -163,6 +166,7 @@ class Limit:
     mappings: tuple[MappingField, ...] = ()
     requires: tuple[str, ...] = ()
     requires_by: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
+    instead: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     bodies: tuple[str, ...] = BODIES
     ends_at_once: bool = True
     distribution: str = "none"
@@ -172,7 +176,17 @@ class Limit:
 
     def required(self, options: Mapping[str, Any]) -> tuple[str, ...]:
         """Return the fields of a case and values of a material that a verdict requires under options of a solution."""
-        return self.requires + tuple(name for key, own in self.requires_by.items() for name in own[options[key]])
+        return self.requires + tuple(
+            name for key, own in self.requires_by.items() for name in own.get(options[key], ())
+        )
+
+    def required_of(self, solved: SolvedRollers) -> Iterator[tuple[str, np.ndarray]]:
+        """Yield each value of a material that a verdict requires, and of which bodies, (n, 2)."""
+        for name in self.required(solved.options):
+            if name in solved.materials:
+                mark, other = self.instead.get(name, (name, ""))
+                marked = (solved.materials[mark] == 1.0) & (other != "")
+                yield from ((name, ~marked), *(((other, marked),) if other else ()))
 
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:
@@ -235,19 +249,22 @@ def lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) 
         Names of the materials by body, (n,) each.
     """
     out = []
-    scatter = ("scatter_in_cycles",) if limit.distribution == SN_SCATTER else ()
-    for name in limit.required(solved.options) + (scatter if solved.options["failure_probability"] != 0.5 else ()):
-        if name in solved.cases:
-            column = solved.cases[name]
-            if np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
-                out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
-            continue
-        unknown = np.isnan(solved.materials[name])
-        if name in scatter:  # The scatter of the strength gives that of the life.
-            unknown &= np.isnan(solved.materials["scatter_in_stress"])
+    for name in limit.required(solved.options):
+        column = solved.cases.get(name)
+        if column is not None and np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
+            out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
+    values = list(limit.required_of(solved))
+    if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
+        # The scatter of the strength gives that of the life.
+        values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
+    for name, here in values:
+        unknown = np.isnan(solved.materials[name]) & here
         for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
-            out.append(
-                f"{limit.name}: material '{material}' has no {name}. Enter it in config/materials.yaml under "
-                f"materials.{material}, or in the case: {{like: {material}, {name}: NUMBER}}."
+            how = (
+                f"Add {name}: NUMBER to the material of the case."
+                if material == UNNAMED
+                else f"Enter it in config/materials.yaml under materials.{material}, or in the case: "
+                f"{{like: {material}, {name}: NUMBER}}."
             )
+            out.append(f"{limit.name}: material '{material}' has no {name}. {how}")
     return out

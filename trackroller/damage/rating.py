@@ -85,6 +85,7 @@ LIMIT = Limit(
         optional("yield_strength", "R_e", "MPa", "yield strength", 0.0, 2e5),
     ),
     requires=("hardness", "guide_overrollings_per_hour"),
+    instead={"hardness": ("surface_hardened", "yield_strength")},
     compares=("max_pressure", "static pressure of the standard"),
     standard="EN 13001-3-3 after a public implementation; its text was not at hand",
     assumes=("Standard rating: the limits of line contacts hold for elliptical contacts.",),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from trackroller.errors import Collector, InputError, check_names, unknown_name
-from trackroller.materials.material import Material, contradictions
+from trackroller.materials.material import UNNAMED, Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import complete_curve
 from trackroller.materials.temperature import FIELD, TemperatureTable
@@ -223,7 +223,7 @@ class EntryParser:
 def inline_material(entry: Mapping[str, Any], known: Mapping[str, Material]) -> Material:
     """Return the material that a mapping in a case describes; see `MaterialDatabase.material`."""
     entry = dict(entry)
-    name = entry.pop("name", None) or "inline"
+    name = entry.pop("name", None) or UNNAMED
     entry = {key: value for key, value in entry.items() if value is not None}
     parser = EntryParser("material ", "case", {})
     # A mapping inherits from a known material only if it asks for it by `like`, not because both have the same name.

@@ -12,6 +12,7 @@ from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check
 from trackroller.materials.sn_curve import curve_exponent
 from trackroller.materials.temperature import FIELD, TemperatureTable, read_table
 
+UNNAMED = "inline"  # name of a material that a case gives without one
 LESS_IS_BETTER = ("loss_fraction", "wear_coefficient")
 _OfLimits = make_dataclass(
     "_OfLimits", [(name, Any, field(default=None)) for name in OF_LIMITS], frozen=True, kw_only=True
@@ -19,7 +20,7 @@ _OfLimits = make_dataclass(
 
 
 def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
-    """Return the values of limits that contradict R_m or sigma_D of a material, with what is allowed.
+    """Return the values of limits that are impossible beside R_m and sigma_D of a material, with what is allowed.
 
     Parameters
     ----------
@@ -29,6 +30,8 @@ def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
     strength, limit, out = values["tensile_strength"], values["fatigue_limit"], {}
     if (values.get("yield_strength") or 0.0) > strength:
         out["yield_strength"] = f"it must not exceed R_m = {strength:g} MPa"
+    if (values.get("surface_hardened") or 0.0) not in (0.0, 1.0):
+        out["surface_hardened"] = "it must be 0 or 1"
     torsion = values.get("fatigue_limit_torsion")
     if torsion is not None and not 0.5 < torsion / limit < 1.0:
         out["fatigue_limit_torsion"] = (
@@ -108,7 +111,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             )
 
         for name, allowed in contradictions(vars(self) | {"fatigue_limit": self.fatigue_limit}).items():
-            raise InputError(f"{where}.{name}", getattr(self, name), allowed, "Correct one of the two values.")
+            raise InputError(f"{where}.{name}", getattr(self, name), allowed, "Correct the values.")
         if self.temperature_dependence is not None:
             object.__setattr__(self, FIELD, read_table(self.temperature_dependence, vars(self), where))
 

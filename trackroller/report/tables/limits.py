@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.analysis.lives import past_data
-from trackroller.damage import LIMITS
+from trackroller.damage import LIMITS, heat
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
 from trackroller.report.tables.lives import overrollings
@@ -130,7 +130,11 @@ def margins(
         Why a body has no fatigue life; an empty text if it has one.
     """
     out: list[Margin] = []
-    for margin in (*_of_limits(ds, inputs, lifeless), *_of_pressure(ds, materials), *_of_loads(ranges, inputs)):
+    for margin in (
+        *_of_limits(ds, inputs, materials, lifeless),
+        *_of_pressure(ds, materials),
+        *_of_loads(ranges, inputs),
+    ):
         if out and margin == replace(out[-1], body=margin.body):
             out[-1] = replace(margin, body=BOTH)
         else:
@@ -138,7 +142,9 @@ def margins(
     return sorted(out, key=lambda m: (m.reached, 0.0 if math.isnan(m.used) else -m.used))
 
 
-def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str, str]) -> list[Margin]:
+def _of_limits(
+    ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
+) -> list[Margin]:
     """Return the margins of the limits of a result, for the bodies that they concern."""
     out = []
     places = {dim: ds[dim].values.tolist() for dim in ("limit", "body") if dim in ds}
@@ -163,7 +169,9 @@ def _of_limits(ds: xr.Dataset, inputs: Mapping[str, Any], lifeless: Mapping[str,
             texts = f"{rounded(value)} {unit}".strip(), bound + words
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
-            guessed = any(note.startswith(name + GUESSES) for note in notes)
+            # both bodies share the heat of a contact
+            own = "" if limit is heat.LIMIT else f" '{materials[body].name}'"
+            guessed = any(note.startswith(f"{name}{GUESSES}{own}") for note in notes)
             of_life = timed and not lifeless[body]
             out.append(Margin(limit.title, body, *texts, used, hours, limit.ends_at_once, of_life, beyond, guessed))
     return out

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, computed, judged, of_mechanics, of_patches, verdict
+from trackroller.damage import LIMITS, asked, judged, of_mechanics, of_patches, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, SolvedRollers, lacks
 from trackroller.damage.wear import KM_PER_HOUR
@@ -91,10 +91,12 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
         for name, own in zip(body.name, body.guesses, strict=True)
     )
     out = []
-    for limit in computed(options.outputs, options.life_criterion):
+    for limit in asked(options.outputs):
         out += lacks(limit, solved, names)
+        required = dict(limit.required_of(solved))
         for material, placeholders in guesses:
-            guessed = [f"{name} ({words})" for name, words in placeholders if name in limit.required(solved.options)]
+            of = np.stack([own.name == material for own in bodies.values()], axis=1)
+            guessed = [f"{n} ({words})" for n, words in placeholders if n in required and np.any(required[n] & of)]
             if guessed:
                 out.append(f"{limit.name}: placeholders of material '{material}': {', '.join(guessed)}.")
     return list(dict.fromkeys(out))
