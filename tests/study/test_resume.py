@@ -172,7 +172,7 @@ def put_another_in_its_place(path):
 @pytest.mark.parametrize("place", ["chunks", "plan"])
 def test_damaged_file_is_found_named_and_mended(tmp_path, solved, damage, place):
     plan, whole, _ = run(DATA, tmp_path)
-    victim = sorted((plan.folder.root / place).glob("*.n*"))[1]
+    victim = sorted((plan.folder.root / place).glob("*.nc"))[1]
     damage(victim)
     _, again, lines = run(DATA, tmp_path)
     xr.testing.assert_identical(again.drop_attrs(), whole.drop_attrs())

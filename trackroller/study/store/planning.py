@@ -18,7 +18,7 @@ from trackroller.study.store.folder import StudyFolder, Tell, sweep, wait_for_lo
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder, unused_cases
-from trackroller.study.store.seal import altered
+from trackroller.study.store.seal import altered, discard
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -88,7 +88,7 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
         plan = new_plan(study, folder, found)
         if found.paths and (unused := unused_cases(study, folder, found, found.find(plan.cases.fingerprints))):
             tell(unused)
-        folder.design.unlink(missing_ok=True)
+        discard(folder.design)
     _keep(plan)
     return plan
 
@@ -100,7 +100,7 @@ def _remove_altered(folder: StudyFolder, tell: Tell) -> None:
             raise InputError(path.name, str(path), "a file; this is a folder", "Move the folder away.")
         if path.exists() and altered(path):
             tell(f"{path} is truncated or was altered (its SHA-256 differs): it is made anew")
-            path.unlink()
+            discard(path)
 
 
 def _sound_inventory(folder: StudyFolder, tell: Tell) -> Inventory:

@@ -54,6 +54,12 @@ def forget_report(root: Path) -> None:
         _record(root / name).unlink(missing_ok=True)
 
 
+def discard(path: Path) -> None:
+    """Remove a result and its record, if there is one; it does not look lost."""
+    _record(path).unlink(missing_ok=True)
+    path.unlink(missing_ok=True)
+
+
 def recorded(path: Path) -> dict[str, str] | None:
     """Return the recorded SHA-256 of a result by file, relative to the study's folder; None without a record."""
     try:
