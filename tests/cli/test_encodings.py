@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import codecs
 import os
 import subprocess
 import sys
 
 import pytest
+
+from trackroller.cli.main import _plain
 
 CASE = (
     "case.yaml",
@@ -75,6 +78,13 @@ def test_commands_print_in_every_encoding(encoding, tmp_path):
     assert ("größer" in out) == (encoding != "ascii")
     if encoding == "utf-8":
         assert "≤" in out or "≥" in out
+
+
+def test_units_and_exponents_are_read_without_utf_8():
+    codecs.register_error("plain", _plain)
+    text = "−3·10⁻⁵ µm, 2 mm², ±20 °C, größer → ≤ ∞"
+    assert text.encode("ascii", "plain") == b"-3*10^-5 um, 2 mm^2, +-20 degC, gro?er -> <= inf"
+    assert text.encode("cp437", "plain").decode("cp437") == "-3·10^-5 µm, 2 mm², ±20 °C, größer -> ≤ ∞"
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ import signal
 import sys
 import tempfile
 import traceback
+import unicodedata
 import warnings
 from collections.abc import Callable
 from pathlib import Path
@@ -41,6 +42,7 @@ app.add_typer(materials, name="materials")
 app.command("app")(live_page)
 
 SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"
+SIGNS = dict(zip("−–×·→µ°±∞≤≥↑↓", "- - x * -> u deg +- inf <= >= ^ v".split(), strict=True))
 NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="skip no stage; the results stay the same")]
 Results = Annotated[Path, typer.Option("--results", help="folder that holds results/NAME/")]
 StudyFile = Annotated[Path, typer.Argument(help="study file (YAML)", show_default=False)]
@@ -276,11 +278,17 @@ def run_app(command: Callable[[], object]) -> int:
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:
-    """Replace signs that a terminal without UTF-8 lacks; a minus must not become a question mark."""
+    """Replace signs that a terminal without UTF-8 lacks; a minus or an exponent must not become a question mark."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
-    signs = {"\N{MINUS SIGN}": "-", "\N{MULTIPLICATION SIGN}": "x", "\N{RIGHTWARDS ARROW}": "->"}
-    return "".join(signs.get(sign, "?") for sign in error.object[error.start : error.end]), error.end
+    run = error.object[error.start : error.end]
+    power = "^" if unicodedata.decomposition(run[0]).startswith("<super>") else ""
+    return power + "".join(map(_plain_sign, run)), error.end
+
+
+def _plain_sign(sign: str) -> str:
+    parts = unicodedata.normalize("NFKD", sign)  # a superscript 2 becomes 2, a letter loses its accent
+    return SIGNS.get(sign) or "".join(SIGNS.get(part, part if part.isascii() else "") for part in parts) or "?"
 
 
 def _tell(line: str, code: int) -> int:
