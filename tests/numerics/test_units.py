@@ -14,6 +14,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.materials import add_material, load_database
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.parameters import PARAMETERS
 from trackroller.study.spectrum.file import load_spectrum
@@ -50,6 +51,12 @@ from trackroller.study.spectrum.file import load_spectrum
 def test_a_unit_is_converted(text, unit, number):
     value, own = split_quantity(text)
     assert in_unit(float(value), own, unit, "field") == pytest.approx(number, rel=1e-14)
+
+
+@pytest.mark.parametrize("text", ["1e400 N", "1e400kN", "1e-400 N", "-1e400"])
+def test_a_number_that_no_computer_holds_is_refused_by_name(text):
+    with pytest.raises(InputError, match=r"axial_force = .* is too (large|small) for a number of the computer"):
+        number_or_nan(text, "N", "axial_force")
 
 
 def test_a_round_number_stays_round():

@@ -82,14 +82,14 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
     InputError
         If the text has a unit that is unknown or measures something else.
     """
-    if unit is not None and (parts := split_quantity(value)):
-        return in_unit(read_number(parts[0]), parts[1], unit, field, difference)
+    parts = None if unit is None else split_quantity(value)
     try:
-        return read_number(value)
+        number = read_number(parts[0] if parts else value)
     except RangeError as exc:
         raise InputError(field or "number", value, str(exc)) from None
     except ValueError:
         return math.nan
+    return number if unit is None or parts is None else in_unit(number, parts[1], unit, field, difference)
 
 
 def number_in(

@@ -113,7 +113,8 @@ def wear(
     """
     known = load_database() if database is None else database
     case = case if isinstance(case, Case) else Case.from_dict(case)
-    to = number_in(to, "to", "a travel > 0 [km]", np.nextafter(0.0, 1.0), FARTHEST, unit="km")
+    allowed = "a travel > 0 km and at most 1e9 km, such as 500km"
+    to = number_in(to, "to", allowed, np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     given = Options(**{"normal": "halfspace", "outputs": tuple(OUTPUTS if outputs is None else outputs)} | options)
     record = _Record(case, given, known, tell, to)
     return record.run(resume)
