@@ -199,14 +199,21 @@ def likeliest(name: str, options: Iterable[str]) -> list[str]:
     return list(dict.fromkeys([*meant, *akin]))[:3]
 
 
-def unknown_name(kind: str, name: str, options: Iterable[str]) -> InputError:
-    """Return the error for a name that is not among `options`; it proposes the names that are meant most likely."""
+MOST_LISTED = 16  # names that a message lists; of more names it proposes three
+
+
+def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterable[str] = ()) -> InputError:
+    """Return the error for a name that is not among `options`; it proposes the names that are meant most likely.
+
+    Names `elsewhere` in the file are proposed, too, if the name means one of them.
+    """
     options = list(options)
-    close = nearest(name, options)
-    akin = likeliest(name, options)
-    remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else "Use one of these names."
-    remedy = f"Did you mean '{close}'?" if close else remedy
-    return InputError(kind, name, "known names are " + ", ".join(map(str, options)), remedy)
+    close, akin = nearest(name, options), likeliest(name, [*options, *elsewhere])
+    short = len(options) <= MOST_LISTED
+    allowed = "known names are " + ", ".join(map(str, options)) if short else "this name is not known"
+    remedy = "Use one of these names." if short else "The page 'Parameters, options and results' lists the names."
+    remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else remedy
+    return InputError(kind, name, allowed, f"Did you mean '{close}'?" if close else remedy)
 
 
 def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> None:

@@ -187,7 +187,9 @@ def lines_of(text: str) -> dict[tuple[str, ...], int]:
 
 
 @contextmanager
-def errors_by_line(text: str, elsewhere: Collection[str] = (), file: str | None = None) -> Iterator[None]:
+def errors_by_line(
+    text: str, elsewhere: Collection[str] = (), file: str | None = None, aliases: Mapping[str, str] | None = None
+) -> Iterator[None]:
     """Give the input errors of a file their lines in the text, and raise them in this order.
 
     Parameters
@@ -198,6 +200,8 @@ def errors_by_line(text: str, elsewhere: Collection[str] = (), file: str | None 
         Keys whose values come from elsewhere, such as the command line.
     file : str, optional
         Name of the file for the messages, if the user did not name it on the command line.
+    aliases : mapping, optional
+        Names in messages by the other names that the file may use for them.
     """
     try:
         yield
@@ -205,6 +209,9 @@ def errors_by_line(text: str, elsewhere: Collection[str] = (), file: str | None 
         lines: dict[tuple[str, ...], int] = {}
         with suppress(YAMLError):  # the two parsers of ruamel.yaml differ in odd texts
             lines = {_parts(".".join(path)): line for path, line in lines_of(text).items()}
+        known = aliases or {}
+        named = {path: (*path[:-1], known[path[-1]]) for path in lines if path and path[-1] in known}
+        lines |= {other: lines[path] for path, other in named.items() if other not in lines}
         for one in error.errors:
             if one.file is None:  # an error of another file has its line already
                 one.file, one.line = file, _line_of(one, lines, elsewhere)

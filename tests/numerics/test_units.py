@@ -43,6 +43,7 @@ from trackroller.study.spectrum.file import load_spectrum
         ("1 ft", "mm", 304.8),
         ("-7000 µm", "mm", -7.0),
         ("4 1/min", "1/h", 240.0),
+        ("4/min", "1/h", 240.0),
         ("0.9 kg/dm3", "kg/m3", 900.0),
         ("0.25 W/(m*K)", "W/(m K)", 0.25),
         ("3 a", "h", 3 * 365.25 * 24),

@@ -21,6 +21,8 @@ STEEL = "1.7225-normalised"
         ({"guide_material": {"like": "POM", "tensile_strength": 0.07}}, "write '0.07 GPa' or 70."),
         ({"guide_material": {"like": "PA6", "density": 1.15}}, "write '1.15 g/cm3' or 1150"),
         ({"radial_force": -0.45}, "write '-0.45 kN' or -450"),
+        ({"axial_force": 0.035}, "write '0.035 kN' or 35"),
+        ({"motor_force": -0.02}, "write '-0.02 kN' or -20"),
         ({"contact_angle": 0.6}, "write '0.6 rad' or 34.3775"),
         ({"velocity": 0.25}, "write '0.25 m/s' or 15"),
         ({"friction_coefficient": 1.9}, "write '1.9 %' or 0.019"),
@@ -57,6 +59,10 @@ def test_designed_points_are_not_taken_for_noisy_ones(spacing):
     x = np.arange(-5, 5 + spacing / 2, spacing)
     for z in (np.sqrt(49 - x**2), x**2 / -12, np.round(np.sqrt(49 - x**2), 8)):
         assert doubts({"guide_profile": {"points": np.column_stack((x, z)).tolist()}}) == []
+
+
+def test_small_forces_beside_usual_ones_are_not_asked_about():
+    assert doubts({"axial_force": np.linspace(0, 40, 4001), "motor_force": [0.0, -0.01, -25.0]}) == []
 
 
 def test_solve_plan_and_run_ask(tmp_path):

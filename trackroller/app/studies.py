@@ -26,6 +26,7 @@ from trackroller.files import files_beside, write_text
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
+from trackroller.roller.aliases import ALIASES
 from trackroller.study.design.sampling import ARRAYS
 from trackroller.study.file.config import check_name
 from trackroller.study.file.load import parse_study
@@ -82,7 +83,7 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
 
 def _study(text: str) -> Study:
     """Return the checked study of a text, unless it is too large for the page."""
-    with errors_by_line(text), files_beside(TEXTS / "study.yaml"):
+    with errors_by_line(text, aliases=ALIASES), files_beside(TEXTS / "study.yaml"):
         study = parse_study(parse_mapping(text, "study file"), TEXTS / "study.yaml")
     cases = _least_cases(study)
     if cases <= MOST_CASES:  # a larger design may fill the memory when it is drawn

@@ -12,6 +12,7 @@ from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import REGIMES
+from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.duty import with_duty
@@ -43,7 +44,7 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], 
     """Return the case, the options and the duty of a case file and of --set words."""
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = ({} if path is None else parse_mapping(text, "case file")) | given
-    with errors_by_line(text, given), files_beside(path):
+    with errors_by_line(text, given, aliases=ALIASES), files_beside(path):
         return checked_case(values)
 
 
@@ -229,5 +230,5 @@ def plot_target(target: str, words: list[str], out: Path | None, results: Path) 
 
 
 def is_study(path: Path) -> bool:
-    """Return True for a study file, which has factors, a name or a design; any other file is a case file."""
-    return bool({"factors", "name", "design"} & set(read_mapping(path, "study or case file")))
+    """Return True for a study file, which has factors, a base, a name or a design; any other file is a case file."""
+    return bool({"factors", "base", "name", "design"} & set(read_mapping(path, "study or case file")))

@@ -58,7 +58,7 @@ class MaterialDatabase:
         known = {m.family for m in self.materials.values() if m.family}
         return tuple(sorted(known | {part for pair in self.friction_table for part in pair}))
 
-    def material(self, material: str | Mapping[str, Any] | Material) -> Material:
+    def material(self, material: str | Mapping[str, Any] | Material, field: str = "material") -> Material:
         """Return the material of a name, or make a material from a mapping.
 
         Parameters
@@ -66,6 +66,8 @@ class MaterialDatabase:
         material : str, mapping or Material
             A name, or a mapping with the fields of `Material`. The entry `like: NAME` in a mapping takes missing values
             from another material. A `Material` is returned as it is.
+        field : str
+            Name of the field that holds the name, for messages.
 
         Returns
         -------
@@ -83,13 +85,17 @@ class MaterialDatabase:
             return inline_material(material, self.materials)
         if not isinstance(material, str):
             remedy = "Put a name that looks like a number in quotes."
-            raise InputError("material", material, "a name of the database or a mapping with its values", remedy)
+            raise InputError(field, material, "a name of the database or a mapping with its values", remedy)
         if material in self.materials:
             return self.materials[material]
-        if nearest(material, self.materials) is None and (akin := self.search(material)):
+        if nearest(material, self.materials) is None:
+            akin, allowed = self.search(material), "the name of a material of the database"
             remedy = f"Write the name of the material that is meant: {' or '.join(akin)}."
-            raise InputError("material", material, "the name of a material of the database", remedy)
-        raise unknown_name("material", material, self.materials)
+            if not akin:
+                allowed += f": {', '.join(self.materials)}"
+                remedy = "Use one of these names, or enter the material in config/materials.yaml."
+            raise InputError(field, material, allowed, remedy)
+        raise unknown_name(field, material, self.materials)
 
     def search(self, text: str) -> tuple[str, ...]:
         """Return the names of the materials whose name, family or description holds every word of a text.

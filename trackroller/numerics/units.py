@@ -22,7 +22,8 @@ _COMPARED = re.compile(
 
 def split_quantity(value: Any) -> tuple[str, str] | None:
     """Return the number and the unit of a text such as '70 GPa', or None for anything else."""
-    parts = _QUANTITY.fullmatch(value) if isinstance(value, str) else None
+    value = re.sub(rf"^(\s*{_NUMBER})\s*/", r"\1 1/", value, flags=re.ASCII) if isinstance(value, str) else ""  # 10/min
+    parts = _QUANTITY.fullmatch(value)
     return (parts[1], parts[2]) if parts else None
 
 

@@ -14,7 +14,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from trackroller.errors import InputError
+from trackroller.errors import Collector, InputError
 from trackroller.numerics.numbers import number_in
 from trackroller.parameters import PARAMETERS, expressions
 from trackroller.parameters.example import EXAMPLE
@@ -78,9 +78,11 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     """
     if not check_radii(values):
         return dict(values)
-    shape = ("guide_profile_radius", "roller_profile_radius", "contact_angle")
-    known = {name: number(name, values.get(name, EXAMPLE[name])) for name in shape}
-    known |= {name: radius(name, values[name]) for name in RADII}
+    known, wrong = {}, Collector()
+    for name in (*RADII, "guide_profile_radius", "roller_profile_radius", "contact_angle"):
+        with wrong.part():
+            known[name] = radius(name, values[name]) if name in RADII else number(name, values.get(name, EXAMPLE[name]))
+    wrong.check()
     axis = float(expressions.evaluate(AXIS_DISTANCE, known))
     if not math.isfinite(axis):
         remedy = "Give axis_distance, or a groove: roller_profile_radius < 0."
@@ -92,19 +94,30 @@ def with_axis_distance(values: Mapping[str, Any], number: Any) -> dict[str, Any]
     return {name: value for name, value in values.items() if name not in RADII} | {"axis_distance": axis}
 
 
-def study_with_radii(data: Mapping[str, Any]) -> dict[str, Any]:
+def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any]:
     """Return the keys of a study file with the axis distance as a factor that follows from outer radius and depth.
 
     The two become factors of the study, also if they stand in `base`, and the expression `AXIS_DISTANCE` uses them.
+    `wrong` collects the errors; aliases and radii that are wrong are left out.
     """
     base, factors = data.get("base"), data.get("factors")
     base, factors = (dict(part) if isinstance(part, Mapping) else part for part in (base or {}, factors or {}))
     if not isinstance(base, dict) or not isinstance(factors, dict):
         return dict(data)
-    base, factors = renamed(base), renamed(factors)
+    parts = {"base": base, "factors": factors}
+    for section, part in parts.items():
+        parts[section] = {name: value for name, value in part.items() if name not in ALIASES}
+        with wrong.part(section):
+            parts[section] = renamed(part)
+    base, factors = parts.values()
     derived = {"expression": AXIS_DISTANCE}
     own = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
-    if check_radii({**base, **own}):
-        given = {name: {"values": [radius(name, base.pop(name), "base.")]} for name in RADII if name in base}
-        factors = given | factors | {"axis_distance": derived}
+    before = len(wrong.errors)
+    with wrong.part():
+        if check_radii({**base, **own}):
+            given = {name: {"values": [radius(name, base[name], "base.")]} for name in RADII if name in base}
+            factors = given | factors | {"axis_distance": derived}
+            base = {name: value for name, value in base.items() if name not in RADII}
+    if len(wrong.errors) > before:
+        base, factors = ({name: part[name] for name in part if name not in RADII} for part in (base, factors))
     return {**data, **({"base": base} if base else {}), **({"factors": factors} if factors else {})}

@@ -26,9 +26,12 @@ USUAL: dict[str, tuple[float, float]] = {
     "guide_curve_radius": (10.0, 1e6),
     "contact_angle": (5.0, 85.0),
     "radial_force": (1.0, 1e6),
+    "axial_force": (0.1, 1e6),
+    "motor_force": (0.1, 1e6),
     "velocity": (0.3, 2000.0),
     "friction_coefficient": (0.0, 1.0),
 }
+FROM_ZERO = ("axial_force", "motor_force")  # small values are usual beside larger ones: only the largest counts
 # ASSUME: magnesium to tungsten, and unfilled polyethylene to polymers with carbon fibres.
 METAL = {"youngs_modulus": (4e4, 4.5e5), "tensile_strength": (50.0, 4000.0), "density": (1500.0, 20000.0)}
 POLYMER = {"youngs_modulus": (200.0, 4e4), "tensile_strength": (10.0, 500.0), "density": (850.0, 2300.0)}
@@ -65,7 +68,8 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     for name, usual in USUAL.items():
         given = np.ravel(values.get(name, math.nan)).tolist()  # a friction coefficient may be a word
         found = np.array([v for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0])
-        ends = {float(found[np.argmin(np.abs(found))]), float(found[np.argmax(np.abs(found))])} if found.size else ()
+        places = (np.argmax, *(() if name in FROM_ZERO else (np.argmin,)))
+        ends = {float(found[place(np.abs(found))]) for place in places} if found.size else ()
         told += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():

@@ -32,6 +32,7 @@ def checked_duty(value: Any) -> dict[str, float]:
     wrong, duty = Collector(), {}
     with wrong.part():
         check_names("duty", value, MOST)
+    wrong.check()  # a misspelt name is missing, too
     value = {"days_per_year": 365.0, **value}
     for name, most in MOST.items():
         with wrong.part():

@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from trackroller.errors import Collector, check_names
-from trackroller.parameters import OPTIONS
+from trackroller.materials import load_database
+from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
@@ -43,6 +44,11 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
             options[key] = [part.strip() for part in options[key].split(",")]
     with wrong.part():
         case = Case.from_dict({key: value for key, value in left.items() if key in (*FIELDS, *ALIASES, *RADII)})
+    database = load_database()
+    for name in MATERIAL_FIELDS:
+        with wrong.part():
+            if isinstance(left.get(name), str):
+                database.material(left[name], name)
     with wrong.part():
         if options:
             from trackroller.roller.options import Options  # heavy: numba

@@ -159,6 +159,7 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         Its state, see `status_of`.
     """
     chunk = chunk_size(study, status.missing)
+    parts, size = -(-status.missing // chunk), "1 case" if chunk == 1 else f"up to {chunk} cases"
     seconds = status.seconds_left + START
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
@@ -169,7 +170,7 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         ("cases", f"{status.total}, {status.done} of them solved already"),
         ("search", generations if study.config.design == "optimise" else ""),
         ("unused", status.unused),
-        ("chunks", f"{-(-status.missing // chunk)} of up to {chunk} cases"),
+        ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),
         ("time", f"{times} ({source} cases/s: {status.speed:.3g})"),
         ("report", f"{duration(pages)} more on one core, for analysis, figures and page"),
         ("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"),

@@ -284,3 +284,53 @@ def test_a_key_of_a_study_is_suggested_by_its_meaning(name, close, meant):
 def test_reliability_means_the_failure_probability(tmp_path):
     told = trackroller("solve", "--set", "reliability=0.9", cwd=tmp_path, code=2).stderr
     assert told.endswith("Names with a similar meaning: failure_probability.\n")
+
+
+WRONG_WORDS = """\
+name: hall
+base:
+  guide_material: 42CrMo4
+  outer_radius: 31
+  survival: 0.95
+factors:
+  mu: {linspace: [0.1, 0.25]}
+  grove_depth: {values: [2.5, 3.5]}
+  roller_material: {values: [Delrin, PA6]}
+samples: -7
+duty: {hours: 12}
+"""
+
+
+def test_errors_of_names_stand_with_the_others_and_no_error_causes_another(tmp_path):
+    (tmp_path / "s.yaml").write_text(WRONG_WORDS)
+    told = trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr.splitlines()
+    assert [int(line.split("line ")[1].split(":")[0]) for line in told] == [3, 4, 5, 7, 8, 9, 10, 11]
+    for line, part in zip(
+        told,
+        [
+            "base.guide_material = '42CrMo4' is not usable: the name of a material of the database. Write",
+            "outer_radius together with groove_depth",
+            "Names with a similar meaning: failure_probability.",
+            "Write [first, last, number of values].",
+            "Did you mean 'groove_depth'?",
+            "Use one of these names, or enter the material in config/materials.yaml.",
+            "it must be greater than or equal to 1",
+            "Names with a similar meaning: hours_per_day.",
+        ],
+        strict=True,
+    ):
+        assert part in line and len(line) < 300
+
+
+def test_an_option_among_the_values_of_the_roller_is_told_where_it_belongs(tmp_path):
+    (tmp_path / "s.yaml").write_text("base: {contact_model: sliding, colour: red}")
+    told = trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr
+    assert "Write contact_model: sliding on a line of its own that is not indented." in told
+    assert "'colour' is not usable: this name is not known. The page 'Parameters, options and results'" in told
+
+
+def test_a_case_names_its_unknown_materials_with_all_other_errors(tmp_path):
+    (tmp_path / "c.yaml").write_text("mu: 7\nguide_material: 42CrMo4\nouter_radius: 30 s\ngroove_depth: -2\n")
+    told = trackroller("solve", "c.yaml", cwd=tmp_path, code=2).stderr.splitlines()
+    starts = ("line 1: friction_coefficient", "line 2: guide_material", "line 3: outer_radius", "line 4: groove_depth")
+    assert all(start in line for start, line in zip(starts, told, strict=True))

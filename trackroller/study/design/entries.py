@@ -7,9 +7,10 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
-from trackroller.errors import InputError, check_names, nearest, unknown_name
+from trackroller.errors import InputError, nearest, unknown_name
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
+from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
 from trackroller.study.design.factors import LISTS, parse
@@ -88,7 +89,12 @@ def base_value(key: Any, value: Any, section: str = "base") -> Any:
     ------
     InputError : unknown field, or a value outside its bounds
     """
-    check_names(section, [key], (*CASE_FIELDS, "material_pair"))
+    known = (*CASE_FIELDS, "material_pair")
+    if key in OPTIONS:
+        remedy = f"Write {key}: {value} on a line of its own that is not indented."
+        raise InputError(f"{section}.{key}", value, f"parameters of the roller; {key} is a key of the study", remedy)
+    if key not in known:
+        raise unknown_name(section, str(key), (*known, *ALIASES, *RADII), OPTIONS)
     return field_value(key, value, f"{section}.{key}")
 
 
@@ -169,7 +175,7 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
     where = f"factors.{key}"
     own = key not in FACTOR_NAMES
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
-        raise unknown_name("factors", str(key), FACTOR_NAMES)
+        raise unknown_name("factors", str(key), (*FACTOR_NAMES, *ALIASES, *RADII), OPTIONS)
     if isinstance(spec, Mapping):
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
     checked = parse(key, spec)

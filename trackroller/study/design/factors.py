@@ -230,6 +230,7 @@ def _numbers(values: Any, count: int, where: str) -> tuple[float, ...]:
     if len(values) != count or not all(_is_number(v) and math.isfinite(v) for v in values):
         text = any(isinstance(v, str) for v in values)
         remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression." if text else ""
+        remedy = "Write [first, last, number of values]." if where.endswith("space") else remedy
         raise InputError(where, values, f"{count} finite numbers", remedy)
     return tuple(float(v) for v in values)
 

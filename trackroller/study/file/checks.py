@@ -25,6 +25,7 @@ from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
 
 if TYPE_CHECKING:
+    from trackroller.materials import MaterialDatabase
     from trackroller.study.design.factors import Factor
 
 
@@ -173,6 +174,7 @@ def _check_materials(study: Study) -> None:
     ------
     InputError : an unknown material, or a material without scatter
     """
+    check_material_names(study.config.base, study.factors, study.materials)
     pairs = [*study.factors.get("material_pair", {}).get("values", [])]
     if "material_pair" in study.config.base:
         pairs.append(study.config.base["material_pair"])
@@ -185,6 +187,21 @@ def _check_materials(study: Study) -> None:
     check_scatter(study.config, used)
 
 
+def check_material_names(base: Mapping[str, Any], factors: Mapping[str, Any], database: MaterialDatabase) -> None:
+    """Refuse all names of materials that the database lacks; entries of another form are refused elsewhere."""
+    wrong = Collector()
+    for name in (*MATERIAL_FIELDS, "material_pair"):
+        spec = factors.get(name)
+        listed = spec.get("values") if isinstance(spec, Mapping) else ()
+        listed = listed if isinstance(listed, (list, tuple)) else ()
+        for field, value in ((f"base.{name}", base.get(name)), *((f"factors.{name}.values", one) for one in listed)):
+            for material in value if isinstance(value, (list, tuple)) else (value,):
+                with wrong.part():
+                    if isinstance(material, str):
+                        database.material(material, field)
+    wrong.check()
+
+
 def check_cells(study: Study) -> None:
     """Check the names and cells of a table of cases; raise the errors of all its lines together."""
     columns, wrong = study.drawn.columns, Collector()
@@ -193,10 +210,9 @@ def check_cells(study: Study) -> None:
         for value, line in {value: line for line, value in reversed(cells.items())}.items():  # its first line
             for material in value if isinstance(value, tuple) else (value,):
                 try:
-                    study.materials.material(material)
+                    study.materials.material(material, name)
                 except InputError as error:
-                    named = InputError(name, error.value, error.allowed, error.remedy)
-                    wrong.errors.append(named.at(study.table_path, line))
+                    wrong.errors.append(error.at(study.table_path, line))
     wrong.check()
 
 

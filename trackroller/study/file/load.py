@@ -12,10 +12,11 @@ from pydantic import ValidationError
 from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
+from trackroller.materials import load_database
 from trackroller.parameters.example import not_given
 from trackroller.parameters.own_limits import digests
-from trackroller.roller.aliases import study_with_radii
-from trackroller.study.file.checks import check_cells, check_geometry, cross_check
+from trackroller.roller.aliases import ALIASES, study_with_radii
+from trackroller.study.file.checks import check_cells, check_geometry, check_material_names, cross_check
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.csv import column_names
 from trackroller.study.file.goals import Analysis
@@ -34,14 +35,16 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return unknown_name("study key", where.removeprefix("analysis."), options or StudyFile.model_fields)
     if detail["type"] == "missing":
         return InputError(where, None, "every study needs this key", f"Add a line '{where}: ...'.")
-    return InputError(where, detail.get("input"), detail["msg"])
+    allowed = detail["msg"].replace("Input should be ", "it must be ")
+    for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):
+        allowed = allowed.replace(f"valid {word}", plain)
+    return InputError(where, detail.get("input"), allowed)
 
 
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     wrong = Collector()
-    with wrong.part():
-        data = study_with_radii(data)
+    data = study_with_radii(data, wrong)
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))
         wrong.check()
@@ -54,6 +57,10 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         wrong.check()
         raise
     return config
+
+
+def _mapping(value: Any) -> Mapping[str, Any]:
+    return value if isinstance(value, Mapping) else {}
 
 
 def complete(study: Study) -> Study:
@@ -75,7 +82,15 @@ def parse_study(
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
     with noted_reads() as inputs:
         inputs |= {path: ("limit", digest) for path, digest in digests().items()}
-        study, wrong = complete(Study(checked_keys(data), path, database, inputs)), Collector()
+        wrong = Collector()
+        with wrong.part():
+            config = checked_keys(data)
+        if wrong.errors:
+            with wrong.part():
+                base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
+                check_material_names(base, factors, database or load_database())
+            wrong.check()
+        study = complete(Study(config, path, database, inputs))
         with wrong.part():
             cross_check(study)
         with wrong.part():
@@ -123,7 +138,7 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     with files_beside(path), noted_reads():
         text = read_text(path, "study file")
         data = parse_mapping(text, "study file")
-        with errors_by_line(text):
+        with errors_by_line(text, aliases=ALIASES):
             if data.get("table") is not None:
                 find_beside(data["table"], "table")
             return parse_study(data, path, database, planned)

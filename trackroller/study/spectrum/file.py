@@ -32,7 +32,7 @@ from trackroller.errors import Collector, InputError, check_names, nearest
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
-from trackroller.roller.aliases import renamed
+from trackroller.roller.aliases import ALIASES, renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.geometry import rolling_radius
@@ -188,7 +188,7 @@ def load_spectrum(path: Path | str) -> Spectrum:
     path = Path(path)
     text = read_text(path, "load spectrum")
     values = parse_mapping(text, str(path))
-    with errors_by_line(text), files_beside(path):
+    with errors_by_line(text, aliases=ALIASES), files_beside(path):
         return Spectrum.from_dict({"name": path.stem} | values)
 
 
