@@ -12,7 +12,6 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
-from trackroller.analysis.limits import column
 from trackroller.analysis.lives import FIRST_LIMIT, body_lives, first_failing
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.table import StudyView
@@ -198,14 +197,8 @@ class Designs:
 
         None without the key `analysis.target`.
         """
-        view, hit = self.view, self.usable.copy()
-        wanted = (view.study.get("analysis") or {}).get("target")
-        if not wanted:
-            return None
-        for name, ends in wanted.items():
-            values = column(view.data, view.dims, name, view.base, view.factors)[0].astype(float)
-            hit &= (values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf))
-        return self._count(hit)
+        targets = self.view.solved.config.analysis.target
+        return self._count(self.usable & np.all([*map(self.view.solved.meets, targets)], axis=0)) if targets else None
 
     def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
         """Return the case of each design with the worst value among its valid cases, -1 without one.

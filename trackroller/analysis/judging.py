@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.limits import Column, column
+from trackroller.analysis.limits import Column
 from trackroller.analysis.pareto import default_objectives, front_of
 from trackroller.analysis.robustness import b10
 from trackroller.analysis.table import OUTSIDE, StudyResults
@@ -78,7 +78,7 @@ def judge(results: StudyResults, genes: np.ndarray | None = None) -> Judged:
         if kind == "probability":
             values.append(_met(results, output).reshape(shape).mean(axis=1))
             continue
-        raw = column(view.data, view.dims, output, view.base, design.columns)[0].astype(float).reshape(shape)
+        raw = results.quantity(output)[0].astype(float).reshape(shape)
         good = valid & ~np.isnan(raw)
         known &= good | (kind == "b10")
         values.append(_over_conditions(raw, good, kind, goals[goal]))
@@ -97,9 +97,7 @@ def _met(results: StudyResults, output: str) -> np.ndarray:
     view = results.view
     if output in REGIMES:
         return np.asarray(view.regime == REGIMES.index(output))
-    values = column(view.data, view.dims, output, view.base, results.design.columns)[0].astype(float)
-    ends = results.config.analysis.target[output]
-    return np.asarray(view.valid & (values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+    return np.asarray(view.valid & results.meets(output))
 
 
 def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
@@ -179,8 +177,7 @@ def goal_column(results: StudyResults, goal: str) -> Column:
     if kind == "probability":
         words = REGIME_LABELS[REGIMES.index(output)] if output in REGIMES else f"the target of {output}"
         return values, "1", f"probability of {words.replace('_', ' ')}"
-    view = results.view
-    _, units, words = column(view.data, view.dims, output, view.base, results.design.columns)
+    _, units, words = results.quantity(output)
     if output in results.design.meta["outer"] or results.design.meta["inner_samples"] == 1:
         return values, units, words
     return (
@@ -196,7 +193,7 @@ def beyond_data(results: StudyResults, goal: str) -> np.ndarray:
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     if "life" not in output or kind == "probability":
         return np.zeros(shape[0], dtype=bool)
-    lives = column(view.data, view.dims, output, view.base, results.design.columns)[0].astype(float).reshape(shape)
+    lives = results.quantity(output)[0].astype(float).reshape(shape)
     counted = view.valid.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
     return np.asarray((counted & view.beyond_data(output).reshape(shape)).any(axis=1))
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -12,16 +12,12 @@ from trackroller.errors import InputError, nearest
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.expressions import condition
 from trackroller.study.design.factors import readable
-from trackroller.study.file.goals import names_in
 from trackroller.study.outputs import flat, outputs, regimes
-
-if TYPE_CHECKING:
-    from trackroller.study.file.config import StudyFile
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name
 
 
-def column(
+def quantity_of(
     ds: xr.Dataset, dims: tuple[str, ...], name: str, base: Mapping[str, Any], factors: Iterable[str] = ()
 ) -> Column:
     """Return a factor, a parameter, the regime or an output of every case.
@@ -80,32 +76,3 @@ def meeting(constraints: Iterable[str], values: Mapping[str, np.ndarray], rows: 
     """
     known = {**values, **{name: name for name in REGIMES}}
     return {text: np.broadcast_to(condition(text, known), (rows,)) for text in constraints}
-
-
-def allowed_cases(
-    ds: xr.Dataset, dims: tuple[str, ...], config: StudyFile, factors: Iterable[str] = ()
-) -> np.ndarray | None:
-    """Mark the cases that meet all constraints of the study file.
-
-    Parameters
-    ----------
-    ds : gathered study
-    dims : its case dimensions
-    config : its study file
-    factors : names of the factors, if they are no coordinates of `ds`
-
-    Returns
-    -------
-    Mask of shape (n,), or None if the study file has no constraints.
-
-    Raises
-    ------
-    InputError : a constraint names an unknown quantity or is no comparison
-    """
-    texts = list(config.constraints)
-    if not texts:
-        return None
-    rows, factors = int(np.prod([ds.sizes[d] for d in dims])), list(factors)
-    names = sorted({name for text in texts for name in names_in(text)})
-    values = {name: column(ds, dims, name, config.values, factors)[0] for name in names}
-    return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.limits import Column, column, meeting
+from trackroller.analysis.limits import Column, meeting
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
@@ -99,7 +99,7 @@ def pareto(
     ds, design, dims = results.data, results.design, results.dims
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
-    columns = {name: column(ds, dims, name, results.config.values, design.columns) for name in names}
+    columns = {name: results.quantity(name) for name in names}
     values = {name: own[0] for name, own in columns.items()}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])

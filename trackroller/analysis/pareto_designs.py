@@ -9,7 +9,6 @@ import xarray as xr
 
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.judging import pareto_of_search
-from trackroller.analysis.limits import column
 from trackroller.analysis.pareto import default_objectives, front_of, pareto, pareto_of_points
 from trackroller.analysis.table import StudyView
 
@@ -67,7 +66,7 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
         `beyond_` and the name of a life, 1 where it lies beyond the S-N data.
     """
     view = designs.view
-    columns = {name: column(view.data, view.dims, name, view.base, view.factors) for name in objectives}
+    columns = {name: view.solved.quantity(name) for name in objectives}
     worst = {name: designs.worst_cases(columns[name][0].astype(float), way) for name, way in objectives.items()}
     held = designs.table["valid"].sort_index().to_numpy()
     kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))

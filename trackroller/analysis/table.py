@@ -12,12 +12,13 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.analysis.columns import base_values, case_columns, factor_names
-from trackroller.analysis.limits import allowed_cases
+from trackroller.analysis.limits import Column, meeting, quantity_of
 from trackroller.analysis.lives import FIRST_LIMIT, LIVES, beyond_data
 from trackroller.parameters import BODIES, EXACTNESS, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
+from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 
@@ -56,7 +57,21 @@ class StudyResults:
     @cached_property
     def allowed(self) -> np.ndarray | None:
         """Return the cases that meet the constraints of the study, shape (n,); None without constraints."""
-        return allowed_cases(self.data, self.dims, self.config, self.design.columns)
+        texts = self.config.constraints
+        if not texts:
+            return None
+        values = {name: self.quantity(name)[0] for name in sorted({name for text in texts for name in names_in(text)})}
+        rows = int(np.prod([self.data.sizes[d] for d in self.dims]))
+        return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))
+
+    def quantity(self, name: str) -> Column:
+        """Return values (n,), units and words of a factor, parameter or output; see `limits.quantity_of`."""
+        return quantity_of(self.data, self.dims, name, self.config.values, self.design.columns)
+
+    def meets(self, target: str) -> np.ndarray:
+        """Return the cases that meet a target of the study, shape (n,), whether they are valid or not."""
+        values, ends = self.quantity(target)[0].astype(float), self.config.analysis.target[target]
+        return np.asarray((values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
 
     @property
     def unfinished(self) -> bool:
@@ -257,8 +272,10 @@ class StudyView:
     def flagged(self, flag: str, body: str = "") -> np.ndarray:
         """Mark the cases that carry a validity flag, shape (n,).
 
-        With `body` only where it holds for this body.
+        With `body` only where it holds for this body. No case carries a flag that the data set does not know.
         """
+        if flag not in self.flags:
+            return np.zeros(len(self.table), dtype=bool)
         name = f"validity_{body}" if body else "validity"
         bit = 1 << self.flags.index(flag)
         return np.asarray((np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0)
@@ -276,11 +293,7 @@ class StudyView:
     @cached_property
     def inside(self) -> np.ndarray:
         """Return the cases that roll, converged, and carry no flag of a design outside the model, shape (n,)."""
-        outside = np.zeros(len(self.table), dtype=bool)
-        for flag in OUTSIDE:
-            if flag in self.flags:
-                outside |= self.flagged(flag)
-        return self.rolling & ~outside
+        return np.asarray(self.rolling & ~np.any([self.flagged(flag) for flag in OUTSIDE], axis=0))
 
     @cached_property
     def valid(self) -> np.ndarray:

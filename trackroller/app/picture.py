@@ -18,7 +18,7 @@ from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import render
-from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
+from trackroller.report.pages.sheet_facts import Facts, collect
 from trackroller.roller.case import Case
 from trackroller.roller.duty import with_duty
 from trackroller.roller.limits import Limits
@@ -89,7 +89,7 @@ def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
     return {
         **{name: getattr(facts, name) for name in words},
         **{name: [asdict(row) for row in getattr(facts, name)] for name in rows},
-        "lines": side_by_side(facts.contacts) if any(c.carries for c in facts.contacts) else [],
+        "lines": facts.lines,
         "margins": [asdict(m) | {name: getattr(m, name) for name in DERIVED} for m in facts.margins],
     }
 

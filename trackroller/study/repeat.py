@@ -14,7 +14,7 @@ from trackroller.parameters import PARAMETERS
 from trackroller.roller.options import options_of_cases
 from trackroller.roller.record import solve_command
 from trackroller.study.design.build import case_columns
-from trackroller.study.design.growth import with_history
+from trackroller.study.design.grown_lhs import with_history
 from trackroller.study.store import chunks
 from trackroller.study.store.plan import locate, study_folder
 

@@ -14,7 +14,7 @@ from rich.filesize import decimal
 from trackroller.errors import InputError, nearest
 from trackroller.parameters import REGIMES
 from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report, study_rate
-from trackroller.study.design.growth import with_history
+from trackroller.study.design.grown_lhs import with_history
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read

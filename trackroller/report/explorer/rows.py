@@ -17,7 +17,7 @@ from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
-from trackroller.report.words.flags import words_of
+from trackroller.report.words.accuracy import words_of
 from trackroller.roller.duty import years
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
@@ -151,8 +151,7 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
 def _output(one: Output, role: str, view: StudyView) -> Column:
     if "life" in one.name:  # a roller that skids, and a body above its tensile strength, have no fatigue life
         body = next((b for b in BODIES if b in one.name and view.by_body), "")
-        overloaded = view.flagged("static", body) if "static" in view.flags else np.zeros(len(view.table), dtype=bool)
-        one = replace(one, values=np.where(view.rolling & ~overloaded, one.values, np.nan))
+        one = replace(one, values=np.where(view.rolling & ~view.flagged("static", body), one.values, np.nan))
     values = one.values.astype(np.float32) if role == "detail" else one.values
     log = "life" in one.name or one.name == "run_in_distance"
     return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)

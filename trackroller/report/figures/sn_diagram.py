@@ -17,7 +17,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import capital, count, listing, rounded, with_unit
 from trackroller.report.tables.inputs import as_material, stored_materials
-from trackroller.report.words.stresses import strength
+from trackroller.report.words.cases import strength
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6

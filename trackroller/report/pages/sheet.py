@@ -13,7 +13,7 @@ import numpy as np
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.sheet_facts import collect, side_by_side
+from trackroller.report.pages.sheet_facts import collect
 from trackroller.report.words.wear import run_in
 
 if TYPE_CHECKING:
@@ -64,7 +64,6 @@ def render(ds: xr.Dataset, name: str = "") -> str:
     facts = collect(ds)
     content = {
         "facts": facts,
-        "lines": side_by_side(facts.contacts),
         "aside": _less_stressed(ds),
         "name": name or "Track roller",
         "drawing": drawing(ds) if "normal_force" in ds else "",

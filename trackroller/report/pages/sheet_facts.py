@@ -4,16 +4,16 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trackroller.analysis.columns import at_surface
-from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OF_LIMITS, OPTIONS, REGIMES
+from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OPTIONS, REGIMES
 from trackroller.parameters.example import not_given_text
 from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
-from trackroller.report.tables.inputs import Row, as_material, input_row, is_told, material_rows, material_source
+from trackroller.report.tables.inputs import Row, as_material, input_rows, material_rows, material_source
 from trackroller.report.tables.limits import (
     GUESSED,
     Margin,
@@ -24,6 +24,7 @@ from trackroller.report.tables.limits import (
     placeholders,
 )
 from trackroller.report.tables.lives import life_rows
+from trackroller.report.words.accuracy import Flag, flags_of
 from trackroller.report.words.assumptions import (
     assumptions,
     friction_sentence,
@@ -31,7 +32,6 @@ from trackroller.report.words.assumptions import (
     standards,
     strength_sentences,
 )
-from trackroller.report.words.flags import Flag, flags_of
 from trackroller.roller.dataset import VARIABLES, shown
 from trackroller.roller.limits import limits
 from trackroller.roller.record import (
@@ -56,38 +56,6 @@ ROUNDING = 1e-9  # N, mm, MPa, 1: results below are rounding errors of a zero, a
 
 
 @dataclass(frozen=True)
-class BodyFacts:
-    """Stress of one body in one contact."""
-
-    body: str
-    peak: float
-    depth: float
-    of_strength: float
-
-
-@dataclass(frozen=True)
-class ContactFacts:
-    """Forces, patch and bodies of one contact; `carries` is False for a contact that has lifted."""
-
-    number: int
-    carries: bool
-    rows: list[Row]
-    bodies: list[BodyFacts]
-
-
-def side_by_side(contacts: list[ContactFacts]) -> list[list[str]]:
-    """Return a line for each quantity of the contacts: its words, its value in each contact, and its unit."""
-    lines = [
-        [own[0].words, *(row.value for row in own), own[0].unit]
-        for own in zip(*(contact.rows for contact in contacts), strict=True)
-    ]
-    for own in zip(*(contact.bodies for contact in contacts), strict=True):
-        lines.append([f"peak stress of the {own[0].body} (von Mises)", *(number(b.peak) for b in own), "MPa"])
-        lines.append([f"depth of the peak in the {own[0].body}", *(number(b.depth) for b in own), "mm"])
-    return lines
-
-
-@dataclass(frozen=True)
 class Facts:
     """All statements of a sheet on one roller."""
 
@@ -97,7 +65,7 @@ class Facts:
     not_given: str
     doubts: list[str]
     materials: list[tuple[str, list[Row], str]]
-    contacts: list[ContactFacts]
+    lines: list[list[str]]
     whole: list[Row]
     lives: list[Row]
     margins: list[Margin]
@@ -132,26 +100,17 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
     regime = REGIMES[int(ds["regime"])]
     ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
-    needed = {*shown("contact"), "peak_stress", "peak_z"}
-    stated = ds[["contact", *(name for name in ds if name in needed)]]  # a selection takes its time by variable
-    if "peak_stress" in stated:
-        stated = stated.assign(at_surface=at_surface(stated))
-    contacts = [_contact(stated, number, materials) for number in ds["contact"].values.tolist()]
-    lifeless = {body: _no_life(regime, body, contacts) for body in BODIES}
+    lifeless = {body: _no_life(regime, ds, body, material) for body, material in materials.items()}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
     said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
     return Facts(
         verdict=_verdict(regime, ds, lives, lifeless, ranges, inputs, own),
         reason=str(ds["reason"].item()) if "reason" in ds else "",
-        inputs=[
-            replace(input_row(name, value), default=name in given or (is_default(name, value) and name in OF_LIMITS))
-            for name, value in inputs.items()
-            if is_told(name, value)
-        ],
+        inputs=input_rows(inputs, given),
         not_given=not_given_text(given),
         doubts=doubts_of(ds),
         materials=body_materials(stored),
-        contacts=contacts,
+        lines=_contact_lines(ds),
         whole=quantity_rows(ds, shown()),
         lives=lives,
         margins=own,
@@ -194,25 +153,26 @@ def command_of(ds: xr.Dataset) -> str:
     return solve_command(plain | {name: ds.attrs.get(name) for name in named})
 
 
-def _contact(ds: xr.Dataset, which: int, materials: Mapping[str, Material]) -> ContactFacts:
-    own = ds.sel(contact=which)
-    rows = quantity_rows(own, shown("contact"))
-    bodies = []
-    if "peak_stress" in own:
-        bodies = [_body(own.sel(body=body), body, materials[body]) for body in BODIES]
-    carries = "normal_force" not in own or bool(np.isfinite(float(own["normal_force"])))
-    return ContactFacts(which, carries, rows, [b for b in bodies if math.isfinite(b.peak)])
+def _contact_lines(ds: xr.Dataset) -> list[list[str]]:
+    """Return words, both values and unit of each quantity of the contacts; nothing if a contact has lifted off."""
+    if "normal_force" in ds and np.isnan(ds.variables["normal_force"].values).any():
+        return []
+    lines = [(_words(n), ds.variables[n].values, VARIABLES[n].units) for n in shown("contact") if n in ds]
+    if {"peak_stress", "peak_z"} <= set(ds):
+        stated = ds[["peak_stress", "peak_z", *(n for n in ("semi_axis_lateral", "semi_axis_rolling") if n in ds)]]
+        depth = stated["peak_z"].where(at_surface(stated) != 1, 0.0)  # the place of a peak at the surface is rounding
+        for body in BODIES:
+            peak = stated["peak_stress"].sel(body=body).values
+            lines.append((f"peak stress of the {body} (von Mises)", peak, "MPa"))
+            lines.append((f"depth of the peak in the {body}", depth.sel(body=body).values, "mm"))
+    known = [line for line in lines if np.isfinite(line[1]).all()]
+    return [[words, *map(_number, values), _unit(units)] for words, values, units in known]
 
 
-def _body(own: xr.Dataset, body: str, material: Material) -> BodyFacts:
-    peak, depth = float(own["peak_stress"]), 0.0 if own["at_surface"] == 1 else float(own["peak_z"])
-    return BodyFacts(body, peak, depth, peak / material.tensile_strength)
-
-
-def _no_life(regime: str, body: str, contacts: list[ContactFacts]) -> str:
+def _no_life(regime: str, ds: xr.Dataset, body: str, material: Material) -> str:
     """Say why a body has no fatigue life: overload or a skidding roller; an empty text if it has one."""
-    over = max((b.of_strength for contact in contacts for b in contact.bodies if b.body == body), default=0.0)
-    if over > 1:
+    peaks = ds["peak_stress"].sel(body=body).values if "peak_stress" in ds else np.zeros(1)
+    if (over := float(np.nan_to_num(peaks).max()) / material.tensile_strength) > 1:
         return f"the peak stress is {rounded(over, 2)} times its tensile strength"
     return "the roller skids: friction heat and wear decide" if regime == "full_slip" else ""
 
@@ -273,11 +233,16 @@ def _weakest(ds: xr.Dataset) -> int:
 
 def quantity_rows(ds: xr.Dataset, names: Iterable[str]) -> list[Row]:
     """Return the finite ones of some results, each with its symbol and unit."""
-    return [
-        Row(_words(name), number(value if abs(value) > ROUNDING else 0.0), unit_text(units).replace("–", ""))
-        for name, value, units in ((n, float(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds)
-        if np.isfinite(value)
-    ]
+    stated = [(n, float(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds]
+    return [Row(_words(name), _number(value), _unit(units)) for name, value, units in stated if np.isfinite(value)]
+
+
+def _number(value: float) -> str:
+    return number(value if abs(value) > ROUNDING else 0.0)
+
+
+def _unit(units: str) -> str:
+    return unit_text(units).replace("–", "")
 
 
 def _words(name: str) -> str:

@@ -9,11 +9,11 @@ import numpy as np
 
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.sheet_facts import Facts, collect, side_by_side
+from trackroller.report.pages.sheet_facts import Facts, collect
 from trackroller.report.pages.spectrum import assumed, block_table, life_rows, limit_table, warnings
 from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text
-from trackroller.report.words.flags import flags_of
+from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import sentences
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
@@ -39,9 +39,8 @@ def print_facts(ds: xr.Dataset) -> None:
     print_text(facts.options, "options")
     if regime == "failed":  # nothing else is known
         return
-    if any(contact.carries for contact in facts.contacts):
-        heads = ["quantity", *(f"contact {contact.number}" for contact in facts.contacts), "unit"]
-        print_table(heads, side_by_side(facts.contacts), (1, 2))
+    if facts.lines:
+        print_table(["quantity", "contact 1", "contact 2", "unit"], facts.lines, (1, 2))
     own = [[row.words, row.value, row.unit] for row in facts.whole]
     if own:
         print_table(["whole roller", "value", "unit"], own, (1,))

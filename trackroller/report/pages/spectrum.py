@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import math
 import shlex
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -30,9 +29,9 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.pages.sheet import _pictures
 from trackroller.report.pages.sheet_facts import body_materials, versions_text
-from trackroller.report.tables.inputs import Row, input_row, is_told
+from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.tables.table import Table, cell
-from trackroller.report.words.flags import flags_of
+from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import UNITS, _life, known_damage, sentences
 from trackroller.roller.record import NOT_GIVEN, doubts_of
 from trackroller.study.spectrum.file import LOAD_FIELDS
@@ -153,11 +152,7 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
         "lives": [(body, life_rows(ds, body)) for body in BODIES],
         "conventions": capital(str(ds.attrs["life_conventions"])),
         "figure": next(iter(drawn.values()), None),
-        "inputs": [
-            replace(input_row(name, value), default=name in given)
-            for name, value in inputs.items()
-            if is_told(name, value)
-        ],
+        "inputs": input_rows(inputs, given),
         "assumed": assumed(ds),
         "doubts": doubts_of(ds),
         "materials": body_materials(json.loads(ds.attrs["materials"])),

@@ -14,9 +14,9 @@ from trackroller.report import html
 from trackroller.report.numbers import capital, with_unit
 from trackroller.report.pages.sheet import _pictures
 from trackroller.report.pages.sheet_facts import body_materials, versions_text
-from trackroller.report.tables.inputs import input_row, is_told
+from trackroller.report.tables.inputs import input_rows
 from trackroller.report.tables.table import Table, cell
-from trackroller.report.words.flags import flags_of
+from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.wear import deeper_contact, sentences
 from trackroller.roller.record import inputs_of, materials_of
 
@@ -85,7 +85,7 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
         "said": [sentence.text for sentence in sentences(ds)],
         "figures": list(drawn.values()),
         "states": state_table(ds),
-        "inputs": [input_row(name, value) for name, value in inputs_of(ds).items() if is_told(name, value)],
+        "inputs": input_rows(inputs_of(ds)),
         "materials": body_materials(materials_of(ds)),
         "flags": sorted(flags),
         "command": f"trackroller wear {shlex.quote(file)} --to {float(ds.attrs['to']):g}km "

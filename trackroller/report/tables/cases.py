@@ -10,7 +10,7 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import plain, share
 from trackroller.report.tables.table import Table
-from trackroller.report.words.flags import bodies_of, words_of
+from trackroller.report.words.accuracy import bodies_of, words_of
 from trackroller.report.words.regimes import occurrence
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -40,11 +40,18 @@ class Row:
     default: bool = False
 
 
-def is_told(name: str, value: Any) -> bool:
-    """Return whether an input stands on the sheet: mappings, the guide and fields of limits only if they are given."""
-    if name in OF_LIMITS:
-        return not is_default(name, value)
-    return value is not None or name not in (*MAPPING_FIELDS, "guide_overrollings_per_hour")
+def input_rows(inputs: Mapping[str, Any], not_given: Collection[str] | None = None) -> list[Row]:
+    """Return the inputs that stand on a sheet: mappings, the guide and fields of limits only if they are given.
+
+    With `not_given`, the values of these names are marked as defaults, otherwise those that equal their default.
+    """
+    rows = []
+    for name, value in inputs.items():
+        optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
+        if not (optional or (name in OF_LIMITS and is_default(name, value))):
+            row = input_row(name, value)
+            rows.append(row if not_given is None else replace(row, default=name in not_given))
+    return rows
 
 
 def input_row(name: str, value: Any) -> Row:

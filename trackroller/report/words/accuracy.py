@@ -1,14 +1,22 @@
-"""Sentences on known errors of the contact models and on the resolution of peak stresses."""
+"""What limits a result: validity flags in words, known errors of the contact models, and the resolution of stresses."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from trackroller.analysis.table import StudyView
-from trackroller.parameters import BODIES, CONTACT_MODELS
-from trackroller.report.numbers import count, level_text, listing, number, percent, rounded
+from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
+from trackroller.parameters.validity import VALIDITY
+from trackroller.report.numbers import capital, count, level_text, listing, number, percent, plain, rounded
 from trackroller.report.words.sentence import Sentence
+from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 SLIDING_WEAR = "Full sliding errs in friction energy, and so in wear, by 41 % in the median of 92 designs."
@@ -81,10 +89,64 @@ def accuracy(view: StudyView) -> list[Sentence]:
             values = {"body": body, "median": middle, "largest": most}
             said.append(Sentence("resolved", f"{text} and to {percent(most)} at worst.", values, rows))
             break
-    if "split_pole" in view.flags and (hit := view.flagged("split_pole") & view.rolling).any():
+    if (hit := view.flagged("split_pole") & view.rolling).any():
         cases = int(hit.sum())
         many = ("s", "them") if cases > 1 else ("", "it")
         text = f"In {count(cases)} rolling case{many[0]} the stress of full sliding is singular: solve {many[1]} with"
         values = {"count": cases}
         said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
     return said
+
+
+_ROLLING = REGIMES.index("rolling")
+
+
+def bodies_of(flag: str, by_body: bool) -> tuple[str, ...]:
+    """Return the bodies that a flag is counted for: both, or '' for a flag of the pair or flags that no body has."""
+    return BODIES if by_body and flag in VALIDITY and VALIDITY[flag].of_body else ("",)
+
+
+def of_body(flag: str, body: str) -> str:
+    """Name the body that a flag holds for, as the words of the flag go on; an empty text without a body."""
+    return f"{'at' if flag == 'half_space' else 'of'} the {body}" if body else ""
+
+
+def words_of(flag: str) -> str:
+    """Say what a flag means, in a clause; a flag of another solver stands for itself."""
+    return VALIDITY[flag].words if flag in VALIDITY else plain(flag)
+
+
+@dataclass(frozen=True)
+class Flag:
+    """A flag that is set: its name, its meaning in a sentence, and the advice to the user."""
+
+    name: str
+    sentence: str
+    remedy: str
+
+
+def flags_of(ds: xr.Dataset) -> list[Flag]:
+    """Return the flags of a solved case in words.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of one case.
+    """
+    bits, flags = int(ds["validity"]), []
+    by_body = dict(zip(ds["body"].values, ds["validity_body"].values, strict=True)) if "validity_body" in ds else {}
+    for name, flag in VALIDITY.items():
+        if bits & validity_bit(name):
+            own = [body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)]
+            words = f"{words_of(name)} {of_body(name, ' and the '.join(own))}".rstrip()
+            flags.append(Flag(name, f"{capital(words)}.", flag.remedy))
+    residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
+    exact = "Solve it with contact_model: kalker."
+    if residual > KNOWN_ERROR:
+        text = f"Friction energy and power differ from the work put in by {percent(residual)}."
+        flags.append(Flag("energy_residual", text, exact))
+    if "run_in_distance" in ds and ds.attrs.get("contact_model") == "sliding":
+        flags.append(Flag("wear_of_sliding", SLIDING_WEAR, exact))
+    if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
+        flags.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
+    return flags

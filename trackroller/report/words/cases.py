@@ -1,4 +1,4 @@
-"""Sentences on the cases of a study: which are valid, where events occur, the best design, stresses, known errors."""
+"""Sentences on the cases of a study: which are valid, the shortest and longest life, and where peak stresses lie."""
 
 from __future__ import annotations
 
@@ -8,8 +8,8 @@ import numpy as np
 
 from trackroller.analysis.table import MOST_LEVELS, OUTSIDE, StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.numbers import BEYOND, NO_FAILURE, capital, count, lasting, listing, setting, shortened
-from trackroller.report.words.flags import bodies_of, of_body, words_of
+from trackroller.report.numbers import BEYOND, NO_FAILURE, capital, count, lasting, listing, setting, share, shortened
+from trackroller.report.words.accuracy import bodies_of, of_body, words_of
 from trackroller.report.words.sentence import Sentence
 
 
@@ -87,3 +87,34 @@ def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequenc
     text += f" {count(endless)} more have {NO_FAILURE} ({BEYOND})." if endless else ""
     claims = {"column": column, "low": low, "high": high, "unlimited": endless}
     return Sentence("extremes", text, claims, rows)
+
+
+def surface(view: StudyView, body: str, rows: np.ndarray) -> Sentence | None:
+    """Say in how many cases the peak stress of a body lies at the surface."""
+    flags = view.column(f"at_surface_{body}")
+    known, hit = int((rows & ~np.isnan(flags)).sum()), int((rows & (flags == 1)).sum())
+    if not known:
+        return None
+    where = f"at the surface in {count(hit)} of {count(known)} valid cases ({share(hit, known)})"
+    if hit in (0, known):
+        where = f"{'at' if hit else 'below'} the surface in all {count(known)} valid cases"
+    text = f"The peak stress of the {body} lies {where}."
+    return Sentence("surface", text, {"body": body, "count": hit, "of": known}, rows)
+
+
+def strength(body: str, stress: np.ndarray, limit: np.ndarray, most: np.ndarray, rows: np.ndarray) -> Sentence | None:
+    """Say how many rolling cases stay below the fatigue limit of a body and how many exceed its tensile strength.
+
+    Parameters
+    ----------
+    stress, limit, most : peak stress, fatigue limit and tensile strength [MPa], shape (n,)
+    rows : rolling cases, shape (n,) bool
+    """
+    rows = rows & np.isfinite(stress) & np.isfinite(limit)
+    of, below, above = (int(part.sum()) for part in (rows, rows & (stress < limit), rows & (stress > most)))
+    if not of:
+        return None
+    first = f"{share(below, of)} of the {count(of)} rolling cases stay" if below else "No rolling case stays"
+    text = f"{first} below the fatigue limit of the {body}"
+    text += f"; {share(above, of)} exceed its tensile strength and have no fatigue life" if above else ""
+    return Sentence("strength", f"{text}.", {"body": body, "of": of, "below": below, "above": above}, rows)

@@ -60,7 +60,7 @@ def guesses(view: StudyView) -> Sentence | None:
 
 def worn(view: StudyView) -> Sentence | None:
     """Say how many lives exceed the run-in distance, from which on the worn groove decides; None if none does."""
-    rows = view.valid & view.flagged("worn") if "worn" in view.flags else np.zeros(len(view.table), bool)
+    rows = view.valid & view.flagged("worn")
     if not rows.any():
         return None
     km = view.column("run_in_distance")[rows]

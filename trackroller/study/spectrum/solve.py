@@ -1,6 +1,7 @@
 """Solve the blocks of a load spectrum and sum their damage to the life of roller and guide in shifts.
 
-ASSUME: damage adds up linearly, independent of the order of the blocks (Palmgren-Miner).
+ASSUME: damage adds up linearly, independent of the order of the blocks (Palmgren-Miner). A limit without a life
+is reached by the worst block alone.
 ASSUME: the blocks load the same two tracks of the roller and the same point of the guide.
 """
 
@@ -8,21 +9,23 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, fatigue, miner
+from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
+from trackroller.damage.verdict import first_of, hours_until_reached
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
-from trackroller.roller.case import to_table
+from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import with_duty
 from trackroller.roller.record import DOUBTS, NOT_GIVEN, material_values, plain_inputs
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
-from trackroller.study.spectrum.limits import by_limit, cases_of
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
@@ -53,7 +56,7 @@ def solve_spectrum(
         stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
         that cannot be solved, or in which a contact lifts off, makes the lives that depend on it NaN; `regime` states
         why. The life of the guide is NaN where its overrollings are not known. The key `limits` of the spectrum adds
-        the results of `spectrum.limits.by_limit`.
+        the results of `by_limit`.
 
     Notes
     -----
@@ -180,7 +183,7 @@ def _loads(spectrum: Spectrum, database: MaterialDatabase) -> dict[str, Any]:
     return out
 
 
-def _attrs(units: str, long_name: str, symbol: str) -> dict[str, str]:
+def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
     return {"units": units, "long_name": long_name, "symbol": symbol}
 
 
@@ -204,3 +207,80 @@ def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset,
         "critical_damage": spectrum.critical_damage,
     }
     return xr.Dataset(variables, coords=coords, attrs=attrs)
+
+
+def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
+    """Return the cases of the blocks, with the overrollings of the guide per hour of travel.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        The load spectrum.
+    overrollings : numpy.ndarray
+        Overrollings per shift, (block, body) [1].
+    """
+    made = []
+    for block, own in zip(spectrum.blocks, overrollings, strict=True):
+        known = block.guide_overrollings and block.hours > 0
+        more = {"guide_overrollings_per_hour": float(own[1]) / block.hours} if known else {}
+        made.append(replace(block.case, **more))
+    return made
+
+
+def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray) -> dict[str, Any]:
+    """Return damage, utilisation and shifts of each limit, and the first limit of each body.
+
+    Parameters
+    ----------
+    spectrum : Spectrum
+        The load spectrum.
+    solved : xarray.Dataset
+        Its solved blocks with the group `limits`.
+    by_curve : numpy.ndarray
+        Damage of each track by the S-N curve per shift, (block, contact, body) [1].
+
+    Returns
+    -------
+    dict of str to tuple
+        Variables of a data set. A block of no distance does not count. Fatigue adds up track by track; of the other
+        limits the worse contact of each block counts.
+    """
+    limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
+    used, hours = (
+        solved[name].transpose("case", "limit", "body").values for name in ("utilisation", "life_hours_by_limit")
+    )
+    travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
+    damage = miner.block_damage(travel, hours)
+    worst = np.argmax(np.nan_to_num(by_curve.sum(axis=0), nan=np.inf), axis=0)
+    for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
+        damage[:, i] = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
+    most = np.max(np.where(travel > 0, used, 0.0), axis=0)
+    # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
+    critical = np.array([spectrum.critical_damage if limit.name == "fatigue" else 1.0 for limit in limits])[:, None]
+    shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
+    timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values[:, None]
+    at_once = np.array([limit.ends_at_once for limit in limits])[:, None]
+    concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits])
+    reached = np.where(concerned, hours_until_reached(most, shifts, timed, at_once), np.nan)
+    first, which = (found[0] for found in first_of(reached[None], most[None], concerned))
+    words = (*LIMITS, "unknown")
+    numbers = np.array([words.index(limit.name) for limit in limits])
+    names = np.where(np.isnan(reached).all(axis=0), len(words) - 1, numbers[which])
+    flag = {"long_name": "limit that the body reaches first", "flag_meanings": " ".join(words)}
+    return {
+        "damage_by_limit": (
+            ("block", "limit", "body"),
+            damage,
+            _attrs("1", "damage of the block per shift by a limit"),
+        ),
+        "damage_sum_by_limit": (("limit", "body"), damage.sum(axis=0), _attrs("1", "damage per shift by a limit")),
+        "utilisation": (("limit", "body"), most, _attrs("1", "largest utilisation of a limit in a block")),
+        "life_shifts_by_limit": (("limit", "body"), shifts, _attrs("1", "shifts until a limit with a life is reached")),
+        "life_to_first_limit_shifts": ("body", first, _attrs("1", "shifts until the first known limit is reached")),
+        "pair_life_to_first_limit_shifts": (
+            (),
+            float(first_failure(*first)[0]),
+            _attrs("1", "shifts until roller or guide reaches its first known limit"),
+        ),
+        "limiting_mechanism": ("body", names.astype(np.int8), flag),
+    }

@@ -14,7 +14,7 @@ from pathlib import Path
 from trackroller.errors import InputError, WorkError
 from trackroller.files import noted_reads, sha256, write_whole
 from trackroller.materials import builtin_database, load_database
-from trackroller.study.design.growth import with_history
+from trackroller.study.design.grown_lhs import with_history
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder

@@ -22,7 +22,7 @@ from trackroller.files import sha256
 from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import case_columns
-from trackroller.study.design.growth import with_history
+from trackroller.study.design.grown_lhs import with_history
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks

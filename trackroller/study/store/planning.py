@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError, WorkError
 from trackroller.files import try_lock
-from trackroller.study.design.growth import with_history
+from trackroller.study.design.grown_lhs import with_history
 from trackroller.study.store.folder import StudyFolder, Tell, sweep, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
