@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import itertools
 
 import numpy as np
 import pytest
@@ -11,7 +10,7 @@ import pytest
 import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.roller import tolerance as by_case
-from trackroller.roller.accuracy import PRESETS, Tolerance
+from trackroller.roller.accuracy import BY_CASE_ELEMENTS, PRESETS, Tolerance
 from trackroller.roller.dataset import validity_bit
 from trackroller.study.cost import rate
 from validation.benchmarks.samples import random_designs
@@ -76,7 +75,25 @@ def test_only_doubtful_cases_are_solved_again(monkeypatch):
     tr.solve(cases, accuracy=0.02)
     elements, rows = zip(*solved, strict=True)
     assert elements == tuple(sorted(set(elements))) and elements[0] == 12
-    assert rows[0] == 12 > rows[1] and all(later <= before for before, later in itertools.pairwise(rows))
+    assert rows[0] == 12 > max(rows[1:]) and sum(rows) < 2 * rows[0]
+
+
+@pytest.mark.parametrize(
+    ("at", "over", "following"),
+    [
+        (0, 0.9, 0),  # within its tolerance
+        (0, 2.0, 1),  # 28 elements promise a third of the error of 12, and 56 a seventh
+        (0, 5.0, 2),
+        (0, 1e4, 2),  # a rough estimate
+        (1, 2.0, 2),
+        (1, 3.0, 3),
+        (1, 50.0, 0),  # out of reach
+        (3, 1.1, 0),  # on the finest elements
+    ],
+)
+def test_a_case_goes_on_to_the_first_elements_that_promise_its_tolerance(at, over, following):
+    elements = np.array(BY_CASE_ELEMENTS)
+    assert by_case._next_rung(np.array([at]), np.array([over]), elements).tolist() == [following]
 
 
 def test_a_case_alone_and_in_a_batch_has_the_same_bits():

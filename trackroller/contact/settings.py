@@ -66,6 +66,12 @@ class Accuracy:
         Points along each axis of the stored tractions and stress sections.
     elements : int
         Elements along each axis of the patch for the rolling contact models.
+    grid_elements : int
+        Elements of FASTSIM and of patches whose pressure is solved; 0: as many as `elements`.
+    peak_elements : int
+        Elements of the tractions from which a model finds the peak stress; 0: as many as `elements`.
+    refines : bool
+        Whether patches with large estimated errors are solved again on twice the elements.
     """
 
     name: str
@@ -76,8 +82,9 @@ class Accuracy:
     traction_points: int
     section_points: int
     elements: int
-    grid_elements: int = 0  # of FASTSIM and of patches whose pressure is solved; 0: as many as `elements`
-    peak_elements: int = 0  # of tractions from which a model finds the peak stress; 0: as many as `elements`
+    grid_elements: int = 0
+    peak_elements: int = 0
+    refines: bool = True
 
     @property
     def on_grids(self) -> int:

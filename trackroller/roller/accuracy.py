@@ -173,7 +173,10 @@ class Tolerance:
         search = _cheapest(searches, PEAK_SHARE * peak, ("peak_stress",)) or _finest(searches, ("peak_stress",))
         forces = _finest(ladders()["forces"], FORCE_QUANTITIES)
         return tuple(
-            _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements)
+            replace(
+                _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements),
+                refines=False,
+            )
             for elements in BY_CASE_ELEMENTS
         )
 

@@ -258,7 +258,9 @@ def _single(variables: Mapping[str, Any], further: Mapping[str, Any], attrs: Map
         if len(_LIKE) >= MOST_LIKE:
             _LIKE.clear()
         like = _LIKE[key] = xr.Dataset(made, coords=_sides().copy()).assign_coords(further).copy(deep=True)
-    return like.copy(data=data).assign_attrs(attrs)
+    ds = like.copy(data=data)
+    ds.attrs = dict(attrs)  # `assign_attrs` would copy all variables once more
+    return ds
 
 
 def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str, Any]:

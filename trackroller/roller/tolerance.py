@@ -1,12 +1,12 @@
 """Meet a tolerance case by case: solve all cases on few elements, and only the doubtful ones again on more.
 
-The estimated error of a case is the change from the rung before, extrapolated by the observed order of convergence. On
-the first rung, and for peaks on every rung, the errors count that the stages estimate themselves.
+Each number of elements is a rung. The estimated error of a case is the change from the rung before, extrapolated by the
+observed order of convergence, or less if the stages estimate a smaller error of the forces themselves. On the first
+rung only these own estimates count. A case goes on to the first rung that promises to meet its tolerance.
 """
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
@@ -23,11 +23,13 @@ if TYPE_CHECKING:
     from trackroller.roller.options import Options
 
 ORDER = 1.3  # of convergence of forces and peaks, the lowest that was seen while elements double
-SAFETY = 1.5  # factor on the extrapolated change
+SAFETY = 2.0  # factor on the extrapolated change
+LEAP = 2  # rungs that a case goes up at once at most: a large estimate is a rough one
 REACH = 4.0  # an error is not worth the next rung above this many times what the order promises there
-# Factors on the errors that the stages estimate themselves on the first rung, where nothing can be compared: with them
-# 99 % of the forces and peaks of random designs lie within the tolerance.
+# Factors on the errors that the stages estimate themselves, on the first rung, where nothing can be compared, and on
+# later ones. With them 99 % of the forces and peaks of random designs lie within the tolerance.
 FIRST_FORCES, FIRST_PEAKS = 2.5, 5.0
+LATER_FORCES, LATER_PEAKS = 1.5, 0.4
 
 
 def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options], Block]) -> Block:
@@ -50,27 +52,45 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
     tolerance = options.tolerance
     if tolerance is None:
         return solve(table, options)
-    rungs = tolerance.rungs
+    rungs, at = tolerance.rungs, np.zeros(len(table), int)
+    elements = np.array([rung.elements for rung in rungs])
     block = solve(table, options.changed(accuracy=rungs[0]))
-    over = _estimated(block, tolerance, _peak_tolerance(table, block, tolerance, options))
-    for before, rung in itertools.pairwise(rungs):
-        gain = (rung.elements / before.elements) ** ORDER
-        rows = np.flatnonzero((over > 1.0) & ((over <= REACH * gain) | (before is rungs[0])))
+    forces, peaks = _own_errors(block)
+    limit = _peak_tolerance(table, block, tolerance, options)
+    over = np.fmax(FIRST_FORCES * forces / tolerance.forces, FIRST_PEAKS * peaks / limit)
+    over = np.where(block.converged == 1, over, 0.0)
+    for number, rung in enumerate(rungs[1:], start=1):
+        rows = np.flatnonzero(_next_rung(at, over, elements) == number)
         if rows.size == 0:
-            break
-        finer = solve(table.take(rows), options.changed(accuracy=rung))
-        limit = _peak_tolerance(table.take(rows), finer, tolerance, options)
+            continue
+        part = table.take(rows)
+        finer = solve(part, options.changed(accuracy=rung))
+        factor = SAFETY / ((rung.elements / elements[at[rows]]) ** ORDER - 1.0)
         changed = _changes(table.friction_coefficient[rows], block.take(rows), finer)
-        own = _largest(finer.values.get("error_estimate"), len(rows))
-        peak = np.fmax(changed.pop("peak_stress", 0.0) * SAFETY / (gain - 1.0), own)
-        forces = np.max([*changed.values()], axis=0) * SAFETY / (gain - 1.0)
-        over[rows] = np.where(finer.converged == 1, np.fmax(forces / tolerance.forces, peak / limit), 0.0)
+        forces, peaks = _own_errors(finer)
+        peaks = np.fmax(changed.pop("peak_stress", 0.0) * factor, LATER_PEAKS * peaks)
+        forces = np.fmin(np.max([*changed.values()], axis=0) * factor, LATER_FORCES * forces)
+        met = np.fmax(forces / tolerance.forces, peaks / _peak_tolerance(part, finer, tolerance, options))
+        over[rows], at[rows] = np.where(finer.converged == 1, met, 0.0), number
         place = np.arange(len(block))
         place[rows] = len(block) + np.arange(rows.size)
         block = join([block, finer]).take(place)
     block.values["error_over_tolerance"] = np.where(block.converged == 1, over, np.nan)
     block.bits |= np.where(over > 1.0, validity_bit("tolerance_missed"), 0).astype(block.bits.dtype)
     return block
+
+
+def _next_rung(at: np.ndarray, over: np.ndarray, elements: np.ndarray) -> np.ndarray:
+    """Return the rung on which each case is solved next, (n,); 0 if it stays as it is.
+
+    `at` is the rung of each case, (n,), `over` its error over its tolerance, (n,), `elements` those of the rungs.
+    """
+    gain = (elements / elements[at][:, None]) ** ORDER
+    enough = (gain >= over[:, None]) & (gain > 1.0)
+    following = np.where(enough.any(axis=1), enough.argmax(axis=1), len(elements) - 1)
+    following = np.minimum(following, at + LEAP)
+    hopeless = (at > 0) & (over > REACH * gain[np.arange(len(at)), following])
+    return np.where((over <= 1.0) | hopeless | (following <= at), 0, following)
 
 
 def _largest(values: np.ndarray | None, n: int) -> np.ndarray:
@@ -80,12 +100,11 @@ def _largest(values: np.ndarray | None, n: int) -> np.ndarray:
     return np.asarray(np.nan_to_num(np.abs(values)).reshape(n, -1).max(axis=1))
 
 
-def _estimated(block: Block, tolerance: Tolerance, peaks: np.ndarray) -> np.ndarray:
-    """Return the errors over their tolerances that the stages of the first rung estimate themselves, (n,)."""
-    forces = [_largest(block.values.get(f"{name}force_error_estimate"), len(block)) for name in ("", "normal_")]
-    peak = _largest(block.values.get("error_estimate"), len(block))
-    over = np.fmax(FIRST_FORCES * np.max(forces, axis=0) / tolerance.forces, FIRST_PEAKS * peak / peaks)
-    return np.where(block.converged == 1, over, 0.0)
+def _own_errors(block: Block) -> tuple[np.ndarray, np.ndarray]:
+    """Return the largest errors of the forces and of the peaks that the stages estimate themselves, (n,) each."""
+    names = "force_error_estimate", "normal_force_error_estimate", "error_estimate"
+    force, normal, peak = (_largest(block.values.get(name), len(block)) for name in names)
+    return np.fmax(force, normal), peak
 
 
 def _changes(friction: np.ndarray, before: Block, after: Block) -> dict[str, np.ndarray]:

@@ -57,9 +57,10 @@ def rate(options: Mapping[str, Any]) -> float:
 def _by_case(accuracy: float | Mapping[str, float], peaks: bool) -> float:
     """Return the cost of a tolerance that is met case by case over that of `standard`, measured on random designs."""
     asked = accuracy if isinstance(accuracy, Mapping) else {"forces": accuracy, "peak": accuracy}
-    forces = (1e-2 / asked.get("forces", 1.0)) ** 0.86
-    peak = 2.5 * (1e-2 / min(asked.get("peak", 1.0), 0.1 * asked.get("life", 10.0))) ** 0.5 if peaks else 0.0
-    return float(max(forces, peak, 0.5))
+    smallest = asked.get("forces", 1.0)
+    if peaks:
+        smallest = min(smallest, asked.get("peak", 1.0), 0.1 * asked.get("life", 10.0))
+    return float(max(1.9 * (1e-2 / smallest) ** 0.45, 0.5))
 
 
 def study_rate(study: Study) -> float:

@@ -163,7 +163,7 @@ class Correction:
         other = 2.0 * np.abs(slip.sine * slip.cosine) * normal[rows, 1 - side]
         least = np.minimum(friction * patch.normal_force, other)
         rough = np.flatnonzero(force_error > refined_above(self.settings.elements) * least)
-        if self.trusts_table or not rough.size:
+        if self.trusts_table or not self.settings.refines or not rough.size:
             return value, force_error
         patch, slip, coarse = patch.take(rough), slip.take(rough), solution.take(rough)
         mu, rows = friction[rough], rows[rough]

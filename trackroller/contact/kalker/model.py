@@ -26,7 +26,9 @@ class KalkerModel(ContactModel):
     def __init__(self, given: Rollers, settings: Accuracy, trusts_table: bool = False) -> None:
         self.given, law, elastic = given, given.law, given.elastic
         elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
-        discretisation = KalkerSettings(elements=elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
+        discretisation = KalkerSettings(
+            elements=elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip, refines=settings.refines
+        )
         self._law = KalkerLaw(elastic, discretisation, given.travel_speed)
         if law.is_constant:  # the table behind the corrections holds constant friction only
             self.correction = Correction(elastic, discretisation, trusts_table)

@@ -27,6 +27,8 @@ class KalkerSettings:
     between : bool
         Integrate resultants and adhesion area between the elements too. False, where only the tractions are wanted,
         adds up the elements.
+    refines : bool
+        Solve patches of an equilibrium again on twice the elements where their estimated error is large.
     profile_slip : bool
         Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.
     law : FrictionLaw, optional
@@ -41,6 +43,7 @@ class KalkerSettings:
     krylov: int = 80
     extrapolate: bool = True
     between: bool = True
+    refines: bool = True
     profile_slip: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0

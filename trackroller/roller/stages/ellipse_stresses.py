@@ -15,6 +15,7 @@ from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import FIELD, NO_FIELD, patch_rows, stress_parts
 from trackroller.halfspace.peak import Peak, find_peaks
+from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.halfspace.stress import body_stress
 from trackroller.roller.requirements import distinct_rows, normalised_patches
 from trackroller.roller.stages.patch_stresses import PatchStresses
@@ -37,6 +38,11 @@ FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 def refined_above(elements: int) -> float:
     """Return the estimated relative error of a peak above which a patch of `elements` along an axis is solved again."""
     return REFINED_ERROR * (REFINED_AT / elements) ** 2
+
+
+def _finer_search(settings: PeakSettings) -> PeakSettings:
+    """Return the settings of a search under the tractions of many elements, which have narrow ridges."""
+    return replace(settings, **FINER_SEARCH) if settings.step > FINER_SEARCH["step"] else settings
 
 
 def _pieces(count: int, size: int = PIECE) -> list[slice]:
@@ -133,6 +139,8 @@ class EllipseStresses(PatchStresses):
         own = results.scene.model.peak_error
         seeds = QUICK_SEEDS if own else max(settings.seeds, SEEDS)
         settings = replace(settings, seeds=seeds, finalists=max(settings.finalists, FINALISTS))
+        if not self.options.settings.refines and self.options.settings.elements > REFINED_AT:
+            settings = _finer_search(settings)
         for piece in _pieces(flat.size):
             fields, coarse = (_mirrored(part, second[piece]) for part in self.fields(flat[piece]))
             peak.put(piece, find_peaks(patches[piece], ratios[piece], settings, fields, coarse, bool(own)))
@@ -140,9 +148,11 @@ class EllipseStresses(PatchStresses):
         limit = np.maximum(refined_above(self.options.settings.elements), worth)
         # a model with an error of its own gains nothing from elements where the search alone is rough
         doubt = CHANGE_WEIGHT * peak.change if own else peak.error
-        rough = np.flatnonzero((doubt.max(axis=1) > limit) & (results.slides_along[flat] == 0))
-        if not own and settings.step > FINER_SEARCH["step"]:
-            settings = replace(settings, **FINER_SEARCH)
+        rough = np.flatnonzero(
+            (doubt.max(axis=1) > limit) & (results.slides_along[flat] == 0) & self.options.settings.refines
+        )
+        if not own:
+            settings = _finer_search(settings)
         for piece in _pieces(rough.size, PIECE if own else FINER_PIECE):
             rows = rough[piece]
             shares = self._shares(flat[rows], results.scene.model.finer_shares)
