@@ -10,10 +10,10 @@ from trackroller.contact.cross_sections import Gap, parabola
 from trackroller.contact.normal.wearing import WearingPatch, on_cells
 from trackroller.damage.wear import wear_depth
 from trackroller.errors import InputError
-from trackroller.roller import groove
+from trackroller.roller import wearing
 from trackroller.roller.case import to_table
-from trackroller.roller.groove import Wearing
 from trackroller.roller.options import Options
+from trackroller.roller.wearing import Wearing
 
 SLIDING = {"contact_model": "sliding", "accuracy": "preview"}
 FORCES = ("forces", "contact", "friction_work")
@@ -39,9 +39,11 @@ def patch(elements=20, modulus=115e3):
 
 def test_a_short_step_is_archards_law():
     gap, x, y, pressure, slip, modulus = patch()
-    wears = WearingPatch(gap, x, y, pressure, slip, modulus)
-    depth, closing = wears.worn(1e-9)
+    wears = WearingPatch(gap, x, y, pressure, np.array([0.75 * pressure * slip, 0.25 * pressure * slip]), modulus)
+    (roller_depth, guide_depth), closing = wears.worn(1e-9)
+    depth = roller_depth + guide_depth
     law = 1e3 * wear_depth(pressure[None, None], slip[None, None], np.array([[y[1] - y[0]]]), np.ones(1))[0, 0]
+    assert roller_depth == pytest.approx(3 * guide_depth)
     inside = (wears.edges[:-1] > x[0] - 0.02) & (wears.edges[1:] < x[-1] + 0.02)
     assert depth[inside] == pytest.approx(1e-9 * law, rel=1e-6, abs=1e-15)
     assert wears.rate[inside] == pytest.approx(law) and abs(closing) < 1e-7
@@ -49,8 +51,10 @@ def test_a_short_step_is_archards_law():
 
 
 def test_a_long_step_follows_the_pressure_and_keeps_the_load():
-    wears = WearingPatch(*patch())
-    depth, closing = wears.worn(1.0)  # 0.5 mm of explicit wear
+    gap, x, y, pressure, slip, modulus = patch()
+    wears = WearingPatch(gap, x, y, pressure, np.array([pressure * slip, 0 * pressure]), modulus)
+    (depth, guide), closing = wears.worn(1.0)  # 0.5 mm of explicit wear
+    assert not guide.any()
     # wear without end makes the depth uniform up to the gap and the elastic approach
     middle = depth[np.abs(wears.edges[:-1]) < 0.2]
     assert 0 < closing < 0.5 and depth.min() >= 0 and np.ptp(middle) < 0.1 * closing
@@ -116,6 +120,35 @@ def test_the_first_rate_is_that_of_the_limit_wear():
     new = tr.solve(case, (*FORCES, "wear"), normal="halfspace", **SLIDING)
     grown = ds.groove_depth.isel(travel=-1) / 0.05
     np.testing.assert_allclose(grown.values, new.wear_depth_per_km.transpose("contact", "body").values, rtol=0.05)
+
+
+def test_a_linear_table_of_the_energy_law_is_archards_law():
+    """With |tau| = mu p, a loss of c per work rate is k = c mu / density."""
+    density, loss = 7800.0, 0.4
+    table = {"work_rate": [0, 1e3], "roller": [0, 1e3 * loss], "guide": [0, 0]}
+    body = {"like": "1.7225-quenched-tempered", "density": density}
+    energy = roller(roller_material=body, guide_material=body, wear_table=table)
+    archard = roller(k=loss * 0.2 / density)
+    one, two = (
+        tr.wear(c, 3, FORCES, **o) for c, o in ((energy, {**SLIDING, "wear_law": "energy"}), (archard, SLIDING))
+    )
+    # the mean shear of the elements beside the spin pole is smaller than mu p
+    for name in ("groove_depth", "groove_volume", "max_pressure"):
+        assert one[name].values[-1] == pytest.approx(two[name].values[-1], rel=0.02)
+
+
+def test_the_energy_law_starts_at_the_rate_of_the_limit_wear():
+    body = {"like": "1.7225-quenched-tempered", "density": 7800.0}
+    table = {"work_rate": [0, 0.1, 0.3, 1e3], "roller": [0, 0, 1, 1e4], "guide": [0, 0, 0, 0]}
+    case, energy = (
+        roller(roller_material=body, guide_material=body, wear_table=table),
+        {**SLIDING, "wear_law": "energy"},
+    )
+    run, new = tr.wear(case, 0.05, FORCES, **energy), tr.solve(case, (*FORCES, "wear"), normal="halfspace", **energy)
+    grown = run.groove_depth.isel(travel=-1).sel(body="roller") / float(run.travel[-1])
+    assert grown.values == pytest.approx(new.wear_depth_per_km.sel(body="roller").values, rel=0.05)
+    none = roller(roller_material=body, guide_material=body, wear_table=table | {"roller": [0, 0, 0, 0]})
+    assert float(tr.wear(none, 3, FORCES, **energy).groove_depth.max()) == 0.0
 
 
 @pytest.mark.slow
@@ -184,7 +217,7 @@ def test_where_the_travel_ends():
 
 
 def test_a_march_ends_after_a_limited_number_of_states(monkeypatch):
-    monkeypatch.setattr(groove, "STEPS", 4)
+    monkeypatch.setattr(wearing, "STEPS", 4)
     case, kept = roller(k=1.0), []
     ds = tr.wear(case, 1e3, FORCES, tell=lambda ds, goal: kept.append(ds), **SLIDING)
     assert ds.attrs["end"] == "steps" and ds.sizes["travel"] == 4 and float(ds.travel[-1]) < 1e3
@@ -201,8 +234,8 @@ def test_a_deep_groove_is_followed_in_larger_steps():
     patches = w._patches(w.new, w.table)
     _, shallow, _ = w._two_ways(w.start, patches, 1e-5)
     _, deep, _ = w._two_ways(at, patches, 1e-5)
-    more = groove.SHARE * (0.1 - groove.DEEP * w.scale)
-    assert deep == pytest.approx(shallow * groove.TOLERANCE * w.scale / (groove.TOLERANCE * w.scale + more), rel=0.1)
+    more = wearing.SHARE * (0.1 - wearing.DEEP * w.scale)
+    assert deep == pytest.approx(shallow * wearing.TOLERANCE * w.scale / (wearing.TOLERANCE * w.scale + more), rel=0.1)
 
 
 def test_refused_input():
@@ -210,6 +243,8 @@ def test_refused_input():
         tr.wear(roller(), 10, normal="hertz")
     with pytest.raises(InputError, match="travel > 0"):
         tr.wear(roller(), -1)
+    with pytest.raises(InputError, match="wear_table"):
+        tr.wear(roller(), 1, wear_law="energy", **SLIDING)
     with pytest.raises(InputError, match="worn"):
         tr.Case(roller_profile={"arc": -7, "worn": {"start": 0, "step": 0.1, "depth": [[-1.0]]}})
 
@@ -223,7 +258,7 @@ def test_damage_counts_the_stress_of_each_state():
     assert ds.life_travel_new.sel(body="roller").values == pytest.approx(1 / rate[0])
     reached = ds.life_travel.sel(body="roller").values
     assert np.isnan(reached[ds.fatigue_damage.sel(body="roller").values[-1] < 1]).all()
-    assert groove.ENDS[ds.attrs["end"]]
+    assert wearing.ENDS[ds.attrs["end"]]
 
 
 def test_a_worn_profile_is_a_profile_of_a_case():

@@ -138,16 +138,39 @@ def _gaps_at_edges(solved: SolvedRollers, t: Tractions) -> np.ndarray:
     return t.spread(out)
 
 
+def local_rates(pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray, table: str) -> list[np.ndarray]:
+    """Return p |s| [MPa], or by the `table` of the energy law the loss of mass [ug/(m mm2)], of roller and guide.
+
+    Elements have the pressure p and the shear |tau| [MPa], and slide by |s| per distance travelled [1]; `table` is the
+    canonical JSON of the case, "" for Archard's law.
+    """
+    if not table:
+        return [pressure * sliding] * 2
+    own = TABLE.parsed(table)
+    return [mass_loss(shear * sliding, own["work_rate"], own[body]) for body in BODIES]
+
+
+def energy_ratio(energy: np.ndarray, elements: np.ndarray) -> np.ndarray:
+    """Return the friction energy of the contact model over the sum of its elements; 1 where one of them is not known.
+
+    The friction energy of a patch that hardly slips can round to a negative number, which does not count.
+    """
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio = energy / elements
+    return np.where(np.isfinite(ratio) & (ratio > 0.0), ratio, 1.0)
+
+
 def _rates(solved: SolvedRollers, t: Tractions, sliding: np.ndarray) -> list[np.ndarray]:
-    """Return p |s| [MPa], or the loss of mass [ug/(m mm2)] of roller and guide, (n, contact, y, x) each."""
+    """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a table."""
+    shear = np.hypot(t.shear_lateral, t.shear_rolling)
     if solved.options["wear_law"] == "archard":
-        return [t.pressure * sliding] * 2
-    work, texts = np.hypot(t.shear_lateral, t.shear_rolling) * sliding, solved.cases["wear_table"]
-    out = [np.full_like(work, np.nan) for _ in BODIES]
+        return local_rates(t.pressure, shear, sliding, "")
+    texts = solved.cases["wear_table"]
+    out = [np.full_like(shear, np.nan) for _ in BODIES]
     for text in set(texts.tolist()) - {""}:
-        own, rows = TABLE.parsed(text), texts == text
-        for body, rate in zip(BODIES, out, strict=True):
-            rate[rows] = mass_loss(work[rows], own["work_rate"], own[body])
+        rows = texts == text
+        for rate, own in zip(out, local_rates(t.pressure[rows], shear[rows], sliding[rows], text), strict=True):
+            rate[rows] = own
     return out
 
 
@@ -168,10 +191,8 @@ def of_mechanics(solved: SolvedRollers) -> Results:
     shear = np.sum(np.hypot(t.shear_lateral, t.shear_rolling) * sliding, axis=(2, 3))
     rubbed = np.where(constant[:, None], mu * np.sum(t.pressure * sliding, axis=(2, 3)), shear) * cell
     pressed, v = np.sum(t.pressure, axis=(2, 3)) * cell, solved.values
-    with np.errstate(divide="ignore", invalid="ignore"):
-        tied = np.where(braked, v["normal_force"] / pressed, v["friction_energy_per_distance"] / rubbed)
-    # the friction energy of a patch that hardly slips can round to a negative number
-    long = long * np.where(np.isfinite(tied) & (tied > 0.0), tied, 1.0)
+    known = np.where(braked, v["normal_force"], v["friction_energy_per_distance"])
+    long = long * energy_ratio(known, np.where(braked, pressed, rubbed))
     lines = [wear_depth(rate, 0.0 * rate + 1.0, long, np.ones(len(rate))) for rate in _rates(solved, t, sliding)]
     depth = np.stack(lines, axis=2)
     largest, place = deepest(t.x, depth)

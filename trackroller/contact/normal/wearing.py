@@ -1,15 +1,17 @@
 """Depth that wear takes off a patch in one implicit step.
 
-The rate of wear at the lateral place x is W(x) = int p |s| dy, with the local slip |s| per distance travelled. Wear
-changes the pressure: a wave of wave number q and depth d changes it by E* q d/2, so that an explicit step of more than
-about a tenth of a micrometre turns the groove into noise. The pressure at the end of the step is therefore an unknown
-of the step. In each column of elements, along the rolling direction, its distribution and the slip stay those of the
-start; the load Q of the column changes. With the influence matrix A of the columns and the depth c s Q of the step
+The depth that wears off at the lateral place x is the integral of local rates along the rolling direction, for example
+of k p |s|. Wear changes the pressure: a wave of wave number q and depth d changes it by E* q d/2, so that an explicit
+step of more than about a tenth of a micrometre turns the groove into noise. The pressure at the end of the step is
+therefore an unknown of the step. In each column of elements, along the rolling direction, its distribution stays that
+of the start, and so does the rate of wear per load; the load Q of the column changes. With the influence matrix A of
+the columns and the depth c Q of the step
 
-    A (Q - Q_0) + c s Q + gap = closing,   Q >= 0,   sum Q = sum Q_0,
+    A (Q - Q_0) + c Q + gap = closing,   Q >= 0,   sum Q = sum Q_0,
 
-where c is the rate of wear times the travel and s the mean slip of a column. Columns beside the patch take part, with
-the gap that is left there, so that the patch can grow within the step.
+where c is the rate of wear per load times the travel. Columns beside the patch take part, with the gap that is left
+there, so that the patch can grow within the step. The rate per load is exact for Archard's law; for a law that is not
+linear in the pressure its change is an error of first order in the step.
 """
 
 from __future__ import annotations
@@ -33,8 +35,10 @@ class WearingPatch:
         Gap of the bodies at the start of the step; x counts outward.
     x, y : numpy.ndarray, shape (M,) and (N,)
         Element centres [mm].
-    pressure, slip : numpy.ndarray, shape (N, M)
-        Pressure [MPa] and local slip |s| per distance travelled [1].
+    pressure : numpy.ndarray, shape (N, M)
+        Pressure [MPa].
+    rates : numpy.ndarray, shape (2, N, M)
+        Depth per travel that each element takes off roller and guide, over its length [1/km].
     modulus : float
         Contact modulus E* [MPa].
 
@@ -43,11 +47,11 @@ class WearingPatch:
     edges : numpy.ndarray, shape (m + 1,)
         Ends of the columns, those beside the patch included [mm].
     rate : numpy.ndarray, shape (m,)
-        W = int p |s| dy of each column at the start [N/mm].
+        Depth per travel of each column at the start, of both bodies together [mm/km].
     """
 
     def __init__(
-        self, gap: Gap, x: np.ndarray, y: np.ndarray, pressure: np.ndarray, slip: np.ndarray, modulus: float
+        self, gap: Gap, x: np.ndarray, y: np.ndarray, pressure: np.ndarray, rates: np.ndarray, modulus: float
     ) -> None:
         hx, hy = x[1] - x[0], y[1] - y[0]
         beside = int(np.ceil(BESIDE * x.size))
@@ -55,8 +59,8 @@ class WearingPatch:
         high = min(beside, int((gap.limits[1] - x[-1] - 0.5 * hx) / hx + 1e-6))
         low, high = max(low, 0), max(high, 0)
         wide = x[0] + hx * np.arange(-low, x.size + high)
-        p, s = (np.pad(field, ((0, 0), (low, high))) for field in (pressure, slip))
-        load, work = p.sum(axis=0), (p * s).sum(axis=0)
+        p = np.pad(pressure, ((0, 0), (low, high)))
+        load, bodies = p.sum(axis=0), hy * np.pad(rates.sum(axis=1), ((0, 0), (low, high)))
         self.loaded = load > LOADED * load.max()
         inside = np.flatnonzero(self.loaded)
         first, last = int(inside[0]), int(inside[-1])
@@ -64,21 +68,23 @@ class WearingPatch:
         near = inside[np.argmin(np.abs(np.arange(wide.size)[:, None] - inside), axis=1)]
         shape = p[:, near] / load[near]
         self.edges = wide[0] + hx * (np.arange(wide.size + 1) - 0.5)
-        self.rate = hy * work
-        self.width, self._hy = hx, hy
+        self.rate, self.width = bodies.sum(axis=0), hx
+        with np.errstate(divide="ignore", invalid="ignore"):
+            self._shares = np.nan_to_num(bodies / self.rate)[:, near]
         self._load = np.where(self.loaded, load, 0.0)
-        self._slip = _continued(np.where(self.loaded, work / np.where(self.loaded, load, 1.0), 0.0), first, last)
+        per_load = np.where(self.loaded, self.rate / np.where(self.loaded, load, 1.0), 0.0)
+        self._per_load = _continued(per_load, first, last)
         self._matrix = _column_matrix(shape, hx, hy) / modulus
         apart = self._matrix @ self._load + (shape * gap.field(wide, y)).sum(axis=0)
         closing = float((apart * self._load).sum() / self._load.sum())
         self._gap = np.where(self.loaded, 0.0, np.maximum(apart - closing, 0.0))
 
-    def worn(self, factor: float) -> tuple[np.ndarray, float]:
-        """Return the depth of each column after an implicit step (m,), and how far it lets the bodies close [mm].
+    def worn(self, travel: float) -> tuple[np.ndarray, float]:
+        """Return the depth of roller and guide at each column after an implicit step, (2, m), and how far they close.
 
-        `factor` is the rate of wear of both bodies times the travel: depth over W [mm2/N].
+        Depths and closing are in mm, `travel` in km.
         """
-        c = factor * self._hy * self._slip
+        c = travel * self._per_load
         start = self._matrix @ self._load - self._gap
         active, load, closing = self.loaded.copy(), self._load, 0.0
         for _ in range(ROUNDS):
@@ -97,17 +103,17 @@ class WearingPatch:
         load = np.maximum(load, 0.0)
         depth = c * load
         # columns that hold nearly no load wear as at the start
-        return np.where(self.loaded | active, depth, 0.0), closing
+        return self._shares * np.where(self.loaded | active, depth, 0.0), closing
 
 
-def _continued(slip: np.ndarray, first: int, last: int) -> np.ndarray:
-    """Return the mean slip of columns, continued beyond the loaded columns `first` to `last` along straight lines."""
-    out, places = slip.copy(), np.arange(slip.size)
+def _continued(values: np.ndarray, first: int, last: int) -> np.ndarray:
+    """Return values of columns, continued beyond the loaded columns `first` to `last` along straight lines."""
+    out, places = values.copy(), np.arange(values.size)
     for end, inward in ((first, 1), (last, -1)):
         span = min(3, last - first)
-        slope = (slip[end] - slip[end + inward * span]) / span if span else 0.0
+        slope = (values[end] - values[end + inward * span]) / span if span else 0.0
         beyond = (places - end) * inward < 0
-        out[beyond] = np.maximum(slip[end] + np.maximum(slope, 0.0) * np.abs(places[beyond] - end), 0.0)
+        out[beyond] = np.maximum(values[end] + np.maximum(slope, 0.0) * np.abs(places[beyond] - end), 0.0)
     return out
 
 

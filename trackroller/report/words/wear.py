@@ -9,7 +9,7 @@ import numpy as np
 from trackroller.parameters import BODIES
 from trackroller.report.numbers import rounded
 from trackroller.report.words.sentence import Sentence
-from trackroller.roller.groove import ENDS
+from trackroller.roller.wearing import ENDS
 
 if TYPE_CHECKING:
     import xarray as xr

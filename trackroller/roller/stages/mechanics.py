@@ -200,8 +200,8 @@ def _largest_shear(results: Results) -> np.ndarray:
     return largest * results.patch.max_pressure[results.good] / np.max(t.pressure, axis=(1, 2))
 
 
-def friction_work(results: Results, options: Options) -> None:
-    """Add the friction energy int |tau| |v| per distance travelled, and the energy balance."""
+def dissipation(results: Results) -> tuple[np.ndarray, np.ndarray]:
+    """Return the friction energy int |tau| |v| per distance, and the work that the pressures supply, (n, 2) [N]."""
     per_distance, pressed = np.full(2 * results.scene.n, np.nan), np.zeros(2 * results.scene.n)
     rolls = results.good & (results.slides_along == 0)
     if results.scene.frictionless:
@@ -211,9 +211,13 @@ def friction_work(results: Results, options: Options) -> None:
         works = results.scene.model.power(*results.of(mirror.asked(rolls)))
         per_distance[rolls] = mirror.spread(rolls, works.dissipated)
         pressed[rolls] = mirror.spread(rolls, works.by_pressure)
-    w = results.by_contact(per_distance)
-    results.values["friction_energy_per_distance"] = w
-    _energy_balance(results, w, results.by_contact(pressed))
+    return results.by_contact(per_distance), results.by_contact(pressed)
+
+
+def friction_work(results: Results, options: Options) -> None:
+    """Add the friction energy per distance travelled, and the energy balance."""
+    results.values["friction_energy_per_distance"], pressed = dissipation(results)
+    _energy_balance(results, results.values["friction_energy_per_distance"], pressed)
 
 
 def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) -> None:

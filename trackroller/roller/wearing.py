@@ -1,0 +1,291 @@
+"""Follow the groove of one roller while it wears: states along the travel, which do not depend on where one looks.
+
+ASSUME: every place of the roller's circumference is overrolled once in 2 pi r_A of travel, and every place of the guide
+`guide_overrollings_per_hour` times in the travel of an hour. A guide without this number does not wear.
+ASSUME: debris and plastic flow play no part, and the wear coefficients do not change with the travel.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from trackroller.contact.common import Resultants
+from trackroller.contact.cross_sections import Gap
+from trackroller.contact.drawn_profiles import gap, treats_sides_alike, with_wear
+from trackroller.contact.hertz import contact_modulus
+from trackroller.contact.normal.measure import Box
+from trackroller.contact.normal.wearing import WearingPatch, on_cells, resolved
+from trackroller.damage.limit import roller_overrollings
+from trackroller.damage.wear import KM_PER_HOUR, energy_ratio, local_rates
+from trackroller.errors import InputError
+from trackroller.parameters import REGIMES
+from trackroller.roller import equilibrium as eq
+from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.groove import Groove
+from trackroller.roller.options import Options, model_in_use
+from trackroller.roller.stages.balance import balance
+from trackroller.roller.stages.mechanics import dissipation, prepare
+from trackroller.roller.stages.models import bodies, finer_across
+from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.table import CaseTable
+
+REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
+TOLERANCE = 0.02  # largest error of the depth in a step over the elastic approach of the new bodies
+DEEP, SHARE = 2.0, 0.1  # beyond DEEP elastic approaches, this share of the depth beyond them is allowed in addition
+FIRST = 0.05  # depth of the first step over the elastic approach of the new bodies
+LEAST = 0.02  # depth of the least step over that of the first step, or of a step that wears SHARE of the depth
+GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
+TRIES = 3  # steps in a row, each shorter, that end without a balance or in another regime
+STEPS = 30  # largest number of states, which bounds the processor time of a groove that goes on growing
+ENDS = {
+    "travel": "the travel asked for is reached",
+    "permissible": "the permissible wear depth is reached",
+    "lift_off": "a contact has lifted off",
+    "full_slip": "friction can no longer transmit the motor force, so that wear per travel has no limit",
+    "failed": "no balance of the forces was found",
+    "steps": f"the steps became too small, or {STEPS} states were not enough",
+    "wide": f"the patch has grown beyond {REACH:g} times the new one",
+}
+
+
+class Wearing:
+    """One roller whose groove wears.
+
+    Parameters
+    ----------
+    table : CaseTable
+        The case, one row.
+    options : Options
+        Options of the solution, with `normal: halfspace`.
+
+    Raises
+    ------
+    InputError
+        For Hertzian patches, or if neither body has a wear coefficient and overrollings.
+    """
+
+    def __init__(self, table: CaseTable, options: Options) -> None:
+        self.table = table
+        self.options = options.changed(contact_model=model_in_use(options, str(table.friction_law[0])))
+        self.alpha, self.radius, *_ = contact_geometry(vars(table))
+        self.modulus = float(contact_modulus(*bodies(table))[0])
+        hourly = np.array([roller_overrollings(table.velocity, self.radius)[0], table.guide_overrollings_per_hour[0]])
+        self.per_km = hourly / (KM_PER_HOUR * table.velocity[0])  # overrollings of a place of roller and guide
+        self.rates = _rates(table, options, self.per_km)
+        self._law = str(table.wear_table[0]) if options.wear_law == "energy" else ""
+        self._texts = str(table.guide_profile[0]), str(table.roller_profile[0])
+        self.contacts = 1 if table.axial_force[0] == 0.0 and all(map(treats_sides_alike, self._texts)) else 2
+        self._across = int(finer_across(table, options)[0])
+        none = np.zeros(self.contacts)
+        self.start = Groove(0.0, np.zeros((self.contacts, 2, 2)), none, none)
+        self.new = self.solve(self.start)
+        self.cells, self.scale, self._lean = np.array([-1.0, 0.0, 1.0]), np.nan, none
+        if self.end(self.new):
+            return
+        patch: Any = self.new.patch
+        wide, (low, high) = float(np.min(patch.semi_axis_lateral)), self._gap(table, 1).limits
+        step = 2.0 * wide / patch.shape[1]
+        self.cells = step * np.arange(
+            np.floor(max(low / step, -REACH * wide / step)), np.ceil(min(high, REACH * wide) / step) + 1
+        )
+        self.scale = float(np.mean(patch.approach))
+        self.start = replace(self.start, depth=np.zeros((self.contacts, 2, self.cells.size - 1)))
+        self._lean = self._leaning(self.new, table)
+
+    @property
+    def places(self) -> np.ndarray:
+        """Return the middles of the cells outward of the nominal contact, (cells,) [mm]."""
+        return 0.5 * (self.cells[1:] + self.cells[:-1])
+
+    def _moved(self, closing: np.ndarray) -> np.ndarray:
+        """Return how far the roller has moved outward along the tangent planes, (m,) [mm]: it sinks by the closing."""
+        tangent, sides = np.tan(self.alpha[0]), np.broadcast_to(closing, 2)
+        sunk, apart = sides.mean() * tangent, 0.5 * (sides[1] - sides[0]) / tangent
+        return np.array([sunk + apart, sunk - apart])[: self.contacts]
+
+    def worn_table(self, state: Groove) -> CaseTable:
+        """Return the case with the worn profiles of a state; the case itself if nothing was worn off."""
+        if not state.depth.any():
+            return self.table
+        radii = float(self.table.guide_profile_radius[0]), float(self.table.roller_profile_radius[0])
+        common = {"start": float(self.places[0]), "step": float(self.places[1] - self.places[0])}
+        guide = common | {"depth": state.depth[:, 1].tolist(), "inclined": state.inclined.tolist()}
+        roller = common | {"depth": state.depth[:, 0].tolist(), "moved": self._moved(state.closing).tolist()}
+        texts = with_wear(*self._texts, radii, [guide, roller])
+        guide_text, roller_text = (np.array([text], dtype=object) for text in texts)
+        profiles: Any = {"guide_profile": guide_text, "roller_profile": roller_text}
+        return replace(self.table, **profiles)
+
+    def gaps(self, state: Groove) -> np.ndarray:
+        """Return the gap of the worn bodies at `places` where they touch without load, (2, cells) [mm]."""
+        table = self.worn_table(state)
+        lateral = np.array([self._gap(table, k + 1).lateral(self.places) for k in range(self.contacts)])
+        return np.broadcast_to(lateral - lateral.min(axis=1, keepdims=True), (2, self.places.size))
+
+    def solve(self, state: Groove) -> Results:
+        """Return balance and patches of a state."""
+        if state.balance is None or state.boxes is None:
+            scene = prepare(self.worn_table(state), self.options, self._across)
+            return Results.start(scene, balance(scene))
+        nan, boxes = np.full((3, 1, 2), np.nan), np.broadcast_to(state.boxes, (2, 3)).tolist()
+        shift, normal, rolls = state.balance[:1], state.balance[None, 1:], np.full(1, eq.ROLLING, np.int8)
+        near = eq.Equilibrium(rolls, rolls > 0, nan[0, :, 0], rolls > 0, shift, normal, Resultants(*nan))
+        scene = prepare(self.worn_table(state), self.options, self._across, [Box(*row) for row in boxes])
+        return Results.start(scene, balance(scene, near))
+
+    def end(self, results: Results) -> str:
+        """Return why the groove cannot be followed beyond these results; "" if it can."""
+        name = REGIMES[int(results.regime[0])]
+        if name == "rolling":
+            return "" if results.converged[0] else "failed"
+        return name
+
+    def turned(self, state: Groove, results: Results) -> Groove:
+        """Return a solved state with its own inclination, balance and boxes, from which the next state starts."""
+        patch: Any = results.patch
+        side = np.array([1.0, -1.0])[: self.contacts]
+        middle, wide = side * patch.centre[: self.contacts], patch.semi_axis_lateral[: self.contacts]
+        return replace(
+            state,
+            inclined=self._lean - self._leaning(results, self.worn_table(state)),
+            balance=np.concatenate([results.balance.shift, results.balance.normal_force[0]]),
+            boxes=np.stack([middle - wide, middle + wide, patch.semi_axis_rolling[: self.contacts]], axis=1),
+        )
+
+    def _gap(self, table: CaseTable, side: int) -> Gap:
+        columns = table.guide_profile_radius, table.roller_profile_radius, self.alpha, self.radius
+        g, r, alpha, radius = (float(column[0]) for column in columns)
+        texts = str(table.guide_profile[0]), str(table.roller_profile[0])
+        return gap(*texts, g, r, alpha, radius, float(table.guide_curve_radius[0]), side)
+
+    def _patches(self, results: Results, table: CaseTable) -> list[WearingPatch]:
+        t, out = surface_tractions(results), []
+        energy = dissipation(results)[0][0]
+        for k in range(self.contacts):
+            slip, shear = (
+                np.hypot(t.slip_lateral[k], t.slip_rolling[k]),
+                np.hypot(t.shear_lateral[k], t.shear_rolling[k]),
+            )
+            cell = (t.x[k, 1] - t.x[k, 0]) * (t.y[k, 1] - t.y[k, 0])
+            # constant friction: |tau| = mu p wherever surfaces slide, to more digits than an iteration has
+            bound = self.table.friction_coefficient[0] * t.pressure[k] if self.table.friction_law[0] == "" else shear
+            ratio = energy_ratio(energy[k], cell * np.sum(bound * slip))
+            rates = ratio * self.rates[:, None, None] * local_rates(t.pressure[k], shear, slip, self._law)
+            outward = slice(None, None, 1 - 2 * k)  # x counts outward in a gap
+            fields = t.pressure[k][:, outward], rates[..., outward]
+            x = (1 - 2 * k) * t.x[k, outward]
+            out.append(WearingPatch(self._gap(table, k + 1), x, t.y[k], *fields, self.modulus))
+        return out
+
+    def _leaning(self, results: Results, table: CaseTable) -> np.ndarray:
+        """Return the mean slope of the guide under the pressure, (m,) [1]; elastic slopes have no mean."""
+        patch: Any = results.patch
+        out = []
+        for k in range(self.contacts):
+            load = patch.pressure[k].sum(axis=0)
+            slope = self._gap(table, k + 1).guide.slope((1 - 2 * k) * patch.x[k])
+            out.append(float((slope * load).sum() / load.sum()))
+        return np.array(out)
+
+    def _advanced(self, state: Groove, patches: list[WearingPatch], travel: float) -> Groove:
+        """Return the state after an implicit step of `travel` [km]."""
+        depth, closing, moved = state.depth.copy(), state.closing.copy(), self._moved(state.closing)
+        for k, patch in enumerate(patches):
+            worn, closes = patch.worn(travel)
+            closing[k] += closes
+            for body, shift in enumerate((moved[k], 0.0)):
+                grown = depth[k, body] + on_cells(patch.edges - shift, worn[body], self.cells)
+                depth[k, body] = resolved(grown, self.cells, patch.width)
+        return replace(state, travel=state.travel + travel, depth=depth, closing=closing)
+
+    def _two_ways(self, at: Groove, patches: list[WearingPatch], step: float) -> tuple[Groove | None, float, str]:
+        """Return the state after a step, its error over the allowed one, and why there is none."""
+        full, half = (self._advanced(at, patches, part * step) for part in (1.0, 0.5))
+        middle = self.solve(half)
+        if reason := self.end(middle):
+            return None, np.inf, reason
+        two = self._advanced(self.turned(half, middle), self._patches(middle, self.worn_table(half)), 0.5 * step)
+        apart = np.abs(two.depth - full.depth).sum(axis=1)
+        wore = np.any(two.depth > at.depth, axis=1).sum(axis=1)
+        error = float(np.max((apart**2).sum(axis=1) / np.maximum(wore, 1))) ** 0.5
+        allowed = TOLERANCE * self.scale + SHARE * max(float(at.depth.max()) - DEEP * self.scale, 0.0)
+        beyond = TOLERANCE * self.scale / allowed  # extrapolation makes the noise of long steps larger
+        depth = np.maximum(two.depth + beyond * (two.depth - full.depth), at.depth)
+        closing = two.closing + beyond * (two.closing - full.closing)
+        new = replace(two, depth=depth, closing=closing, error=at.error + error)
+        return new, error / allowed, ""
+
+    def march(
+        self, state: Groove | None = None, step: float = 0.0, states: int = 1
+    ) -> Iterator[tuple[Groove, Results, float, str]]:
+        """Yield states with their results, the next step [km], and at the last one why it cannot go on.
+
+        A state and its next step determine all that follows, so that a march that goes on has the same bits. Without
+        wear the new groove is the only state.
+
+        Parameters
+        ----------
+        state : Groove, optional
+            State from which the march goes on; default: the new groove.
+        step : float
+            Next step of a march that goes on [km].
+        states : int
+            Number of states so far, which counts towards the limit.
+        """
+        at = self.start if state is None else state
+        results, reason = (self.new if state is None else self.solve(at)), self.end(self.new)
+        yield at, results, step, reason
+        for _ in range(states, states if reason else STEPS):
+            patches, at = self._patches(results, self.worn_table(at)), self.turned(at, results)
+            if any(p.edges[0] < self.cells[0] - p.width or p.edges[-1] > self.cells[-1] + p.width for p in patches):
+                yield at, results, step, "wide"
+                return
+            fastest = max(float(patch.rate.max()) for patch in patches)
+            if not fastest > 0.0:
+                return
+            step = step or FIRST * self.scale / fastest
+            least = LEAST * max(FIRST * self.scale, SHARE * float(at.depth.max())) / fastest
+            tries = 0
+            while True:
+                new, ratio, reason = self._two_ways(at, patches, step)
+                if new is not None and ratio <= 1.0:
+                    after = self.solve(new)
+                    reason = self.end(after)
+                    if not reason:
+                        break
+                step *= SHRINK if reason else max(SHRINK, 0.9 / np.sqrt(ratio))
+                tries = tries + 1 if reason else 0
+                if step < least or tries == TRIES:
+                    yield at, results, step, reason or "steps"
+                    return
+            at, results, step = new, after, step * min(GROWTH, 0.9 / np.sqrt(max(ratio, 1e-12)))
+            yield at, results, step, ""
+        if not reason:
+            yield at, results, step, "steps"
+
+
+def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray:
+    """Return the depth per km of roller and guide over the integral of `local_rates`, (2,); 0 where it is not known."""
+    if options.normal != "halfspace":
+        raise InputError(
+            "normal", options.normal, "halfspace, because a worn groove is no circle", "Set normal to halfspace."
+        )
+    bodies = table.roller, table.guide
+    if options.wear_law == "energy":
+        if not table.wear_table[0]:
+            remedy = "Give wear_table, or take wear_law: archard."
+            raise InputError(
+                "wear_table", None, "a table of mass loss over frictional work for wear_law: energy", remedy
+            )
+        name, what, k = "density", "a number [kg/m3]", np.array([1.0 / body.density[0] for body in bodies])
+    else:
+        name, what = "wear_coefficient", "a number [mm3/(N m)]"
+        k = np.array([body.wear_coefficient[0] for body in bodies])
+    if np.isnan(k).all():
+        remedy = f"Give it: roller_material: {{like: NAME, {name}: NUMBER}}."
+        raise InputError(name, None, f"{what} of roller or guide", remedy)
+    return np.nan_to_num(1e-3 * table.wear_coefficient_factor[0] * k * per_km)
