@@ -149,8 +149,11 @@ def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monke
     lines: list[str] = []
     new = {"motor_force": {"values": [-30, 0]}}
     Path("grown.yaml").write_text(json.dumps(base | more | {"factors": factors | new}))
+    monkeypatch.setenv("COLUMNS", "80")
     code, out, err = command(("plan", "grown.yaml"))
     assert code == 0, err
+    assert max(map(len, out.splitlines())) <= 80
+    out = " ".join(out.split())
     if said is None:  # the old value is one of the levels
         assert "unused" not in out and "12 of them solved" in out
         return

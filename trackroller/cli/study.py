@@ -218,7 +218,7 @@ def _print_study(path: Path, results: Path) -> None:
     """Print the number of cases and chunks, the expected time and the disk space."""
     study = load_study(path)
     for name, text in plan_rows(study, status_of(study, results)):
-        print(f"{name:<9} {text}")
+        print_text(text, name)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
     _print_doubts(study)
 

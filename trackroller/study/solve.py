@@ -166,7 +166,8 @@ def solve_chunk(
 
 def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
     count, failed = chunk.sizes["case"], int((chunk["regime"] == chunks.FAILED).sum())
-    return f"{words}: {count} cases solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
+    solved = f"{count} case" if count == 1 else f"{count} cases"
+    return f"{words}: {solved} solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
 
 
 def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
