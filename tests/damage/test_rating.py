@@ -8,6 +8,7 @@ import pytest
 import trackroller as tr
 from trackroller.damage.rating import contacts_to_limit, static_pressure
 from trackroller.errors import InputError
+from trackroller.report.tables.limits import placeholders
 
 STEEL = {"like": "1.7225-normalised", "hardness": 220.0, "yield_strength": 480.0}
 
@@ -88,3 +89,11 @@ def test_a_hardened_surface_needs_its_yield_strength_instead_of_a_hardness():
         assert f"material '{name or 'inline'}' has no hardness. {how}" in ds.attrs["limits_notes"]
     with pytest.raises(InputError, match=r"surface_hardened = 0.5 .*0 or 1"):
         tr.solve(tr.Case(**case, roller_material=STEEL | {"surface_hardened": 0.5}), outputs="rating")
+
+
+def test_placeholders_are_one_sentence_for_a_material():
+    ds = tr.solve(tr.Case(motor_force=0), outputs=("rating", "shakedown", "limits"), contact_model="sliding")
+    assert placeholders(ds) == [
+        "Placeholders of material '1.7225-normalised': rating with hardness (expected from 200 to 240 HB); "
+        "shakedown with yield_strength (expected from 400 to 550 MPa)."
+    ]

@@ -77,7 +77,7 @@ def over_patch(ds: xr.Dataset) -> style.Drawn:
         return None
     rate = (ds["pressure"] * np.hypot(ds["slip_lateral"], ds["slip_rolling"])).sum("y")
     shape = rate / rate.max("x")
-    figure = style.new_figure(45, 88)
+    figure = style.new_figure(38, 88)
     panels = figure.subplots(1, ds.sizes["contact"], sharey=True, squeeze=False)[0]
     for axes, contact in zip(panels, ds["contact"].values.tolist(), strict=True):
         for body, colour, line in zip(BODIES, style.palette(2), style.LINES, strict=False):

@@ -250,9 +250,19 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     return out
 
 
+def guessed_values(ds: xr.Dataset) -> list[tuple[str, str, str]]:
+    """Return the limits that rest on placeholders of a material: limit, material, and its values with their ranges."""
+    notes = [note.partition(GUESSES) for note in _notes(ds)]
+    parts = [(limit, *rest.strip(" .").partition(": ")) for limit, found, rest in notes if found]
+    return [(limit, material, values) for limit, material, _, values in parts]
+
+
 def placeholders(ds: xr.Dataset) -> list[str]:
-    """Return the placeholders of materials on which the limits rest, one sentence for a limit and a material."""
-    return [note for note in _notes(ds) if GUESSES in note]
+    """Return the placeholders of materials on which the limits rest, one sentence for a material."""
+    by_material: dict[str, list[str]] = {}
+    for limit, material, values in guessed_values(ds):
+        by_material.setdefault(material, []).append(f"{limit} with {values}")
+    return [f"Placeholders of material {name}: {'; '.join(parts)}." for name, parts in by_material.items()]
 
 
 def at_temperature(ds: xr.Dataset) -> list[str]:

@@ -11,7 +11,7 @@ from trackroller.analysis.table import StudyView
 from trackroller.analysis.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
 from trackroller.damage import LIMITS
 from trackroller.report.numbers import capital, count, lasting, listing, rounded
-from trackroller.report.tables.limits import GUESSES, placeholders
+from trackroller.report.tables.limits import guessed_values
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence
 
@@ -50,9 +50,8 @@ def limit_sentences(view: StudyView) -> list[Sentence]:
 def guesses(view: StudyView) -> Sentence | None:
     """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
     materials: dict[str, list[str]] = {}
-    for note in placeholders(view.data):
-        name, _, rest = note.partition(GUESSES)
-        materials.setdefault(name, []).append(rest.split("'")[1])
+    for limit, material, _ in guessed_values(view.data):
+        materials.setdefault(limit, []).append(material.strip("'"))
     placed = [f"{title(name)} ({listing(list(dict.fromkeys(own)))})" for name, own in materials.items()]
     text = f"Placeholders of materials, guesses without a source, decide {listing(placed)}: measure them."
     return Sentence("guesses", text, materials) if placed else None
