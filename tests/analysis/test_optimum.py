@@ -15,11 +15,11 @@ from trackroller.report.pages.best import best_of, write_best
 from trackroller.study.design.evolution import (
     Gene,
     first_generation,
-    hypervolume,
     next_generation,
     nondominated_ranks,
 )
 from trackroller.study.file.load import load_study
+from validation.benchmarks.optimum import hypervolume
 
 STUDY = {
     "name": "search",

@@ -209,14 +209,8 @@ def pareto_of_search(results: StudyResults) -> xr.Dataset:
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
     left = len(judged.violation) - len(kept)
-    attrs = {
-        "constraints": "; ".join(results.config.constraints),
-        "factors": ", ".join(factors),
-        "rows": len(judged.violation),
-        "model": "",
-        "excluded": f"{left} that are valid in fewer conditions" if left else "nothing",
-        "kind": "design point",
-        "study": results.study.merged(),
-    }
+    excluded = f"{left} that are valid in fewer conditions" if left else ""
+    attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
+    attrs["constraints"] = "; ".join(results.config.constraints)
     lives = {f"beyond_{n}": ("row", beyond_data(results, n)[kept].astype(np.int8)) for n in goals if "life" in n}
-    return front_of(factors, columns, goals, kept, attrs).assign(lives)
+    return front_of(factors, columns, goals, kept, excluded, **attrs).assign(lives)

@@ -106,17 +106,17 @@ def pareto(
     undefined = np.isnan(np.stack([values[name].astype(float) for name in objectives])).any(axis=0)
     allowed, excluded = _allowed(undefined, values, constraints, own, kept)
     shown = {n: readable(c)[allowed] for n, c in design.columns.items() if not (model and n == "contact_model")}
-    attrs = {
+    attrs: dict[str, Any] = {
         "constraints": "; ".join(constraints),
         "factors": ", ".join(n for n in design.factors if n in shown),
         "rows": int(own.sum()),
         "model": model,
-        "excluded": "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing",
         "not_rolling": int((own & (regime != 0)).sum()),
         "study": results.study.merged(),
     }
+    left = "; ".join(f"{n} by {why}" for why, n in excluded.items() if n)
     kept_columns = {name: (value[allowed], units, words) for name, (value, units, words) in columns.items()}
-    return front_of(shown, kept_columns, objectives, np.flatnonzero(allowed), attrs)
+    return front_of(shown, kept_columns, objectives, np.flatnonzero(allowed), left, **attrs)
 
 
 def front_of(
@@ -124,8 +124,11 @@ def front_of(
     columns: Mapping[str, Column],
     objectives: Mapping[str, str],
     row: np.ndarray,
-    attrs: Mapping[str, Any],
+    excluded: str,
+    /,
+    *,
     further: Mapping[str, str] | None = None,
+    **attrs: Any,
 ) -> xr.Dataset:
     """Return the allowed designs with their factors, goals and `optimal`, see `pareto`.
 
@@ -134,8 +137,9 @@ def front_of(
     factors, columns : values of the n allowed designs by name; the columns hold the goals
     objectives : goals, each `min` or `max`
     row : number of each design, shape (n,)
-    attrs : attributes of the result
+    excluded : how many designs each reason excluded, in words; '' for none
     further : columns that a design must also be beaten in to be left out, each `min` or `max`
+    attrs : further attributes of the result
     """
     wanted = {**objectives, **(further or {})}
     goals = np.stack([np.asarray(columns[name][0], dtype=float) for name in wanted], axis=1)
@@ -144,8 +148,9 @@ def front_of(
         data[name] = ("row", values, {"units": units, "long_name": long_name})
     optimal = pareto_mask(goals, wanted.values()).astype(np.int8)
     data["optimal"] = ("row", optimal, {"long_name": "in the Pareto set"})
-    described = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items()), **attrs}
-    return xr.Dataset(data, {"row": row}, described)
+    described = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items())}
+    described |= {"factors": ", ".join(factors), "constraints": "", "model": "", "excluded": excluded or "nothing"}
+    return xr.Dataset(data, {"row": row}, described | attrs)
 
 
 def _allowed(
@@ -191,19 +196,11 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
     columns = {name: _of_points(table, name) for name in objectives}
     known = ~np.isnan(np.stack([column[0].astype(float) for column in columns.values()])).any(axis=0)
     outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
-    left = int((~known).sum())
-    attrs = {
-        "constraints": "",
-        "factors": ", ".join(outer),
-        "rows": len(known),
-        "model": "",
-        "excluded": f"{left} by an undefined goal" if left else "nothing",
-        "kind": "design point",
-        "study": table.attrs.get("study", ""),
-    }
+    left = f"{(~known).sum()} by an undefined goal" if not known.all() else ""
+    attrs: dict[str, Any] = {"rows": len(known), "kind": "design point", "study": table.attrs.get("study", "")}
     kept = {name: (values[known], units, words) for name, (values, units, words) in columns.items()}
     factors = {name: readable(table[name].values)[known] for name in outer}
-    return front_of(factors, kept, objectives, np.flatnonzero(known), attrs)
+    return front_of(factors, kept, objectives, np.flatnonzero(known), left, **attrs)
 
 
 def _of_points(table: xr.Dataset, name: str) -> Column:

@@ -75,16 +75,15 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
     goals = {name: (values[worst[name][kept]], units, words) for name, (values, units, words) in columns.items()}
     goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
     left = len(held) - len(kept)
+    excluded = f"{left} that are valid in no condition" if left else ""
     attrs = {
         "constraints": "; ".join(view.study.get("constraints") or ()),
-        "factors": ", ".join(designs.choices),
         "rows": len(held),
         "model": str(view.held_level("contact_model")) if "contact_model" in view.factors else "",
-        "excluded": f"{left} that are valid in no condition" if left else "nothing",
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": view.attrs.get("study", ""),
     }
-    front = front_of(factors, goals, objectives, row, attrs, {"valid_in": "max"})
+    front = front_of(factors, goals, objectives, row, excluded, further={"valid_in": "max"}, **attrs)
     return front.assign(_beyond(view, {name: cases[kept] for name, cases in worst.items()}))
 
 

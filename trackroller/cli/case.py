@@ -7,7 +7,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from trackroller.cli.usage import print_line
+from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
@@ -50,8 +50,7 @@ def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], 
 
 def tell_doubts(case: Case) -> None:
     """Print a line on stderr for each unusual value of a case."""
-    for text in doubts_of_case(case, load_database()):
-        print_line(f"doubtful: {text}")
+    print_doubts(doubts_of_case(case, load_database()))
 
 
 def groups_of(words: str) -> tuple[str, ...]:
@@ -159,8 +158,7 @@ def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) ->
     from trackroller.study.spectrum.solve import doubts_of_spectrum, solve_spectrum
 
     spectrum = load_spectrum(path)
-    for text in doubts_of_spectrum(spectrum, load_database()):
-        print_line(f"doubtful: {text}")
+    print_doubts(doubts_of_spectrum(spectrum, load_database()))
     dataset = solve_spectrum(spectrum)
     if target is not None:
         write_result(dataset, target)

@@ -8,7 +8,7 @@ from typing import Annotated
 
 import typer
 
-from trackroller.cli.usage import print_line
+from trackroller.cli.usage import print_doubts
 
 materials = typer.Typer(no_args_is_help=True, help="The material and friction database.")
 
@@ -62,5 +62,4 @@ def materials_add(
 
     material = add_material(file, name, replace=replace, **settings_of(settings))
     print(f"material '{material.name}' is in {file}")
-    for text in doubts({}, [material]):
-        print_line(f"doubtful: {text}")
+    print_doubts(doubts({}, [material]))

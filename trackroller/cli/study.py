@@ -11,7 +11,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from trackroller.cli.case import case_of, is_study, tell_doubts, writable, writable_page
-from trackroller.cli.usage import print_line
+from trackroller.cli.usage import print_doubts
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report.tables.table import cell
@@ -42,7 +42,7 @@ def run_with_progress(
 
     study = load_study(path)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors}, sys.stderr)
-    _print_doubts(study)
+    print_doubts(study.doubts())
     with progress_bar(study.name, not quiet) as bar:
         plan = run_any(
             study,
@@ -208,24 +208,14 @@ def print_plan(path: Path | None, results: Path, explain: bool, words: list[str]
     if path is None or not is_study(path):
         _print_case(path, words, no_shortcuts)
         return
-    _print_study(path, results)
-    if explain:
-        print()
-        _explain_study(path, no_shortcuts)
-
-
-def _print_study(path: Path, results: Path) -> None:
-    """Print the number of cases and chunks, the expected time and the disk space."""
     study = load_study(path)
     for name, text in plan_rows(study, status_of(study, results)):
         print_text(text, name)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
-    _print_doubts(study)
-
-
-def _print_doubts(study: Study) -> None:
-    for text in study.doubts():
-        print_line(f"doubtful: {text}")
+    print_doubts(study.doubts())
+    if explain:
+        print()
+        _explain(study, no_shortcuts)
 
 
 def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO | None = None) -> None:
@@ -244,8 +234,8 @@ def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None
     _print_stages(to_table(case), Options(**options))
 
 
-def _explain_study(path: Path, no_shortcuts: bool) -> None:
-    study = load_study(path)
+def _explain(study: Study, no_shortcuts: bool) -> None:
+    """Print the stages of the cases of a study, for each combination of options apart."""
     design = study.design()
     table = to_table(design.drop_vars(list(design.coords)), study.materials)
     options, group = options_of_cases(design, {})

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from collections.abc import Iterable
 from typing import Any
 
 from typer.core import TyperGroup
@@ -12,6 +13,12 @@ from typer.exceptions import TyperException
 def print_line(text: str) -> None:
     """Print a message on stderr in one line, after the name of the program."""
     print("trackroller: " + " ".join(text.split()), file=sys.stderr)
+
+
+def print_doubts(texts: Iterable[str]) -> None:
+    """Print a line on stderr for each sentence on an unusual value."""
+    for text in texts:
+        print_line(f"doubtful: {text}")
 
 
 class Commands(TyperGroup):

@@ -21,7 +21,7 @@ from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, lives_in_years, long_name, percent, rounded
 from trackroller.report.tables.cases import reason_table, regime_table, validity_table
 from trackroller.report.tables.design_points import robust_tables
-from trackroller.report.tables.designs import best_table
+from trackroller.report.tables.designs import best_table, optima_table
 from trackroller.report.tables.first_limits import first_limit_table
 from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import (
@@ -35,7 +35,6 @@ from trackroller.report.tables.inputs import (
     record_rows,
     stored_materials,
 )
-from trackroller.report.tables.optimum import optima_table
 from trackroller.report.tables.pareto import pareto_table
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.tables.targets import target_tables

@@ -1,4 +1,4 @@
-"""Tables of designs: the best ones with their lives, the body or limit that fails first, and their margins."""
+"""Tables that compare the best designs side by side: of a study over its conditions, and of a search."""
 
 from __future__ import annotations
 
@@ -8,13 +8,14 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.designs import Designs
+from trackroller.analysis.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.report.numbers import Life, capital, count, head_unit, percent, rounded
+from trackroller.report.numbers import Life, capital, count, head_unit, percent, rounded, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEYOND_MEANS, alone, condition_words
 
-BEST = 5  # designs in the table of the best
+BEST = 5  # designs that stand side by side
 
 
 def best_table(view: StudyView) -> Table | None:
@@ -39,12 +40,15 @@ def best_table(view: StudyView) -> Table | None:
         rows.append(
             ["Meets the targets in", *(f"{count(int(met[i]))} of {count(int(designs.size[i]))}" for i in places)]
         )
+    if not designs.choices:
+        return _compared("best_designs", "Life of the design", ["All conditions"], rows, _note(designs))
+    return _compared("best_designs", "Best valid designs", _heads(best), rows, _note(designs))
+
+
+def _compared(name: str, title: str, heads: list[str], rows: list[list[Any]], note: str) -> Table:
+    """Return a table of designs as columns, in which the cells that differ from those of the first design stand out."""
     marks = {(i, j) for i, row in enumerate(rows) for j in range(2, len(row)) if row[j] != row[1]}
-    several = bool(designs.choices)
-    heads, title = ["", *(_heads(best) if several else ["All conditions"])], "Best valid designs"
-    title = title if several else "Life of the design"
-    note = _note(designs)
-    return Table("best_designs", title, heads, rows, note, frozenset(marks))
+    return Table(name, title, ["", *heads], rows, note, frozenset(marks))
 
 
 def _heads(best: list[pd.Series]) -> list[str]:
@@ -110,3 +114,27 @@ def _note(designs: Designs) -> str:
     note += "lighter over that of the heavier contact. Bold: differs from the best."
     model = f" Designs solved with {view.held_level('contact_model')}." if "contact_model" in view.factors else ""
     return note + model
+
+
+def optima_table(view: StudyView) -> Table | None:
+    """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
+    found = optimum_of(view.solved) if view.results is not None else None
+    if found is None:
+        return None
+    shown = sorted(found["optima"], key=lambda one: one["design"] != found["recommended"])[:BEST]
+    choices = [choices_of(view.solved, one["design"]) for one in shown]
+    rows: list[list[Any]] = [[heading(n), *(factor_cell(n, own[n]) for own in choices)] for n in choices[0]]
+    for i, (goal, way) in enumerate(found["goals"].items()):
+        _, units, words = goal_column(view.solved, goal)
+        head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
+        for key, told in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
+            numbers = [float(one[key][i]) for one in shown]
+            if "life" in goal and units == "h":
+                marked = beyond_data(view.solved, goal)
+                numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
+            rows.append([f"{head}{told}", *numbers])
+    if any(one["violation"][0] for one in shown):
+        rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
+    heads = ["Recommended", *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
+    note = "Each design is judged over all its conditions. Bold: differs from the recommended design."
+    return _compared("optima", "Optima of the search", heads, rows, note)

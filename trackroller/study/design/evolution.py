@@ -193,31 +193,3 @@ def _new(drawn: np.ndarray, known: np.ndarray, count: int) -> np.ndarray:
             seen.add(key)
             rows.append(row)
     return np.array(rows).reshape(len(rows), drawn.shape[1])
-
-
-def hypervolume(costs: np.ndarray, reference: Sequence[float] | np.ndarray) -> float:
-    """Return the volume between a front and a reference point, by slices along the last goal.
-
-    Parameters
-    ----------
-    costs : smaller is better, shape (n, goals)
-    reference : worst value that counts of each goal
-
-    Examples
-    --------
-    >>> hypervolume(np.array([[0.0, 0.5], [0.5, 0.0]]), [1.0, 1.0])
-    0.75
-    """
-    point = np.asarray(reference, dtype=float)
-    inside = costs[(costs < point).all(axis=1)]
-    if not len(inside):
-        return 0.0
-    if len(point) == 1:
-        return float(point[0] - inside.min())
-    inside = inside[np.argsort(inside[:, -1], kind="stable")]
-    ends = np.append(inside[1:, -1], point[-1])
-    total = 0.0
-    for i, (low, high) in enumerate(zip(inside[:, -1], ends, strict=True)):
-        if high > low:
-            total += (high - low) * hypervolume(inside[: i + 1, :-1], point[:-1])
-    return float(total)

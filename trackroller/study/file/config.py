@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
+from functools import partial
 from typing import Annotated, Any, Literal
 
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
@@ -17,7 +18,7 @@ from trackroller.study.design.entries import base_value, choice, factor
 from trackroller.study.design.roles import check_words
 from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.goals import Analysis, comparisons, directions
-from trackroller.study.file.search import Budget, budget_keys, search_goals
+from trackroller.study.file.search import Budget, budget_keys
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
@@ -120,7 +121,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     )
     duty: Duty = Field(None, description="hours_per_day and days_per_year of travel: lives in years beside hours")
     roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")
-    goals: Annotated[dict[str, str], BeforeValidator(search_goals)] = Field(
+    goals: Annotated[dict[str, str], BeforeValidator(partial(directions, key="goals", least=1))] = Field(
         {}, description="optimise: results or choices, each max or min; worst (default), mean, b10, probability of one"
     )
     budget: Annotated[Budget, BeforeValidator(budget_keys)] = Field(

@@ -143,16 +143,12 @@ class Analysis(BaseModel):
         return value
 
 
-def directions(value: Any) -> dict[str, str]:
-    """Check the key `pareto`: two or more outputs or factors, each with `max` or `min`."""
-    if not isinstance(value, Mapping) or len(value) == 1:
-        raise InputError(
-            "pareto",
-            value,
-            "two or more outputs or factors, each with max or min",
-            "For example {roller_life_hours: max, friction_power: min}.",
-        )
-    return {str(name).replace(" ", ""): choice(way, f"pareto.{name}", DIRECTIONS) for name, way in value.items()}
+def directions(value: Any, key: str = "pareto", least: int = 2) -> dict[str, str]:
+    """Check the key `pareto` or `goals`: at least so many outputs or factors, each with `max` or `min`."""
+    if not isinstance(value, Mapping) or 0 < len(value) < least:
+        allowed = f"{'two or more ' if least > 1 else ''}outputs or factors, each with max or min"
+        raise InputError(key, value, allowed, "For example {pair_life_hours: max, friction_power: min}.")
+    return {str(name).replace(" ", ""): choice(way, f"{key}.{name}", DIRECTIONS) for name, way in value.items()}
 
 
 def comparisons(value: Any) -> list[str]:
@@ -254,19 +250,24 @@ def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[st
         if not kind:
             allowed = f"{', '.join(STATISTICS)} of a result, or a numeric factor with a list: it compares design points"
             raise InputError("pareto", name, allowed, "For example b10(roller_life_hours) or mean(friction_power).")
-        if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
-            remedy = "Add it to analysis.target, such as {roller_life_hours: {min: 500}}."
-            raise InputError("pareto", name, "the probability of a target or of a regime", remedy)
-        if kind != "probability" and output not in known:
-            raise unknown_result("pareto", output, known, config.outputs)
-        if kind.startswith("b10") and "life" not in output:
-            raise InputError("pareto", name, "b10 of a life", f"Use mean({output}).")
+        check_statistic(config, ("pareto", name), kind, output, known)
 
 
-def statistic(name: str) -> tuple[str, str]:
+def check_statistic(config: Any, entry: tuple[str, str], kind: str, output: str, known: Iterable[str]) -> None:
+    """Check the statistic `kind` of an output, which stands in an entry of `pareto` or `goals`: key and name."""
+    if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
+        remedy = f"Add it to analysis.target, such as {{{DEFAULT_TARGET}: {{min: 500}}}}."
+        raise InputError(*entry, "the probability of a target or of a regime", remedy)
+    if kind != "probability" and output not in known:
+        raise unknown_result(entry[0], output, known, config.outputs)
+    if kind.startswith("b10") and "life" not in output:
+        raise InputError(*entry, "b10 of a life", f"Use mean({output}).")
+
+
+def statistic(name: str, kinds: tuple[str, ...] = STATISTICS) -> tuple[str, str]:
     """Split 'b10(roller_life_hours)' into the statistic and its output; ('', name) for a plain name."""
     kind, bracket, output = name.replace(" ", "").partition("(")
-    return (kind, output[:-1]) if bracket and kind in STATISTICS and output.endswith(")") else ("", name)
+    return (kind, output[:-1]) if bracket and kind in kinds and output.endswith(")") else ("", name)
 
 
 def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[str]) -> None:

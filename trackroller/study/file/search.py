@@ -13,11 +13,10 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from trackroller.errors import InputError
-from trackroller.parameters import PARAMETERS, REGIMES
-from trackroller.study.design.entries import choice
+from trackroller.parameters import PARAMETERS
 from trackroller.study.design.factors import Factor
 from trackroller.study.design.roles import scattered
-from trackroller.study.file.goals import DEFAULT_TARGET, DIRECTIONS, output_names, unknown_result
+from trackroller.study.file.goals import check_statistic, output_names, statistic
 
 JUDGED_BY = ("worst", "mean", "b10", "probability")  # statistics over the conditions of a design
 
@@ -46,18 +45,10 @@ def budget_keys(value: Any) -> Any:
     return value
 
 
-def search_goals(value: Any) -> dict[str, str]:
-    """Check the key `goals` of a search: results or choices, each with `max` or `min`."""
-    if not isinstance(value, Mapping):
-        example = "For example {pair_life_hours: max, mean(friction_power): min}."
-        raise InputError("goals", value, "results or choices, each with max or min", example)
-    return {str(name).replace(" ", ""): choice(way, f"goals.{name}", DIRECTIONS) for name, way in value.items()}
-
-
 def judged_by(goal: str) -> tuple[str, str]:
     """Split a goal of a search into its statistic over the conditions and its result; a plain name is its `worst`."""
-    kind, bracket, output = goal.partition("(")
-    return (kind, output[:-1]) if bracket and kind in JUDGED_BY and output.endswith(")") else ("worst", goal)
+    kind, output = statistic(goal, JUDGED_BY)
+    return kind or "worst", output
 
 
 def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
@@ -83,12 +74,6 @@ def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
 
 def _check_goal(config: Any, goal: str, factors: Mapping[str, Factor], free: list[str], known: list[str]) -> None:
     kind, output = judged_by(goal)
-    if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
-        remedy = f"Add it to analysis.target, such as {{{DEFAULT_TARGET}: {{min: 500}}}}."
-        raise InputError("goals", goal, "the probability of a target or of a regime", remedy)
-    if kind != "probability" and output not in (free if kind == "worst" else known):
-        raise unknown_result("goals", output, free, config.outputs)
-    if kind == "b10" and "life" not in output:
-        raise InputError("goals", goal, "b10 of a life", f"Use mean({output}).")
+    check_statistic(config, ("goals", goal), kind, output, free if kind == "worst" else known)
     if output in factors and not factors[output].numeric:
         raise InputError("goals", goal, "a result or factor with one number a case", "Names have no order.")
