@@ -33,7 +33,7 @@ def materials_show(name: Annotated[str, typer.Argument(show_default=False)]) -> 
 
 @materials.command("friction")
 def materials_friction() -> None:
-    """Print the friction coefficient of each pair of materials."""
+    """Print the friction and wear coefficients of each pair of materials."""
     from trackroller.materials.tables import friction_rows
 
     _print_rows(friction_rows)

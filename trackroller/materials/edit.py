@@ -20,6 +20,7 @@ from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
+from trackroller.materials.temperature import FIELD
 from trackroller.numerics.numbers import read_number
 from trackroller.numerics.units import split_quantity
 from trackroller.yaml_file import needs_quotes
@@ -27,7 +28,7 @@ from trackroller.yaml_file import needs_quotes
 HEADER = """\
 # Your own materials and friction coefficients; they replace built-in ones of the same name.
 """
-FIELDS = (*NUMBERS, *TEXTS, "source", "placeholder")
+FIELDS = (*NUMBERS, *TEXTS, FIELD, "source", "placeholder")
 
 
 def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
@@ -43,8 +44,8 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
         Allow to change a material that the file already contains.
     **values
         Fields of `Material`, each a number in the unit of the field, or a mapping with value, unit, source, placeholder
-        and note. Also `family`, `description` and `like`, and `source`, `placeholder` and `note` for all values that
-        are given as numbers.
+        and note. Also `family`, `description` and `like`, the table `temperature_dependence`, and `source`,
+        `placeholder` and `note` for all values that are given as numbers and for the table.
 
     Returns
     -------
@@ -92,6 +93,8 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
         record = {"unit": prop.unit} | common | note | dict(given)
         known = [part for part in VALUE_KEYS if part in record]
         entry[key] = {part: record[part] for part in (*known, *(set(record) - set(known)))}
+    if FIELD in values:
+        entry[FIELD] = {**common, **note, **values[FIELD]} if isinstance(values[FIELD], Mapping) else values[FIELD]
     return entry
 
 
@@ -101,6 +104,8 @@ def _plain(field: str, value: Any) -> Any:
         value = value.item()
     if isinstance(value, Mapping):
         return {key: _plain(f"{field}.{key}", part) for key, part in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(field, part) for part in value]
     if isinstance(value, (bool, str)):
         return value
     try:

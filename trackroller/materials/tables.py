@@ -21,7 +21,7 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
             prop = PROPERTIES[name]
             heading = prop.symbol if prop.unit == "-" else f"{prop.symbol} [{prop.unit}]"
             row[heading] = f"{getattr(material, name):g}"
-        row["placeholders"] = str(len(material.placeholders))
+        row["placeholders"] = str(len(material.placeholders) + len(material.guesses_of_limits))
         row["origin"] = ", ".join(dict.fromkeys(r.origin for r in material.records.values())) or "inline"
         row["description"] = material.description
         rows.append(row)
