@@ -555,7 +555,7 @@ def test_any_number_comes_back_as_it_was_given(tmp_path_factory, modulus, ratio,
 def test_rows_show_values_marks_and_origin(user):
     own = load_database(user("materials: {PA6: {youngs_modulus: {value: 2800, placeholder: true}}}"))
     rows = {row["name"]: row for row in material_rows(own)}
-    assert rows["PA6"]["E [MPa]"] == "2800" and rows["PA6"]["placeholders"] == "1"
+    assert rows["PA6"]["E [MPa]"] == "2800" and rows["PA6"]["placeholders"] == "8"  # seven of limits
     assert set(rows["PA6"]["origin"].split(", ")) == {"own.yaml", "built-in"}
     details = {row["field"]: row for row in material_details(own, "PA6")}
     assert details["youngs_modulus"]["placeholder"] == "placeholder"
@@ -639,3 +639,24 @@ def test_wear_of_the_user_goes_first_and_bad_entries_are_refused(user):
     ):
         with pytest.raises(InputError, match=message):
             load_database(user(text))
+
+
+def test_a_table_over_temperature_can_be_added_and_listed(tmp_path):
+    table = {"temperature": [20, 60.0, "100 degC"], "youngs_modulus": ["3 GPa", 2000, 1100]}
+    warm = add_material(tmp_path / "m.yaml", "warm", like="POM", temperature_dependence=table, source="own tests")
+    assert warm.temperature_dependence.youngs_modulus == (3000.0, 2000.0, 1100.0)
+    assert warm.temperature_dependence.source == "own tests" and not warm.temperature_dependence.placeholder
+    assert warm.at(80.0).youngs_modulus == 1550.0 and warm.at(80.0).yield_strength == warm.yield_strength
+    assert warm.at(float("nan")) is warm
+    text = (tmp_path / "m.yaml").read_text()
+    with pytest.raises(InputError, match=r"temperature_dependence\.youngs_modulus"):
+        add_material(tmp_path / "m.yaml", "w", like="POM", temperature_dependence=table | {"youngs_modulus": [1, 2]})
+    with pytest.raises(InputError, match="temperature_dependence = 5"):
+        add_material(tmp_path / "m.yaml", "w", like="POM", temperature_dependence=5)
+    assert (tmp_path / "m.yaml").read_text() == text
+
+
+def test_the_list_counts_the_guesses_of_limits_too():
+    rows = {row["name"]: row["placeholders"] for row in material_rows(load_database(None))}
+    marked = [row for row in material_details(load_database(None), "POM") if row["placeholder"]]
+    assert rows["POM"] == str(len(marked)) == "7"

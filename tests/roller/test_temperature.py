@@ -13,6 +13,8 @@ from trackroller.report.pages.sheet_facts import collect
 from trackroller.report.tables.limits import not_checked, placeholders
 from trackroller.roller import temperature
 from trackroller.roller.case import to_table
+from trackroller.study.spectrum.file import load_spectrum
+from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.study.store.identity import fingerprints
 
 TABLE = {
@@ -189,3 +191,32 @@ def test_units_of_a_table():
     given = pom(youngs_modulus=["3 GPa", "2.6 GPa", 2000, 1500, 1100], temperature=["293.15 K", 40, 60, 80, 100])
     table = load_database().material(given).temperature_dependence
     assert table.youngs_modulus[:3] == (3000.0, 2600.0, 2000.0) and table.temperature[0] == 20.0
+
+
+def test_the_sheet_compares_with_the_strength_at_the_temperature_of_the_body(warm):
+    strength = np.interp(roller_temperature(warm), TABLE["temperature"], TABLE["tensile_strength"])
+    own = {m.body: m.used for m in collect(warm).margins if m.title.startswith("pressure limit")}
+    pressure = float(warm.max_pressure.max())
+    assert strength < 79.0 and own["roller"] == pytest.approx(pressure / (1.6 * strength), rel=1e-12)
+    assert own["guide"] == pytest.approx(pressure / (1.6 * 720), rel=1e-12)
+
+
+def test_a_spectrum_counts_damage_by_the_strength_at_the_temperature_of_each_block(tmp_path):
+    """Each block has the overrollings to failure that its case has alone; without heat those of the cold material."""
+    loads = [{"radial_force": -400.0, "velocity": 120.0}, {"radial_force": -200.0, "velocity": 20.0}]
+    loads = [load | {"axial_force": 20.0} for load in loads]
+    material = pom() | {"scatter_in_cycles": 4.0}
+    told = {"name": "warm", "base": {k: v for k, v in CASE.items() if k not in loads[0]}, "contact_model": "sliding"}
+    told["base"] |= {"roller_material": material, "guide_overrollings_per_hour": 60.0}
+    told["blocks"] = [{"name": f"b{i}", "distance": 1000} | load for i, load in enumerate(loads)]
+    for limits, outputs in (({"limits": ["heat"]}, OUTPUTS), ({}, OUTPUTS[1:])):
+        path = tmp_path / "spectrum.yaml"
+        path.write_text(json.dumps(told | limits))
+        ds = solve_spectrum(load_spectrum(path))
+        alone = [solve(material, outputs, **load) for load in loads]
+        for i, one in enumerate(alone):
+            assert ds.life_cycles[i].sel(body="roller").values == pytest.approx(
+                one.life_cycles.sel(body="roller").values, rel=2e-4
+            )  # the last pass changes the temperature by less than its tolerance
+        half = ds.life_shifts_at_probability.sel(probability=0.5, body="roller").values
+        assert half == pytest.approx(ds.life_shifts.sel(body="roller").values, rel=1e-12)

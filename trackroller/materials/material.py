@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field, make_dataclass
 from typing import Any
 
+import numpy as np
+
 from trackroller.errors import InputError
 from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
 from trackroller.materials.sn_curve import curve_exponent
-from trackroller.materials.temperature import FIELD, TemperatureTable, read_table
+from trackroller.materials.temperature import FIELD, FOLLOW_STRENGTH, TemperatureTable, read_table
 
 UNNAMED = "inline"  # name of a material that a case gives without one
 LESS_IS_BETTER = ("loss_fraction", "wear_coefficient")
@@ -174,6 +177,21 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             if record.placeholder and record.range is not None and name in OF_LIMITS:
                 worse, better = record.range if name not in LESS_IS_BETTER else record.range[::-1]
                 values[name] = record.value + abs(position) * ((better if position > 0 else worse) - record.value)
+        return dataclasses.replace(self, **values)
+
+    def at(self, temperature: float) -> Material:
+        """Return the material with the values of its table at a temperature [degC]; NaN leaves them.
+
+        Notes
+        -----
+        ASSUME: fatigue limits, yield strength and hardness keep their ratio to R_m.
+        """
+        table: TemperatureTable | None = self.temperature_dependence
+        if table is None or math.isnan(temperature):
+            return self
+        values: dict[str, Any] = {name: float(table.at(name, np.asarray(temperature))) for name in table.columns}
+        share = values.get("tensile_strength", self.tensile_strength) / self.tensile_strength
+        values |= {name: share * v for name in FOLLOW_STRENGTH if (v := getattr(self, name)) is not None}
         return dataclasses.replace(self, **values)
 
     def as_dict(self) -> dict[str, Any]:

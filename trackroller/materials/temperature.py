@@ -15,6 +15,7 @@ from trackroller.parameters import Parameter
 
 FIELD = "temperature_dependence"
 TABLED = ("youngs_modulus", "tensile_strength")
+FOLLOW_STRENGTH = ("fatigue_limit_torsion", "yield_strength", "hardness")  # keep their ratio to R_m
 _TEMPERATURE = Parameter("temperature", "theta", "degC", 20.0, "temperature", -273.15, 4e3)
 
 

@@ -19,18 +19,20 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.damage import asked, heat
-from trackroller.materials.temperature import TABLED, TemperatureTable
+from trackroller.materials.temperature import FOLLOW_STRENGTH, TABLED, TemperatureTable
 from trackroller.parameters import BODIES
 from trackroller.roller.blocks import Block, join
 
 if TYPE_CHECKING:
+    import xarray as xr
+    from numpy.typing import ArrayLike
+
     from trackroller.roller.options import Options
     from trackroller.roller.table import CaseTable, MaterialArrays
 
 TOLERANCE = 0.005  # change of the temperature in the last pass [K]
 PASSES = 10
 HEAD = "temperature: "  # of a note on a table
-FOLLOW_STRENGTH = ("fatigue_limit", "fatigue_limit_torsion", "yield_strength", "hardness")
 UNSETTLED = "unsettled"  # cases without a fixed point within the passes
 REASON = (
     f"the temperature still changes by more than {TOLERANCE:g} K after {PASSES} passes between heat and the material's "
@@ -88,6 +90,17 @@ def temperatures(table: CaseTable, block: Block) -> np.ndarray:
     return np.asarray(table.ambient_temperature[:, None] + rise)
 
 
+def temperatures_of(ds: xr.Dataset, ambient: ArrayLike) -> np.ndarray:
+    """Return the temperature of roller and guide of one result, (body,), or of each case, (n, body) [degC].
+
+    `ambient` is the temperature of the surroundings, a number or (n, 1) [degC]. Without the output `heat` all is NaN.
+    """
+    if "bulk_temperature_rise" not in ds:
+        return np.full(np.broadcast_shapes(np.shape(ambient), (len(BODIES),)), np.nan)
+    rise = ds["bulk_temperature_rise"].transpose(..., "contact", "body").values
+    return np.asarray(ambient + np.fmax.reduce(rise, axis=-2))
+
+
 def at_temperatures(table: CaseTable, temperature: np.ndarray) -> CaseTable:
     """Return the cases with the values of their tables at temperatures, (n, body) [degC]; NaN leaves them."""
     bodies = {body: _at(getattr(table, body), temperature[:, i]) for i, body in enumerate(BODIES)}
@@ -102,7 +115,9 @@ def _at(body: MaterialArrays, temperature: np.ndarray) -> MaterialArrays:
         for name in own.columns:
             values[name][rows] = own.at(name, temperature[rows])
     share = values["tensile_strength"] / body.tensile_strength
-    return replace(body, **values, **{name: getattr(body, name) * share for name in FOLLOW_STRENGTH})
+    return replace(
+        body, **values, **{name: getattr(body, name) * share for name in ("fatigue_limit", *FOLLOW_STRENGTH)}
+    )
 
 
 def _differ(one: CaseTable, other: CaseTable) -> np.ndarray:

@@ -43,6 +43,7 @@ from trackroller.roller.record import (
     not_given_of,
     solve_command,
 )
+from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
 
 if TYPE_CHECKING:
@@ -97,7 +98,8 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
         If `ds` is not the result of one case.
     """
     inputs, stored, given = inputs_of(ds), materials_of(ds), not_given_of(ds)
-    materials = {body: as_material(stored[f"{body}_material"]) for body in BODIES}
+    warm = temperatures_of(ds, inputs["ambient_temperature"])
+    materials = {body: as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
     regime = REGIMES[int(ds["regime"])]
     ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     lifeless = {body: _no_life(regime, ds, body, material) for body, material in materials.items()}

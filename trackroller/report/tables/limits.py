@@ -90,6 +90,8 @@ class Margin:
     @property
     def life(self) -> str:
         """Return the hours to the limit, with the remark that they lie beyond the S-N data."""
+        if self.reached == 0.0:
+            return "exceeded now"
         if math.isnan(self.hours):
             return "not known" if self.timed else ""
         return lasting(self.hours, "h", self.beyond)
@@ -98,7 +100,7 @@ class Margin:
     def when(self) -> str:
         """Say when the limit is reached."""
         if self.reached == 0.0:
-            return "exceeded now"
+            return self.life
         if self.timed and math.isnan(self.hours):
             return "after unknown hours"
         if not self.at_once and self.used >= 1.0 and math.isnan(self.hours):

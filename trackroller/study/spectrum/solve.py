@@ -25,11 +25,17 @@ from trackroller.roller.case import Case, to_table
 from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import with_duty
 from trackroller.roller.record import DOUBTS, NOT_GIVEN, material_values, plain_inputs
+from trackroller.roller.temperature import temperatures_of
 from trackroller.study.spectrum.file import LOAD_FIELDS, Spectrum, overrollings_per_shift
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
 
+# values of a material that make its S-N curve
+OF_CURVE = (
+    *("tensile_strength", "fatigue_limit", "cycles_at_tensile_strength", "cycles_at_fatigue_limit"),
+    *("scatter_in_cycles", "scatter_in_stress"),
+)
 _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
 
@@ -79,8 +85,18 @@ def solve_spectrum(
     return _damage(spectrum, solved, database, overrollings)
 
 
+def curves(spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule: str) -> list[SNCurve]:
+    """Return the S-N curves of roller and guide at their temperature in each block, values (block, 1)."""
+    reached, out = temperatures_of(solved, [[block.case.ambient_temperature] for block in spectrum.blocks]), []
+    for material, at in zip(bodies, reached.T, strict=True):
+        warm = [material.at(temperature) for temperature in at]
+        values = {name: np.array([[getattr(own, name)] for own in warm], dtype=float) for name in OF_CURVE}
+        out.append(SNCurve.of(values, rule))
+    return out
+
+
 def damage_per_shift(
-    stress: np.ndarray, cycles: np.ndarray, bodies: list[Material], rule: str, probability: float = 0.5
+    stress: np.ndarray, cycles: np.ndarray, bodies: list[SNCurve], probability: float = 0.5
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return cycles to failure and damage per shift of each block, (block, contact, body) [1] each.
 
@@ -88,18 +104,15 @@ def damage_per_shift(
     ----------
     stress, cycles : numpy.ndarray, shape (block, contact, body)
         Peak stress [MPa] and cycles per shift [1].
-    bodies : list of Material
-        Materials of roller and guide.
-    rule : str
-        Life rule.
+    bodies : list of SNCurve
+        S-N curves of roller and guide.
     probability : float
         Failure probability [1]. For values other than 0.5, a material without scatter gives NaN.
     """
     life = np.full(stress.shape, np.nan)
-    for i, material in enumerate(bodies):
-        curve = SNCurve.of(material, rule).changed(failure_probability=probability)
-        if probability == 0.5 or curve.scatters:
-            life[..., i] = curve.life_cycles(stress[..., i])
+    for i, curve in enumerate(bodies):
+        if probability == 0.5 or curve.scatters.all():
+            life[..., i] = curve.changed(failure_probability=probability).life_cycles(stress[..., i])
     return life, miner.block_damage(cycles, life)
 
 
@@ -111,9 +124,10 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     )
     cycles = overrollings[:, None, :]
     case = spectrum.blocks[0].case
-    bodies = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
     rule = spectrum.options.get("life_rule", "elementary")
-    life, damage = damage_per_shift(stress, cycles, bodies, rule)
+    materials = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
+    bodies = curves(spectrum, solved, materials, rule)
+    life, damage = damage_per_shift(stress, cycles, bodies)
     total = damage.sum(axis=0)
     shifts = miner.repetitions_to_failure(total, spectrum.critical_damage)
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
@@ -140,12 +154,12 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     variables |= _loads(spectrum, database)
     if spectrum.groups:
         chance = spectrum.options.get("failure_probability", 0.5)
-        variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, rule, chance)[1])
+        variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, chance)[1])
     if "fatigue_stress" in solved:
         variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
-    if any(m.scatter_in_cycles or m.scatter_in_stress for m in bodies):
+    if any(curve.scatters.any() for curve in bodies):
         levels = spectrum.failure_probabilities
-        sums = [damage_per_shift(stress, cycles, bodies, rule, p)[1].sum(axis=0) for p in levels]
+        sums = [damage_per_shift(stress, cycles, bodies, p)[1].sum(axis=0) for p in levels]
         lives = miner.repetitions_to_failure(np.stack(sums), spectrum.critical_damage)
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
         known = {"probability": ("probability", list(levels), {"units": "1", "long_name": "failure probability"})}
