@@ -21,6 +21,7 @@ from trackroller.analysis.groups import spaced_by_ratio
 from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
+from trackroller.materials import builtin_database
 from trackroller.report.figures import designs, style
 from trackroller.report.figures.contact import plot_case
 from trackroller.report.figures.contact_patch import case_name
@@ -380,3 +381,8 @@ def test_numbers_are_rounded_once():
         "0.001",
         "100,000",
     )
+
+
+def test_no_material_has_the_colour_of_a_contact_or_of_a_body():
+    names = [*builtin_database().names(), *(f"steel {i}" for i in range(200))]
+    assert len(set(style.PAIR)) == 2 and not set(style.PAIR) & set(style.colours(names, True))

@@ -171,7 +171,7 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     _bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
     profiles = [p.summed(f, 0) for p, f in zip(patches, fields, strict=True)]
     for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
-        look = {"color": style.palette(2)[i], "linestyle": style.LINES[i]}
+        look = {"color": style.PAIR[i], "linestyle": style.LINES[i]}
         across.plot(patch.x, profile, label=f"contact {patch.contact}", **look)
     across.set_xlim(grid[0].get_xlim())
     across.locator_params(axis="x", nbins=5)

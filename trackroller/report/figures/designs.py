@@ -36,6 +36,7 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     axes = figure.subplots()
     place = np.arange(len(table))[::-1]
     _draw(axes, designs, table, place)
+    axes.set_ylim(-0.6, len(table) - 0.4)  # whole marks in the first and the last line
     axes.set_yticks(place, list(map(str, range(1, len(names) + 1))) if numbered else names)
     axes.set_xlabel(f"life [{designs.goal[2]}]")
     axes.set_xscale("log")
@@ -57,14 +58,13 @@ def lives_by_design(view: StudyView) -> style.Drawn:
 
 def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -> None:
     """Draw a line from the worst to the best life of each design, with marks; hollow marks lie beyond the S-N data."""
-    colours = style.palette(4)
     best = table["best"].replace(np.inf, np.nan).fillna(table["worst"])
     axes.hlines(place, table["worst"], best, color="0.75", linewidth=3, zorder=1, label="worst to best condition")
     axes.plot(table["median"], place, color="0.1", marker="|", markersize=7, linestyle="none", label="median")
     if designs.drawn:
         look: dict[str, Any] = {"color": "0.1", "marker": "D", "markersize": 3.5, "linestyle": "none"}
         axes.plot(table["b10"].where(table["b10"] > 0), place, label="nine of ten reach", **look)
-    for body, marker, colour in (("roller", "o", colours[0]), ("guide", "s", colours[3])):
+    for body, marker, colour in (("roller", "o", style.PAIR[0]), ("guide", "s", style.PAIR[1])):
         if alone(designs) and body == "guide":
             continue
         lives, beyond = table[f"worst_{body}"].to_numpy(), table[f"worst_{body}_beyond"].to_numpy(dtype=bool)

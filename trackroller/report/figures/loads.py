@@ -157,7 +157,7 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     figure = style.new_figure(74)
     panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
     looks: list[dict[str, Any]] = [
-        {"color": colour, "marker": mark} for colour, mark in zip(style.palette(2), "os", strict=True)
+        {"color": colour, "marker": mark} for colour, mark in zip(style.PAIR, "os", strict=True)
     ]
     looks = [look | {"markersize": size} for look, size in zip(looks, (3, 4.5), strict=True)] if view.grid else looks
     looks[1] |= {"markerfacecolor": "white"} if view.grid else {}

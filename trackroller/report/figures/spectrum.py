@@ -40,7 +40,7 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     figure = style.new_figure(24 + 6.0 * len(words))
     panels = figure.subplots(1, len(shares), sharey=True, squeeze=False)[0]
     worst_blocks = []
-    for axes, colour, (body, part) in zip(panels, style.palette(2), shares.items(), strict=False):
+    for axes, colour, (body, part) in zip(panels, style.PAIR, shares.items(), strict=False):
         values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
         axes.bar_label(bars, [chance(float(v)) for v in values], padding=2, fontsize=7)

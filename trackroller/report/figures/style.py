@@ -30,6 +30,7 @@ COLUMN_MM = 85.0  # a column of a two-column page
 WIDE_MM = 170.0  # the one wide column of the report
 # seaborn's palette for colour-blind readers without its two faintest colours
 COLOURS = ("#0173b2", "#de8f05", "#029e73", "#d55e00", "#cc78bc", "#ca9161", "#949494", "#56b4e9")
+PAIR = ("#12355b", "#b0476f")  # both contacts, or roller and guide: no material has these colours
 MARKERS = ("o", "s", "^", "D", "v", "P", "X", "<", ">", "*")
 LINES: tuple[Any, ...] = ("-", "--", ":", "-.", (0, (5, 1, 1, 1, 1, 1)), (0, (1, 1)))
 REGIME_COLOURS = ("#f2f2f2", "#f0c36d", "#5b8db8", "#4d4d4d")

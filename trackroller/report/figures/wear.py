@@ -35,7 +35,7 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     near = own.sel(place=slice(-reach, reach))
     figure = style.new_figure(62)
     panels = figure.subplots(1, len(shown), sharex=True, sharey=True, squeeze=False)[0]
-    colours = style.palette(2)
+    colours = style.PAIR
     for axes, row in zip(panels, shown, strict=True):
         surfaces = {b: 1e3 * near[f"{b}_surface"].isel(travel=row).values for b in BODIES}
         axes.axvspan(middle[row] - half[row], middle[row] + half[row], color="0.93", zorder=0)
@@ -80,7 +80,7 @@ def over_patch(ds: xr.Dataset) -> style.Drawn:
     figure = style.new_figure(38, 88)
     panels = figure.subplots(1, ds.sizes["contact"], sharey=True, squeeze=False)[0]
     for axes, contact in zip(panels, ds["contact"].values.tolist(), strict=True):
-        for body, colour, line in zip(BODIES, style.palette(2), style.LINES, strict=False):
+        for body, colour, line in zip(BODIES, style.PAIR, style.LINES, strict=False):
             own = ds.sel(contact=contact, body=body)
             depth = 1e3 * float(own["run_in_distance"] * own["wear_depth_per_km"])
             if np.isfinite(depth):
@@ -112,7 +112,7 @@ def course(ds: xr.Dataset) -> style.Drawn:
     figure = style.new_figure(58)
     panels = figure.subplots(1, len(rows), squeeze=False)[0]
     for axes, (name, words, scale) in zip(panels, rows, strict=True):
-        for body, colour in zip(BODIES, style.palette(2), strict=False):
+        for body, colour in zip(BODIES, style.PAIR, strict=False):
             for contact, line in zip(contacts, style.LINES, strict=False):
                 own = ds[name].sel(contact=contact)
                 values = scale * (own.sel(body=body) if "body" in own.dims else own).values

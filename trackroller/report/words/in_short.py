@@ -16,7 +16,7 @@ from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
 from trackroller.report.words.optimum import optimum_sentences
-from trackroller.report.words.regimes import occurrence
+from trackroller.report.words.regimes import occurrence, silent_drive
 from trackroller.report.words.samples import samples
 from trackroller.report.words.sentence import Sentence
 from trackroller.report.words.targets import target, target_words
@@ -43,7 +43,10 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
         ("What ends it", [limit_of_best(view), best_whatever(view), whichever_first(view)]),
         ("Valid cases", [valid_cases(view), stopped(view)]),
         ("What decides", decides(sens)),
-        ("What limits", [occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)]),
+        (
+            "What limits",
+            [*(occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)), silent_drive(view)],
+        ),
         (
             "How sure",
             [friction_guess(view), guesses(view), worn(view), *known_errors(view), *accuracy(view), *compared],

@@ -8,9 +8,23 @@ import numpy as np
 
 from trackroller.analysis.events import FEW, confining, meets, most_frequent
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import count, level_text, listing, long_name, number, setting, share
+from trackroller.parameters import REGIMES
+from trackroller.report.numbers import count, level_text, listing, long_name, number, quantity, setting, share
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence
+
+
+def silent_drive(view: StudyView) -> Sentence | None:
+    """Say that a motor force which the study does not name drives the cases that skid; None if there are none."""
+    force = view.study.get("not_given", {}).get("motor_force")
+    skid = view.regime == REGIMES.index("full_slip")
+    if not force or not skid.any():
+        return None
+    text = (
+        f"The study gives no motor force: {quantity(force, 'N')} of the paper's example drive the roller in all cases. "
+    )
+    text += "Write `motor_force: 0` for a free roller."
+    return Sentence("silent_drive", text, {"motor_force": force, "count": int(skid.sum())}, skid)
 
 
 def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
