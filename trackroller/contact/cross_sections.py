@@ -220,7 +220,8 @@ def worn(section: CrossSection, start: float, step: float, depth: np.ndarray, mo
     from scipy.interpolate import PchipInterpolator  # heavy, and for drawn profiles only
 
     u = start + step * np.arange(-1, depth.size + 1)
-    curve = PchipInterpolator(u, np.concatenate([[0.0], depth, [0.0]]))  # it does not swing beyond its points
+    with np.errstate(over="ignore"):  # a slope that underflows counts as zero
+        curve = PchipInterpolator(u, np.concatenate([[0.0], depth, [0.0]]))  # it does not swing beyond its points
     rise = curve.derivative()
 
     def height(v: np.ndarray) -> np.ndarray:

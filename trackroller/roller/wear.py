@@ -32,7 +32,8 @@ _C, _CB = ("contact",), ("contact", "body")
 VARIABLES = variables(
     "groove",
     ("groove_depth", _CB, "mm", "d", "depth of the deepest worn place"),
-    ("groove_depth_error", (), "mm", "delta(d)", "estimated error of the depth, summed over the steps"),
+    ("groove_depth_error", (), "mm", "delta(d)", "estimated error of the depth, by steps and elements"),
+    ("groove_step_error", (), "mm", "", "estimated error of the depth, summed over the steps"),
     ("groove_volume", _CB, "mm3", "V", "worn volume of the roller's circumference, and of a metre of the guide"),
     ("worn_depth", (*_CB, "place"), "mm", "d(x)", "depth that wear took off normal to the contact plane"),
     ("guide_surface", (*_C, "place"), "mm", "z", "worn surface of the guide over the new one"),
@@ -187,7 +188,8 @@ class _Record:
         around = 2.0 * np.pi * (w.radius[0] + w.places * np.sin(w.alpha[0]))
         return {
             "groove_depth": depth.max(axis=2),
-            "groove_depth_error": state.error,
+            "groove_depth_error": state.error + w.element_error * float(depth.max()),
+            "groove_step_error": state.error,
             "groove_volume": np.stack([(depth[:, 0] * around).sum(axis=1), 1e3 * depth[:, 1].sum(axis=1)], 1) * step,
             "worn_depth": depth,
             "guide_surface": -depth[:, 1],
@@ -236,7 +238,7 @@ class _Record:
             known["worn_depth"][:m],
             known["closing"][:m],
             known["start_inclination"][:m],
-            float(known["groove_depth_error"]),
+            float(known["groove_step_error"]),
             None if new else known["start_balance"],
             None if new else known["start_box"][:m],
         )

@@ -20,7 +20,7 @@ from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.wearing import WearingPatch, on_cells, resolved
 from trackroller.damage.limit import roller_overrollings
-from trackroller.damage.wear import KM_PER_HOUR, energy_ratio, local_rates
+from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, local_rates
 from trackroller.errors import InputError
 from trackroller.parameters import REGIMES
 from trackroller.roller import equilibrium as eq
@@ -84,6 +84,7 @@ class Wearing:
         self.start = Groove(0.0, np.zeros((self.contacts, 2, 2)), none, none)
         self.new = self.solve(self.start)
         self.cells, self.scale, self._lean = np.array([-1.0, 0.0, 1.0]), np.nan, none
+        self.element_error = 0.0
         if self.end(self.new):
             return
         patch: Any = self.new.patch
@@ -93,6 +94,7 @@ class Wearing:
             np.floor(max(low / step, -REACH * wide / step)), np.ceil(min(high, REACH * wide) / step) + 1
         )
         self.scale = float(np.mean(patch.approach))
+        self.element_error = ERROR.get(self.options.contact_model, np.nan) / patch.shape[1]  # of the depth
         self.start = replace(self.start, depth=np.zeros((self.contacts, 2, self.cells.size - 1)))
         self._lean = self._leaning(self.new, table)
 

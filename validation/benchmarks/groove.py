@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 import time
+from pathlib import Path
+from typing import Any
 
 import trackroller as tr
+from trackroller.report.figures import style
 from validation.benchmarks.command import run
 
 ROLLERS = {
@@ -36,6 +39,9 @@ def measure(travel: float = 50.0, coefficient: float = 1e-5) -> dict:
             ds = tr.wear(case, travel, contact_model="kalker", accuracy=accuracy)
             last = ds.isel(travel=-1)
             out[name][accuracy] = {
+                "travel_km": ds["travel"].values,
+                "depths_um": 1e3 * ds["groove_depth"].max(("contact", "body")).values,
+                "pressures_MPa": ds["max_pressure"].max("contact").values,
                 "seconds": time.process_time() - start,
                 "states": ds.sizes["travel"],
                 "end": str(ds.attrs["end"]),
@@ -44,6 +50,26 @@ def measure(travel: float = 50.0, coefficient: float = 1e-5) -> dict:
                 "pressure_MPa": float(last["max_pressure"].max()),
             }
     return out
+
+
+def draw(measured: dict[str, Any], folder: Path) -> None:
+    """Draw depth and largest pressure over the travel of each roller at each resolution, `groove.png` in a folder."""
+    with style.look():
+        figure = style.new_figure(80, 2 * style.COLUMN_MM)
+        panels = figure.subplots(2, len(ROLLERS), sharex=True, sharey="row")
+        for column, name in enumerate(ROLLERS):
+            for accuracy, colour, line in zip(ACCURACIES, style.palette(3), style.LINES, strict=False):
+                own = measured[name][accuracy]
+                for axes, what in zip(panels[:, column], ("depths_um", "pressures_MPa"), strict=True):
+                    axes.plot(own["travel_km"], own[what], color=colour, ls=line, marker=".", label=accuracy)
+            panels[0, column].set_title(name)
+            panels[1, column].set_xlabel("travel [km]")
+        for axes, words in zip(panels[:, 0], ("depth [µm]", "largest pressure [MPa]"), strict=True):
+            axes.set_ylabel(words)
+            axes.set_ylim(bottom=0)
+        panels[0, 0].legend(frameon=False)
+        style.head(figure, "Three rollers while they wear, at three resolutions")
+        style.save(figure, folder, "groove")
 
 
 if __name__ == "__main__":

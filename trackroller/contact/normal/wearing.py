@@ -138,7 +138,8 @@ def on_cells(edges: np.ndarray, depth: np.ndarray, cells: np.ndarray) -> np.ndar
     """
     from scipy.interpolate import PchipInterpolator  # noqa: PLC0415 - heavy, and for worn profiles only
 
-    volume = PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(depth * np.diff(edges))]))
+    with np.errstate(over="ignore"):  # a slope that underflows counts as zero
+        volume = PchipInterpolator(edges, np.concatenate([[0.0], np.cumsum(depth * np.diff(edges))]))
     return np.maximum(np.diff(volume(np.clip(cells, edges[0], edges[-1]))) / np.diff(cells), 0.0)
 
 

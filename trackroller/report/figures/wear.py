@@ -126,5 +126,7 @@ def course(ds: xr.Dataset) -> style.Drawn:
         axes.legend(frameon=False)
     style.head(figure, "Depth, pressure and fatigue over the travel")
     error = 1e3 * float(ds["groove_depth_error"][-1])
-    caption = f"Points are solved states. The steps add an estimated error of {rounded(error, 2)} µm to the depth."
+    caption = (
+        f"Points are solved states. Steps and elements cause an estimated error of the depth of {rounded(error, 2)} µm."
+    )
     return figure, style.FigureInfo("wear_course", caption, "")

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 MOST = 12  # rows of the table
+SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes
 COLUMNS = (
     ("max_pressure", "pressure", 1.0, "MPa"),
     ("semi_axis_lateral", "half width", 1.0, "mm"),
@@ -50,9 +51,15 @@ def state_table(ds: xr.Dataset) -> Table:
         at = own.isel(travel=i)
         cells = [cell(float(at["travel"])), *(cell(scale * float(at[n].sel(body=b))) for n, b, scale, _ in bodies)]
         cells += [cell(scale * float(at[name])) for name, _, scale, _ in columns]
-        cells += [cell(float(at["slip"])), cell(float(at["drive_torque"]))] if "slip" in ds else []
+        cells += [cell(float(at["slip"])), cell(_beyond_noise(at))] if "slip" in ds else []
         rows.append(cells)
     return Table("wear_states", f"States of contact {contact}", heads, rows, "")
+
+
+def _beyond_noise(at: xr.Dataset) -> float:
+    """Return the drive torque of a state [N mm]; 0 where it is smaller than the residual of its balance allows."""
+    torque, largest = float(at["drive_torque"]), float(at["normal_force"]) * inputs_of(at)["axis_distance"]
+    return torque if abs(torque) > SOLVED * largest else 0.0
 
 
 _OF_BODY = (("groove_depth", 1e3, "µm"), ("peak_stress", 1.0, "MPa"), ("fatigue_damage", 1.0, "-"))
