@@ -9,8 +9,9 @@ import xarray as xr
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.contact.cross_sections import arcs, drawn, noise_of, parabola, smoothed, with_edges
+from trackroller.contact.cross_sections import arcs, drawn, noise_of, parabola, smoothed, with_edges, worn
 from trackroller.contact.drawn_profiles import cross_section, gap, treats_sides_alike
+from trackroller.contact.normal.wearing import on_cells
 from trackroller.contact.profiles import canonical
 
 ALPHA = math.radians(30)
@@ -64,6 +65,16 @@ def test_points_of_a_circle_give_back_the_circle():
     turned = [[float(v), float(math.sqrt(36 - v * v) - 6 + 2.5)] for v in np.linspace(-2, 2, 81)]
     local = cross_section(text({"points": turned, "frame": "contact"}), "guide_profile", 6.0, ALPHA, 6.0, 1)
     np.testing.assert_allclose(local.height(u), exact, atol=2e-7)
+
+
+def test_wear_too_shallow_for_a_slope_is_no_overflow():
+    depth = np.array([0.0, 1e-320, 3e-310, 1e-3, 2e-318])
+    with np.errstate(over="raise", divide="raise", invalid="raise"):
+        shape = worn(parabola(-7.0), -0.5, 0.25, depth)
+        cells = on_cells(np.linspace(-1.0, 1.0, 6), depth, np.linspace(-1.0, 1.0, 10))
+    u = -0.5 + 0.25 * np.arange(5)
+    np.testing.assert_allclose(parabola(-7.0).height(u) - shape.height(u), depth, atol=1e-15)
+    assert np.sum(cells) * 2.0 / 9.0 == pytest.approx(np.sum(depth) * 0.4)
 
 
 def test_a_drawn_groove_leaves_the_gap_of_its_arcs_on_both_sides():
