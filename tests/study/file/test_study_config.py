@@ -120,6 +120,8 @@ def test_material_pairs_and_friction_by_pair_are_resolved():
         ({"name": "a", "chunk_size": 0}, ["chunk_size", "0"]),
         ({"name": "a", "seed": -1}, ["seed", "-1"]),
         ({"name": "a", "factors": [1]}, ["factors"]),
+        ({"name": "a", "factors": {"travel": {"values": [0, 5]}}}, ["normal = 'hertz'", "travel", "normal: halfspace"]),
+        ({"name": "a", "base": {"travel": "5 km"}}, ["normal = 'hertz'", "travel"]),
         (
             {
                 "name": "a",

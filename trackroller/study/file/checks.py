@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import Collector, InputError, unknown_name
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.accuracy import accuracy_settings
 from trackroller.roller.geometry import geometry_problem, geometry_problems
@@ -44,6 +45,14 @@ def _check_options(study: Study) -> None:
     for model, normal in itertools.product(levels("contact_model"), levels("normal")):
         check_pairs(study.config.hertz, normal, study.config.slip_terms, model)
     check_spin_model(levels("spin_model"), levels("contact_model"))
+    given = {
+        name: study.factors.get(name, study.config.base.get(name))
+        for name in ("travel", "guide_profile", "roller_profile")
+    }
+    shaped = [name for name, value in given.items() if value and number_or_nan(value, "km") != 0.0]
+    if shaped and "hertz" in levels("normal"):
+        allowed = f"halfspace, because {' and '.join(shaped)} may leave no circle"
+        raise InputError("normal", "hertz", allowed, "Write normal: halfspace.")
     for model in levels("contact_model"):
         accuracy_settings(study.config.accuracy, model, study.config.outputs)
 
