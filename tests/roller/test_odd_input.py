@@ -58,6 +58,13 @@ def test_odd_cases_and_databases(value):
             call()
 
 
+@pytest.mark.parametrize("value", ODD, ids=kind)
+def test_odd_studies(value):
+    for call in (tr.load_study, tr.open_study):
+        with pytest.raises(tr.InputError, match="study = "):
+            call(value)
+
+
 def test_a_data_set_of_numbers_that_no_double_holds():
     for column in (np.array([10**400, 1], object), np.array([True, False]), np.array([1j, 0])):
         with pytest.raises(tr.InputError, match="axial_force"):

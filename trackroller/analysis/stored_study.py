@@ -60,9 +60,12 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
     WorkError
         If the file was altered after it was written.
     """
+    if not isinstance(source, (xr.Dataset, str, Path)):
+        remedy = "Give the folder results/NAME, or its file study.nc."
+        raise InputError("study", type(source).__name__, "a path or a data set", remedy)
     data = source if isinstance(source, xr.Dataset) else _gathered(Path(source))
     if data is None:
-        return _read_unfinished(StudyFolder(Path(str(source))))
+        return _read_unfinished(StudyFolder(Path(source)))
     data = data.assign_attrs(_checked_version(data))
     study = _study(data)
     design = restored(data, study.parsed, case_dims(data, study.factors))

@@ -134,6 +134,9 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     """
     if isinstance(path, Mapping):
         return parse_study(path, None, database, planned)
+    if not isinstance(path, (str, Path)):
+        remedy = "Give the path of a study file, or a mapping with its keys."
+        raise InputError("study", type(path).__name__, "a path or a mapping", remedy)
     path = Path(path)
     with files_beside(path), noted_reads():
         text = read_text(path, "study file")
