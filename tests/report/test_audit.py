@@ -281,7 +281,7 @@ class Audit:
             met = {words: (int(hit[rows.index].sum()), len(rows)) for words, rows in self.designs()}
             every = sum(k == n for k, n in met.values())
             assert f"{every or 'none'} of {len(met)} designs" in text, (text, met)
-            found = re.search(rf"; (.*) does most often, in {NUMBER} of {NUMBER}", text)
+            found = re.search(rf"; (.*) meets (?:it|them) most often, in {NUMBER} of {NUMBER}", text)
             if found:
                 assert met[found[1]] == (value(found[2]), value(found[3]))
                 assert met[found[1]][0] == max(k for k, _ in met.values())

@@ -171,14 +171,14 @@ def search_designs(
         if rerun_failed:
             forget_failed(folder, take_inventory(folder))
         search = _Search(study, folder, results, executor, progress or (lambda cases: None))
-        known, told = _evolve(search, cheaper(study), tell)
+        known, facts = _evolve(search, cheaper(study), tell)
         if cheaper(study) is study:
             decided = known
         else:
             best = survivors(known.costs, known.violation, DECIDED * study.config.budget.generation)
             decided = search.judged(study, known.genes[best])
             tell(f"decided among {len(best)} designs with {study.config.contact_model}")
-        return _reported(search, decided, told | {"reasons": known.reasons}, tell)
+        return _reported(search, decided, facts | {"reasons": known.reasons}, tell)
 
 
 def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
@@ -211,7 +211,7 @@ def _choices(study: Study) -> dict[str, Factor]:
     return {name: study.drawn.factors[name] for name in study.drawn.meta["outer"]}
 
 
-def _reported(search: _Search, decided: Judged, told: dict[str, Any], tell: Tell) -> Plan:
+def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Plan:
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
     study, choices = search.study, _choices(search.study)
     decided = _polished(search, decided, choices)
@@ -228,7 +228,7 @@ def _reported(search: _Search, decided: Judged, told: dict[str, Any], tell: Tell
     tell(f"solved {len(shown)} optima at reference, and {len(around)} neighbours of the recommended one")
     final = search.of(study, decided.genes)
     goals = goals_of_search(search.collected(final, Cases(final)))
-    found = told | {
+    result = facts | {
         "goals": goals,
         "front": len(front),
         "decided": len(decided.genes),
@@ -248,7 +248,7 @@ def _reported(search: _Search, decided: Judged, told: dict[str, Any], tell: Tell
         ],
     }
     with search.planned(final) as plan:
-        gather(plan, tell, {OPTIMUM: json.dumps(found)})
+        gather(plan, tell, {OPTIMUM: json.dumps(result)})
     return plan
 
 

@@ -195,6 +195,6 @@ def _worn(own: Material, records: int, known: Value, partner: str) -> Material:
     Equal materials may have different sources. The identity of their `records` tells them apart; the cache keeps the
     material, so that no other one takes this identity.
     """
-    told = {**own.records, "wear_coefficient": replace(known, note=f"on {partner}")}
-    changed: dict[str, Any] = {"wear_coefficient": known.value, "records": told}
+    records_of_pair = {**own.records, "wear_coefficient": replace(known, note=f"on {partner}")}
+    changed: dict[str, Any] = {"wear_coefficient": known.value, "records": records_of_pair}
     return replace(own, **changed)

@@ -46,9 +46,9 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     figure.legend(loc="outside lower center", ncols=5, columnspacing=1.0, handletextpad=0.4)
     style.head(figure, "Life of the designs over their conditions")
     caption = (
-        f"Designs as in the table of the best, over {listing([long_name(n) for n in designs.conditions])}; "
-        f"{len(table)} of {count(len(designs.size))} designs. Lives of the valid conditions. Hollow marks lie beyond "
-        "the S-N data."
+        "Designs in the order of the table of the best designs, over "
+        f"{listing([long_name(n) for n in designs.conditions])}; {len(table)} of "
+        f"{count(len(designs.size))} designs. Lives of the valid conditions. Hollow marks lie beyond the S-N data."
     )
     caption += f" {'; '.join(f'{i}: {name}' for i, name in enumerate(names, 1))}." if numbered else ""
     what = "its worst condition, among designs that are valid in as many"

@@ -118,21 +118,21 @@ def _note(designs: Designs) -> str:
 
 def optima_table(view: StudyView) -> Table | None:
     """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
-    found = optimum_of(view.solved) if view.results is not None else None
-    if found is None:
+    search = optimum_of(view.solved) if view.results is not None else None
+    if search is None:
         return None
-    shown = sorted(found["optima"], key=lambda one: one["design"] != found["recommended"])[:BEST]
+    shown = sorted(search["optima"], key=lambda one: one["design"] != search["recommended"])[:BEST]
     choices = [choices_of(view.solved, one["design"]) for one in shown]
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, own[n]) for own in choices)] for n in choices[0]]
-    for i, (goal, way) in enumerate(found["goals"].items()):
+    for i, (goal, way) in enumerate(search["goals"].items()):
         _, units, words = goal_column(view.solved, goal)
         head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
-        for key, told in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
+        for key, mark in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
             numbers = [float(one[key][i]) for one in shown]
             if "life" in goal and units == "h":
                 marked = beyond_data(view.solved, goal)
                 numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
-            rows.append([f"{head}{told}", *numbers])
+            rows.append([f"{head}{mark}", *numbers])
     if any(one["violation"][0] for one in shown):
         rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
     heads = ["Recommended", *(f"Optimum {i}" for i in range(2, len(shown) + 1))]

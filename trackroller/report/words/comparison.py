@@ -38,7 +38,7 @@ def overview(paired: xr.Dataset) -> str:
     if not number:
         return (
             f"The contact models cannot be compared: no case was solved with {reference} and another model. "
-            "A grid, an inner/outer array or a table has such pairs; a sample that draws the model has none."
+            "A grid, an inner/outer array or a table has pairs of cases; a sample that draws the model has no pairs."
         )
     rolls = paired["regime"] == 0
     both = [(str(m), int((rolls.sel(contact_model=m) & rolls[-1]).sum())) for m in paired["contact_model"].values[:-1]]

@@ -126,14 +126,15 @@ def target_of_designs(view: StudyView, words: str) -> Sentence | None:
     elif not designs.conditions:
         text = f"{capital(words)}: met by {count(every)} of {many} designs"
     else:
+        them = "them" if words.startswith("all ") else "it"
         text = f"{capital(words)}: {count(every) if every else 'none'} of {many} designs "
-        text += f"{'meet' if every > 1 else 'meets'} {'them' if words.startswith('all ') else 'it'} in all conditions"
+        text += f"{'meet' if every > 1 else 'meets'} {them} in all conditions"
         if not met.any():
-            text += ", and none in any"
+            text += f", and no design meets {them} in any condition"
         elif not every:
             row = designs.table[designs.table.index == best].iloc[0]
-            text += f"; {design_words(designs, row)} does most often, in {count(int(met[best]))} of "
-            text += f"{count(int(designs.size[best]))}"
+            text += f"; {design_words(designs, row)} meets {them} most often, in {count(int(met[best]))} of "
+            text += f"{count(int(designs.size[best]))} conditions"
     text += f"; {GUIDE_UNKNOWN}" if "pair_life_hours" in _targets(view) and alone(designs) else ""
     return Sentence("target_of_designs", f"{text}.", values, designs.usable)
 

@@ -72,11 +72,11 @@ def worn(view: StudyView) -> Sentence | None:
 def best_whatever(view: StudyView) -> Sentence | None:
     """Say which designs are the best whatever the values known within a range are; None without such values."""
     designs = Designs.of(view)
-    found = unbeaten(designs) if designs is not None else None
-    if designs is None or found is None or not len(found):
+    best = unbeaten(designs) if designs is not None else None
+    if designs is None or best is None or not len(best):
         return None
     what, span = _unsure(view, varied(designs))
-    rows = designs.table[designs.table.index.isin(found)]
+    rows = designs.table[designs.table.index.isin(best)]
     names = [design_words(designs, row) for _, row in rows.iterrows()]
     values = {"designs": rows.index.tolist(), "of": len(designs.size)}
     if len(names) == 1:
@@ -85,7 +85,8 @@ def best_whatever(view: StudyView) -> Sentence | None:
     more = f" and {count(len(names) - MOST_NAMED)} more" if len(names) > MOST_NAMED else ""
     text = f"{capital(what)}, {span}, decide which of {count(len(names))} designs is the best: "
     text += f"{'; '.join(names[:MOST_NAMED])}{more}. "
-    text += f"The other {count(len(designs.size) - len(names))} of {count(len(designs.size))} designs never are."
+    others = len(designs.size) - len(names)
+    text += f"The other {count(others)} of {count(len(designs.size))} designs are never the best."
     return Sentence("best_whatever", text, values, designs.usable)
 
 
@@ -101,10 +102,10 @@ def _unsure(view: StudyView, names: list[str]) -> tuple[str, str]:
 def whichever_first(view: StudyView) -> Sentence | None:
     """Say in how many conditions the first limit is the same for all values within their ranges; None without them."""
     designs = Designs.of(view)
-    found = settled(designs) if designs is not None else None
-    if designs is None or found is None or not found[1]:
+    counts = settled(designs) if designs is not None else None
+    if designs is None or counts is None or not counts[1]:
         return None
-    certain, ends = found
+    certain, ends = counts
     what, span = _unsure(view, varied(designs))
     text = f"Whatever the {what} are, {span}, the same limit comes first in {count(certain)} of {count(ends)} "
     text += "combinations of the other factors" + ("." if certain == ends else "; in the others they decide.")

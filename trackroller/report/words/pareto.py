@@ -38,7 +38,7 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
         text = f"One of {allowed} allowed {kind}s is best in everything: {listing(goal_values)}."
     elif alike:
         tied = f"{count(len(best))} of {allowed} allowed {kind}s tie"
-        text = f"{tied}, none other is better in a goal: {listing(goal_values)}."
+        text = f"{tied}, and no other {kind} is better in a goal: {listing(goal_values)}."
     else:
         one, two = ends[0], ends[1]
         first = listing([f"{_goal_value(front, g, one[2][g])} {goal_words(front, g)}" for g, _ in goals])

@@ -87,7 +87,8 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
     values = {"half": half, "wanted": wanted, "asked": asked}
     lives = any(limit == HALF_B10 for _, limit, _ in widths)
     if half <= wanted and (asked >= FEWEST or not lives):
-        return Sentence("enough", f"Yes: {what} is known to ± {_percent(half)}, and no other less well.", values)
+        text = f"Yes: {what} is known to ± {_percent(half)}, and every other result at least as well."
+        return Sentence("enough", text, values)
     times = 2.0 ** max(0, math.ceil(math.log2((half / wanted) ** 2) - 1e-9))
     while lives and times * asked < FEWEST:
         times *= 2

@@ -276,7 +276,7 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray) -> di
     at_once = np.array([limit.ends_at_once for limit in limits])[:, None]
     concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits])
     reached = np.where(concerned, hours_until_reached(most, shifts, timed, at_once), np.nan)
-    first, which = (found[0] for found in first_of(reached[None], most[None], concerned))
+    first, which = (one[0] for one in first_of(reached[None], most[None], concerned))
     words = (*LIMITS, "unknown")
     numbers = np.array([words.index(limit.name) for limit in limits])
     names = np.where(np.isnan(reached).all(axis=0), len(words) - 1, numbers[which])

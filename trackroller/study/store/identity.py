@@ -75,7 +75,7 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     rows = np.ascontiguousarray(np.stack([np.asarray(c, dtype="<f8") for c in columns], axis=1))
     rows += 0.0  # -0.0 becomes 0.0
     rows[np.isnan(rows)] = np.nan  # every NaN gets the same bits
-    heads = [hashlib.sha256(_prefix(told)) for told in options]
+    heads = [hashlib.sha256(_prefix(one)) for one in options]
     numbers = [0] * len(rows) if group is None else group.tolist()
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
     texts += [body.temperature_dependence for body in (table.roller, table.guide)]
