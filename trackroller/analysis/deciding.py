@@ -12,7 +12,8 @@ from trackroller.study.store.plan import Plan
 
 def decides(study: Study) -> bool:
     """Return whether the cases of a study depend on results; with a table of its designs a search is at its end."""
-    return bool(study.config.design == "optimise" and study.config.table is None)
+    searches = study.config.design == "optimise" and study.config.table is None
+    return bool(searches or study.config.until is not None)
 
 
 def run_any(study: Study, results: Path | str = "results", *, rerun_failed: bool = False, **how: Any) -> Plan:
@@ -20,6 +21,10 @@ def run_any(study: Study, results: Path | str = "results", *, rerun_failed: bool
 
     With `rerun_failed` the failed cases of a search are solved again before it goes on.
     """
+    if study.config.until is not None:
+        from trackroller.analysis.growing import grow_study  # heavy: scipy.stats, as below
+
+        return grow_study(study, results, rerun_failed=rerun_failed, **how)
     if not decides(study):
         return run_study(study, results, rerun_failed=rerun_failed, **how)
     from trackroller.analysis.optimum import search_designs  # heavy: scipy.stats, which no job of a workflow needs

@@ -22,6 +22,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.analysis.judging import OPTIMUM, Judged, goals_of_search, judge, recommended, spread
+from trackroller.analysis.stored_study import solved_results
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files, sha256, write_text
@@ -34,10 +35,9 @@ from trackroller.study.file.study import Study
 from trackroller.study.run import executing
 from trackroller.study.solve import Executor, Solver, solve_chunk
 from trackroller.study.store.folder import StudyFolder, Tell, locked
-from trackroller.study.store.gather import collect, gather
+from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan, study_folder
 from trackroller.study.store.planning import working_plan
 
@@ -93,9 +93,7 @@ class _Search:
 
     def collected(self, study: Study, cases: Cases) -> StudyResults:
         """Return the results of solved cases of a study."""
-        place = self.found.find(cases.fingerprints)
-        results = collect(self.found, place, self.folder.root)
-        return StudyResults(study, study.drawn, labelled(study, study.drawn, cases.design, *results))
+        return solved_results(study, cases, self.found, self.found.find(cases.fingerprints), self.folder)
 
     @contextlib.contextmanager
     def planned(self, study: Study) -> Iterator[Plan]:

@@ -28,6 +28,7 @@ from trackroller.analysis.labels import (
 )
 from trackroller.analysis.pairs import pairs
 from trackroller.analysis.parts import parts_of
+from trackroller.analysis.replicates import HEADLINES, replicated
 from trackroller.analysis.robustness import material_deviations, robustness
 from trackroller.analysis.sobol import sobol
 from trackroller.analysis.table import StudyResults
@@ -134,6 +135,17 @@ def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     return Estimated(out, int(out.pop("rows_used")), len(y), at)
 
 
+def _of_replicates(found: Estimated, y: np.ndarray, design: SampledDesign) -> Estimated:
+    """Replace the intervals and the course of the headline indices by those of the replicates of a grown sample."""
+    copies = int(design.meta["replicates"])
+    total = int(design.meta.get("base_samples") or design.meta.get("trajectories") or design.size)
+    at = convergence.sizes(total, smallest=2 * copies)
+    out = replicated(y, design, total)
+    names = HEADLINES[design.method]
+    course = convergence.course(lambda samples: replicated(y, design, samples), at, out, names)
+    return found._replace(estimates=found.estimates | out | course, sizes=at)
+
+
 _METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], Estimated]] = {
     "saltelli": _saltelli,
     "morris": _morris,
@@ -187,6 +199,8 @@ def analyse(results: StudyResults) -> xr.Dataset:
         log.info("analyse output %d of %d: %s", number, len(columns), column.name)
         by_output.append(_METHODS[design.method](column.values, design, how))
         by_output[-1].estimates.pop("rows_used", None)
+        if "replicates" in design.meta:
+            by_output[-1] = _of_replicates(by_output[-1], column.values, design)
     result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
     result = result.merge(parts_of(design, columns, given, how.seed, how.resamples))
     result = result.assign(_quality(result, design, columns, by_output))

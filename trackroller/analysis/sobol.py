@@ -79,6 +79,7 @@ def closed_indices(
     seed: int = 0,
     resamples: int = 300,
     cluster: np.ndarray | None = None,
+    weights: np.ndarray | None = None,
 ) -> np.ndarray:
     """Estimate the closed index V_u / V of sets of columns, with bootstrap resamples.
 
@@ -89,6 +90,7 @@ def closed_indices(
     sets : sets of columns as numbers, see `trackroller.study.design.saltelli`
     seed, resamples : as in `sobol`
     cluster : number of the base block of each block, shape (blocks,); blocks of one cluster are drawn together
+    weights : weights of the blocks, shape (m, blocks), each row with the sum 1; they replace the resamples
 
     Returns
     -------
@@ -97,11 +99,13 @@ def closed_indices(
     """
     clusters, cluster = np.unique(np.arange(len(block)) if cluster is None else cluster, return_inverse=True)
     if len(clusters) < MIN_BLOCKS or constant(block):
-        return np.full((1 + resamples, len(sets)), np.nan)
+        return np.full((1 + (resamples if weights is None else len(weights)), len(sets)), np.nan)
     pairs = pairs_sharing(count, second_order)
     terms = _pair_terms((block - block.mean()) / block.std(), [[(0, -1)], *(pairs[columns] for columns in sets)])
     beta = _control(*terms)
     drawn = [_correlations(np.full((1, len(block)), 1 / len(block)), terms, beta)]
+    if weights is not None:
+        return np.concatenate([*drawn, _correlations(weights, terms, beta)])
     for weights in _resampled(len(clusters), resamples, seed):
         rows = weights[:, cluster]
         drawn.append(_correlations(rows / rows.sum(axis=1, keepdims=True), terms, beta))

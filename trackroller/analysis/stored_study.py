@@ -24,7 +24,9 @@ from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
 from trackroller.study.store.gather import collect
+from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.inventory import Inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import locate
 from trackroller.study.store.seal import digest_of, read_result
@@ -84,6 +86,14 @@ def stored_analysis(results: StudyResults, root: Path) -> xr.Dataset | None:
     """Return the analysis that a report of these results has written into the folder of their study, or None."""
     stored = root / "sensitivity.nc"
     return read_result(stored) if stored.is_file() and not results.unfinished and digest_of(stored) else None
+
+
+def solved_results(
+    study: Study, cases: Cases, found: Inventory, place: np.ndarray, folder: StudyFolder
+) -> StudyResults:
+    """Return the results of a study whose cases lie at `place`, shape (n,), in the inventory of its folder."""
+    data = labelled(study, study.drawn, cases.design, *collect(found, place, folder.root))
+    return StudyResults(study, study.drawn, data)
 
 
 def _gathered(path: Path) -> xr.Dataset | None:

@@ -71,7 +71,7 @@ def targets(
     At a level of the outer array the probability is the mean over its design points. Their common sample counts once.
     """
     columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
-    hits = np.stack([_hits(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
+    hits = np.stack([hits_of(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
     names = [c.name for c in columns]
     if len(names) > 1:
         hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
@@ -90,7 +90,7 @@ def body_of(output: str) -> str:
     return ("guide" if "guide" in output else "roller") if "life" in output else ""
 
 
-def _hits(column: Output, limits: Mapping[str, float], deviation: np.ndarray | None) -> np.ndarray:
+def hits_of(column: Output, limits: Mapping[str, float], deviation: np.ndarray | None) -> np.ndarray:
     """Return the probability that each case meets a target, shape (n,): 0 or 1 where the material has no scatter."""
     values, low, high = column.values, limits.get("min", -np.inf), limits.get("max", np.inf)
     with np.errstate(invalid="ignore"):

@@ -14,7 +14,7 @@ from trackroller.parameters import PARAMETERS
 from trackroller.roller.options import options_of_cases
 from trackroller.roller.record import solve_command
 from trackroller.study.design.build import case_columns
-from trackroller.study.design.grown_lhs import with_history
+from trackroller.study.design.growth import as_planned
 from trackroller.study.store import chunks
 from trackroller.study.store.plan import locate, study_folder
 
@@ -77,7 +77,7 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
     folder = study_folder(study.name, results)
-    study = with_history(study, folder)
+    study = as_planned(study, folder)
     design, found, place = locate(study, folder)
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")

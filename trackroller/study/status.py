@@ -14,7 +14,7 @@ from rich.filesize import decimal
 from trackroller.errors import InputError, nearest
 from trackroller.parameters import REGIMES
 from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_report, study_rate
-from trackroller.study.design.grown_lhs import with_history
+from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
@@ -117,7 +117,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         Numbers of cases and the expected time. The time is proportional to the number of cases.
     """
     folder = study_folder(study.name, results)
-    study = with_history(study, folder)
+    study = as_planned(study, folder)
     _, found, place = locate(study, folder)
     solved = np.flatnonzero(place >= 0)
     states = found.states.isel(case=place[solved])
@@ -165,9 +165,11 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.design, status.total)
     generations = f"these are the first generation; it goes on to {study.config.budget.designs} designs"
+    until = study.config.until
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
+        ("until", f"this is the first look; the sample doubles up to {until.at_most} cases" if until else ""),
         ("search", generations if study.config.design == "optimise" else ""),
         ("unused", status.unused),
         ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),

@@ -1,4 +1,4 @@
-"""Search for the best designs of a study and gather them."""
+"""Run a study whose cases depend on results, and gather it."""
 
 import logging
 
@@ -6,7 +6,7 @@ from trackroller.analysis.deciding import run_any
 from trackroller.cli.workflow import log_to
 from trackroller.study.file.load import load_study
 
-log_to(snakemake.log[0], "search for the best designs")
+log_to(snakemake.log[0], "search for the best designs" if snakemake.rule == "search" else "")
 config, tell = snakemake.params.config, logging.getLogger("trackroller").info
 scheduler = "local" if snakemake.threads > 1 else None
 run_any(load_study(config["study"]), config["results"], scheduler=scheduler, tell=tell)

@@ -16,6 +16,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.comparison import drawers
 from trackroller.report.figures.designs import lives_by_design
 from trackroller.report.figures.factors import by_factor
+from trackroller.report.figures.growth import intervals
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
 from trackroller.report.figures.pareto import pareto_front
@@ -71,6 +72,8 @@ def _jobs(view: StudyView) -> Iterator[Draw]:
     yield from (partial(draw, view) for draw in OF_CASES)
     if (front := study_pareto(view)) is not None:
         yield partial(pareto_front, front, view)
+    if view.results is not None:
+        yield partial(intervals, view)
 
 
 def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:

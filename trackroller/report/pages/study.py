@@ -35,6 +35,7 @@ from trackroller.report.tables.inputs import (
     record_rows,
     stored_materials,
 )
+from trackroller.report.tables.looks import looks_table
 from trackroller.report.tables.pareto import pareto_table
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.tables.targets import target_tables
@@ -147,6 +148,7 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
         index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
         known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
         why += [measure_table(sens, name, error) for name in known[:1]]  # a life, if the study has one, stands first
+    why.append(looks_table(view))
     ends = [regime_table(view), validity_table(view), reason_table(view.data)]
     tables = {"decide": decide, "why": why, "ends": ends, "models": models.get("tables", [])}
     return {

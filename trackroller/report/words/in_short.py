@@ -13,6 +13,7 @@ from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
 from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.designs import best_design, target_of_designs
+from trackroller.report.words.growth import grown
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
 from trackroller.report.words.optimum import optimum_sentences
@@ -36,6 +37,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     """
     sens = view.analysis
     complete = sens if "missing_cases" not in view.attrs else None  # the study asks for more samples than are solved
+    enough = samples(complete, int(view.study.get("samples", 0))) if complete is not None else None
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         # first, so that the first screen answers what to build
@@ -51,7 +53,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
             "How sure",
             [friction_guess(view), guesses(view), worn(view), *known_errors(view), *accuracy(view), *compared],
         ),
-        ("Enough samples?", [samples(complete, int(view.study.get("samples", 0))) if complete is not None else None]),
+        ("Enough samples?", [grown(view) or enough]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
 

@@ -62,6 +62,8 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
     """
     names = ("second_order", "levels", "inner", "grown_from", "rank_correlations")
     options = {name: value for name in names if (value := getattr(config, name)) not in (None, ())}
+    if config.until is not None:
+        options["replicates"] = config.until.replicates
     if config.design == "table":
         options["table"] = str(table)
     if config.exchange == "groups":

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import warnings
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
 from pathlib import Path
@@ -25,6 +24,7 @@ from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field
 from trackroller.study.design.evolution import Gene, first_generation
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
+from trackroller.study.design.replicates import in_turn, sobol_rows
 from trackroller.study.design.saltelli import all_groups
 from trackroller.study.file.csv import read_rows
 
@@ -36,6 +36,10 @@ Settings = Mapping[str, Any]
 
 def _map(free: Factors, unit: np.ndarray) -> dict[str, np.ndarray]:
     return {name: f.from_unit(unit[:, j]) for j, (name, f) in enumerate(free.items())}
+
+
+def _of_replicates(settings: Settings) -> dict[str, int]:
+    return {"replicates": settings["replicates"]} if settings.get("replicates", 1) > 1 else {}
 
 
 def check_listed(factors: Factors) -> None:
@@ -61,29 +65,30 @@ def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
 def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     entries = tuple(settings.get(correlation.KEY, ()))
     root = correlation.copula(entries, free)
-    if method == "lhs":
-        unit = grown_lhs(len(free), [*check_sizes(settings.get("grown_from", ()), n), n], seed, root)
-    else:
-        from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
+    earlier, copies = check_sizes(settings.get("grown_from", ()), n), settings.get("replicates", 1)
 
-        engine = qmc.Sobol(d=len(free), rng=np.random.default_rng(seed))
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore", UserWarning)  # the balance of a Sobol sequence needs a power of two
-            unit = correlation.correlate(engine.random(n), root, strata=False)
-    return _map(free, unit), unit, {correlation.KEY: entries}
+    def one(seed: int) -> np.ndarray:
+        if method == "lhs":
+            return grown_lhs(len(free), [size // copies for size in (*earlier, n)], seed, root)
+        return correlation.correlate(sobol_rows(len(free), n // copies, seed), root, strata=False)
+
+    unit = in_turn(one, seed, copies)
+    return _map(free, unit), unit, {correlation.KEY: entries} | _of_replicates(settings)
 
 
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
-    blocks = 1 << max(0, n - 1).bit_length()
+    copies = settings["replicates"]
+    blocks = 1 << max(0, n // copies - 1).bit_length()
     second = bool(settings["second_order"])
-    meta: dict[str, Any] = {"base_samples": blocks, "second_order": second}
+    meta: dict[str, Any] = {"base_samples": copies * blocks, "second_order": second} | _of_replicates(settings)
     groups = all_groups(settings["groups"] or {}, free)  # without groups each factor is one of its own
     owner = {name: group for group, members in groups.items() for name in members}
     owners = [owner[name] for name in free]
     order = list(dict.fromkeys(owners))  # groups in the order of their first factors
     if settings["groups"]:
         meta["groups"] = order
-    unit = saltelli.draw(blocks, [order.index(owner) for owner in owners], second, seed)
+    draw = partial(saltelli.draw, blocks, [order.index(owner) for owner in owners], second)
+    unit = in_turn(lambda own: draw(own).reshape(blocks, -1, len(free)), seed, copies).reshape(-1, len(free))
     return _map(free, unit), unit, meta
 
 
@@ -104,6 +109,8 @@ def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     problem = {"num_vars": count, "names": list(free), "bounds": [[0.0, 1.0]] * count}
     seeds = [int(np.random.SeedSequence([seed, i]).generate_state(1)[0]) for i in range(n)]
     unit = np.concatenate([morris.sample(problem, 1, num_levels=levels, seed=s) for s in seeds])
+    # trajectories are independent, so they take turns as they are
+    meta = {"trajectories": n, "levels": levels} | _of_replicates(settings)
     path = unit.reshape(n, count + 1, count)
     drawers = [np.random.default_rng([s, 1]) for s in seeds]
     columns = {}
@@ -115,7 +122,7 @@ def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         moved = path[:, :, j] != path[:, :1, j]
         path[:, :, j] = np.where(moved, pair[:, 1:], pair[:, :1])
         columns[name] = factor.take(path[:, :, j].ravel())
-    return columns, path.reshape(-1, count), {"trajectories": n, "levels": levels}
+    return columns, path.reshape(-1, count), meta
 
 
 def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:

@@ -83,6 +83,11 @@ def check_sizes(earlier: Any, samples: int) -> tuple[int, ...]:
 SAME = ("factors", "rank_correlations", "design", "seed", "inner")  # keys that a grown sample must share
 
 
+def is_lhs(config: Any) -> bool:
+    """Return whether the design of a study file draws a Latin hypercube."""
+    return bool(config.design == "lhs" or (config.design == "inner_outer" and config.inner in (None, "lhs")))
+
+
 def with_history(study: Study, folder: StudyFolder) -> Study:
     """Add the earlier sizes of the sample to a study.
 
@@ -97,14 +102,13 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
     unchanged. Otherwise the study as it is.
     """
     config = study.config
-    lhs = config.design == "lhs" or (config.design == "inner_outer" and config.inner in (None, "lhs"))
-    if not lhs or config.grown_from:
+    if not is_lhs(config) or config.grown_from or config.until is not None:
         return study
     try:
         old = type(config).model_validate(folder.earlier())
         earlier = check_sizes([s for s in (*(old.grown_from or ()), old.samples) if s < config.samples], config.samples)
     except ValueError:
         return study
-    if not earlier or any(getattr(old, key) != getattr(config, key) for key in SAME):
+    if not earlier or old.until is not None or any(getattr(old, key) != getattr(config, key) for key in SAME):
         return study
     return dataclasses.replace(study, config=config.model_copy(update={"grown_from": earlier}))

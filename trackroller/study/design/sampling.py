@@ -34,12 +34,12 @@ METHODS = (
     "optimise",
 )
 OPTIONS: dict[str, dict[str, Any]] = {
-    "saltelli": {"second_order": True, "groups": None},
-    "morris": {"levels": 4},
+    "saltelli": {"second_order": True, "groups": None, "replicates": 1},
+    "morris": {"levels": 4, "replicates": 1},
     "table": {"table": None},
-    "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": ()},
-    "lhs": {"grown_from": (), "rank_correlations": ()},
-    "sobol": {"rank_correlations": ()},
+    "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": (), "replicates": 1},
+    "lhs": {"grown_from": (), "rank_correlations": (), "replicates": 1},
+    "sobol": {"rank_correlations": (), "replicates": 1},
     "optimise": {"conditions": (), "population": 32, "table": None},
 }
 WEIGHING = ("lhs", "sobol", "saltelli")  # designs that draw the values of a list with their weights
@@ -129,7 +129,8 @@ def sample(
         default 4), table (path of the CSV), inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier
         numbers of samples, whose rows come first), rank_correlations (lhs, sobol, inner_outer: see
         `trackroller.study.design.correlation`), conditions and population (optimise: factors that are no choices, and
-        designs of the first generation), table (optimise: CSV of the genes of the designs instead)
+        designs of the first generation), table (optimise: CSV of the genes of the designs instead), replicates
+        (independent samples of n / replicates each, which take turns: sample i belongs to replicate i % replicates)
 
     Returns
     -------

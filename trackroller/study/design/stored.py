@@ -105,7 +105,8 @@ def solved_part(design: SampledDesign, rows: np.ndarray) -> SampledDesign:
     """
     columns = {name: values[rows] for name, values in design.columns.items()}
     if design.method in ("lhs", "sobol"):
-        return SampledDesign(columns, design.factors, design.method, design.unit[rows], design.meta)
+        meta = {key: value for key, value in design.meta.items() if key != "replicates"}  # they are not complete
+        return SampledDesign(columns, design.factors, design.method, design.unit[rows], meta)
     free, unit = of_columns({name: columns[name] for name in design.factors})
     return SampledDesign(columns, free, "table", unit, {"rank_correlations": ()})
 

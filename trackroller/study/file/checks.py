@@ -24,6 +24,7 @@ from trackroller.study.design.saltelli import serves
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
+from trackroller.study.file.until import check_first_look, check_until
 
 if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
@@ -92,10 +93,12 @@ def cross_check(study: Study) -> None:
     with wrong.part():
         check(config, study.parsed)
         check_search(config, study.parsed)
+        check_until(config)
     for checked in (_check_roles, _check_parts, _check_options, _check_correlations, _check_materials):
         with wrong.part():
             checked(study)
     wrong.check()
+    check_first_look(study)
 
 
 def _check_roles(study: Study) -> None:

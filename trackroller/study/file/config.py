@@ -19,6 +19,7 @@ from trackroller.study.design.roles import check_words
 from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.goals import Analysis, comparisons, directions
 from trackroller.study.file.search import Budget, budget_keys
+from trackroller.study.file.until import Until, until_keys
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
@@ -126,6 +127,9 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     )
     budget: Annotated[Budget, BeforeValidator(budget_keys)] = Field(
         default_factory=lambda: Budget.model_validate({}), description="optimise: how long the search goes on"
+    )
+    until: Annotated[Until | None, BeforeValidator(until_keys)] = Field(
+        None, description="the sample grows by doublings until intervals are narrow, or cases or hours are spent"
     )
     pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
     constraints: Comparisons = Field((), description="comparisons that an allowed design must meet")

@@ -73,7 +73,10 @@ def complete(study: Study) -> Study:
     if any(at_rest(law) is not None for law in laws if law):
         names.add("friction_coefficient")  # the first value of the table
     values = not_given(names) | {name: value for name, value in config.not_given.items() if name not in names}
-    return replace(study, config=config.model_copy(update={"not_given": values}))
+    update: dict[str, Any] = {"not_given": values}
+    if config.until is not None and "samples" not in config.model_fields_set:
+        update["samples"] = config.until.first_look(config.design)
+    return replace(study, config=config.model_copy(update=update))
 
 
 def parse_study(

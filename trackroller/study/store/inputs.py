@@ -14,7 +14,7 @@ from pathlib import Path
 from trackroller.errors import InputError, WorkError
 from trackroller.files import noted_reads, sha256, write_whole
 from trackroller.materials import builtin_database, load_database
-from trackroller.study.design.grown_lhs import with_history
+from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder
@@ -86,7 +86,7 @@ def check_inputs(folder: StudyFolder) -> None:
 def _says_the_same(path: Path, folder: StudyFolder, study: str) -> bool:
     """Return whether a file is a study file that means the study of a plan."""
     try:
-        return with_history(load_study(path, planned=True), folder).merged() == study
+        return as_planned(load_study(path, planned=True), folder).merged() == study
     except InputError:
         return False
 

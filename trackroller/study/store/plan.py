@@ -181,7 +181,7 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
         Index of each case of the design in `found.states`; -1 for a case that is not solved.
     """
     solved = found.states.sizes["case"]
-    if study.config.design == "optimise":  # each generation is a design of its own
+    if study.config.design == "optimise" or study.config.until is not None:  # each step is a design of its own
         return ""
     if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
         return ""

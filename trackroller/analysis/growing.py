@@ -1,0 +1,170 @@
+"""Let the sample of a study grow by doublings until its intervals are narrow, the key `until`.
+
+A step solves all cases of the sample, looks at the intervals, and doubles every replicate. Each step is a design of the
+study whose cases go through plan and chunks. A run that was stopped therefore repeats its looks from the stored cases.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from trackroller.analysis.looks import UNTIL, look
+from trackroller.analysis.stored_study import solved_results
+from trackroller.files import interrupts_wait_for_files
+from trackroller.study.cost import duration
+from trackroller.study.design.growth import doubled
+from trackroller.study.file.study import Study
+from trackroller.study.run import executing
+from trackroller.study.solve import Solver, solve_chunk
+from trackroller.study.store.folder import Tell, locked
+from trackroller.study.store.gather import gather
+from trackroller.study.store.identity import Cases
+from trackroller.study.store.inventory import forget_failed, take_inventory
+from trackroller.study.store.plan import Plan, study_folder
+from trackroller.study.store.planning import working_plan
+
+
+class Growing:
+    """A study that grows, with the looks so far.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study with the key `until`, at its first look.
+    results : path
+        Parent of the study's folder.
+    tell : callable
+        Receives a line for each look.
+    """
+
+    def __init__(self, study: Study, results: Path | str, tell: Tell) -> None:
+        assert study.config.until is not None
+        self.study, self.until, self.tell = study, study.config.until, tell
+        self.folder = study_folder(study.name, results).create()
+        self.found = take_inventory(self.folder)
+        self.looks: list[dict[str, Any]] = []
+
+    @property
+    def hours(self) -> float:
+        """Return the time of solving, of all runs together [h]."""
+        return float(self.found.states.attrs["seconds"]) / 3600
+
+    def advance(self) -> str:
+        """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
+        self.found = take_inventory(self.folder)
+        while True:
+            cases = Cases(self.study)
+            place = self.found.find(cases.fingerprints)
+            if (place < 0).any():
+                return ""
+            self.looks.append(look(solved_results(self.study, cases, self.found, place, self.folder)))
+            widest = ", ".join(f"{name} ± {_text(self.looks[-1], name)}" for name in self.until.of)
+            self.tell(f"look {len(self.looks)}: {self.looks[-1]['cases']} cases, widest 95 % interval: {widest}")
+            larger = doubled(self.study)
+            if why := self._why(larger):
+                self.tell(f"stopped: {why}")
+                return why
+            self.study = larger
+
+    def _why(self, larger: Study) -> str:
+        """Return why the study stops at its last look, '' if it goes on with the larger sample."""
+        seen, until = self.looks[-1], self.until
+        widths = seen["half_width"].values()
+        if all(width is not None and width <= until.half_width for width in widths):
+            return f"the intervals asked for are narrower than ± {until.half_width:g}"
+        if seen["constant"]:
+            return f"{' and '.join(seen['constant'])} does not vary, so it has no index"
+        many = 2 * seen["cases"]
+        if many > until.at_most:
+            return f"the next step has {many} cases, and at_most is {until.at_most}"
+        if until.hours is None:
+            return ""
+        missing = int((self.found.find(Cases(larger).fingerprints) < 0).sum())
+        needed = self.hours * missing / max(1, self.found.states.sizes["case"])
+        if missing and self.hours + needed > until.hours:
+            spent = duration(3600 * self.hours)
+            left = f"about {duration(3600 * needed)} of solving"
+            return f"{spent} of the {until.hours:g} h are spent, and the next step needs {left}"
+        return ""
+
+    def record(self, why: str) -> dict[str, str]:
+        """Return the attribute of `study.nc` with the looks."""
+        asked = {"half_width": self.until.half_width, "replicates": self.until.replicates}
+        return {UNTIL: json.dumps(asked | {"stopped": why, "looks": self.looks})}
+
+
+def _text(seen: dict[str, Any], name: str) -> str:
+    width = seen["half_width"][name]
+    return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
+
+
+@interrupts_wait_for_files()
+def grow_study(
+    study: Study,
+    results: Path | str = "results",
+    *,
+    rerun_failed: bool = False,
+    scheduler: str | None = None,
+    tell: Tell | None = None,
+    started: Callable[[int, int], None] | None = None,
+    progress: Callable[[int], None] | None = None,
+    solver: Solver | None = None,
+) -> Plan:
+    """Let the sample of a study grow until its intervals are narrow, and gather the cases.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study with the key `until`.
+    results, rerun_failed, scheduler, tell, started, progress, solver
+        As for `trackroller.study.run.run_study`.
+
+    Returns
+    -------
+    Plan
+        The plan of the last step. The attribute `until` of `study.nc` holds the looks and why it stopped (JSON).
+
+    Raises
+    ------
+    InputError
+        If the study is wrong.
+    WorkError
+        If the work cannot be completed; every finished chunk is kept.
+    """
+    tell = tell or (lambda line: None)
+    with contextlib.ExitStack() as stack:
+        growing = Growing(study, results, tell)
+        folder = growing.folder
+        stack.enter_context(locked(folder.lock.with_name(".search"), tell=tell))
+        if rerun_failed:
+            forget_failed(folder, take_inventory(folder))
+        executor = None
+        while not (why := growing.advance()):
+            with working_plan(growing.study, results, tell=tell) as plan:
+                if started is not None:
+                    started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in plan.open))
+                executor = executor or stack.enter_context(executing(scheduler, solver))
+                for name in plan.open:
+                    tell(solve_chunk(folder, name, study.materials, executor=executor, tell=tell, progress=progress))
+        with working_plan(growing.study, results, tell=tell) as plan:
+            gather(plan, tell, growing.record(why))
+    return plan
+
+
+def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
+    """Look at the solved steps of a study and plan the next one, for a workflow.
+
+    Returns
+    -------
+    dict
+        `stopped`, why the study stops ('' if it goes on), and `chunks`, the names of the chunks that are not solved.
+    """
+    growing = Growing(study, results, tell)
+    if why := growing.advance():
+        return {"stopped": why, "chunks": []}
+    with working_plan(growing.study, results, tell=tell) as plan:
+        return {"stopped": "", "chunks": plan.open}

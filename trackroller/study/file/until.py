@@ -1,0 +1,96 @@
+"""Check the key `until` of a study file, with which a sample grows by itself until its intervals are narrow.
+
+until: {half_width: 0.03, of: [roller_life_hours], at_most: 200000, hours: 8}
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+from pydantic import BaseModel, ConfigDict, Field, field_validator
+
+from trackroller.errors import InputError
+from trackroller.parameters import REGIMES
+from trackroller.study.file.goals import output_names, statistic, unknown_result
+
+FIRST_LOOK = {"morris": 2}  # samples of a replicate at the first look, unless the study file names `samples`
+USUAL_FIRST_LOOK = 8
+GROWING = ("sobol", "lhs", "saltelli", "morris", "inner_outer")  # designs whose samples grow by doublings
+EXAMPLE = "For example {half_width: 0.03, of: [roller_life_hours], at_most: 20000}."
+
+
+class Until(BaseModel):
+    """The key `until` of a study file; each field has a description."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True)
+
+    half_width: float = Field(
+        gt=0,
+        lt=10,
+        description="half width of the 95 % intervals: of shares of variance (saltelli, lhs, sobol), of mu* over the "
+        "output's range (morris), of log10 B10 or a probability (inner_outer)",
+    )
+    of: tuple[str, ...] = Field(
+        min_length=1, description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a target"
+    )
+    at_most: int = Field(200_000, ge=1, le=10_000_000, description="largest number of cases")
+    hours: float | None = Field(None, gt=0, description="time of solving on one core, all runs together")
+    replicates: int = Field(16, ge=8, le=64, description="independent samples, whose scatter gives the intervals")
+
+    @field_validator("of", mode="before")
+    @classmethod
+    def _of(cls, value: Any) -> Any:
+        listed = [value] if isinstance(value, str) else value
+        if isinstance(listed, (list, tuple)) and all(isinstance(name, str) for name in listed):
+            return tuple(dict.fromkeys(name.replace(" ", "") for name in listed))
+        raise InputError("until.of", value, "a list of outputs", EXAMPLE)
+
+    def first_look(self, design: str) -> int:
+        """Return the number of samples of the first look."""
+        return self.replicates * FIRST_LOOK.get(design, USUAL_FIRST_LOOK)
+
+
+def until_keys(value: Any) -> Any:
+    """Refuse a key `until` that is no mapping."""
+    if not isinstance(value, (Mapping, Until)):
+        raise InputError("until", value, "half_width, of, at_most and hours", EXAMPLE)
+    return value
+
+
+def check_until(config: Any) -> None:
+    """Check that the design of a study can grow, and that the outputs of `until` have a headline quantity."""
+    until = config.until
+    if until is None:
+        return
+    if config.design not in GROWING:
+        allowed = f"with until: {', '.join(GROWING[:-1])} or {GROWING[-1]}, which grow by more samples"
+        raise InputError("design", config.design, allowed, "Choose one of them, or remove until.")
+    if config.exchange == "groups":
+        raise InputError("exchange", "groups", "with until: columns exchanged by factor", "Remove exchange or until.")
+    each, rest = divmod(config.samples, until.replicates)
+    if rest or each & (each - 1) or not each:
+        near = until.replicates << max(0, round(config.samples / until.replicates) - 1).bit_length()
+        allowed = f"with until: the {until.replicates} replicates times a power of two, at the first look"
+        raise InputError("samples", config.samples, allowed, f"Write samples: {near}, or remove the key.")
+    known = output_names(config.outputs)
+    for name in until.of:
+        kind, output = statistic(name) if config.design == "inner_outer" else ("", name)
+        if kind == "probability" and output in (*config.analysis.target, *REGIMES):
+            continue
+        if kind == "probability":
+            remedy = f"Add it to analysis.target, such as {{{output}: {{min: 500}}}}."
+            raise InputError("until.of", name, "the probability of a target or of a regime", remedy)
+        if output not in known:
+            raise unknown_result("until.of", output, known, config.outputs)
+        if config.design == "inner_outer" and (kind not in ("", "b10") or "life" not in output):
+            allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a target or of a regime"
+            raise InputError("until.of", name, allowed, f"For example probability({output}) with analysis.target.")
+
+
+def check_first_look(study: Any) -> None:
+    """Refuse a number of cases that the first look exceeds already."""
+    until = study.config.until
+    if until is not None and (cases := study.drawn.size) > until.at_most:
+        remedy = f"Write at_most: {4 * cases}, for example, or fewer samples."
+        raise InputError("until.at_most", until.at_most, f"at least the {cases} cases of the first look", remedy)
