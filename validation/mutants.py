@@ -93,7 +93,7 @@ FORMULAS = {
     ),
     "direction": ("analysis/pareto.py", '"min" else -1.0', '"min" else 1.0', ("analysis/test_pareto.py",)),
     "wear-depth": ("damage/wear.py", "return np.asarray(1e-3 * k.reshape", "return np.asarray(1e-2 * k.reshape", WEAR),
-    "wear-tied": ("damage/wear.py", "/ rubbed)", "/ shear)", WEAR),
+    "wear-tied": ("damage/wear.py", "np.where(braked, pressed, rubbed)", "np.where(braked, pressed, shear)", WEAR),
     "wear-place": ("damage/wear.py", "0.5 * (right - left)", "0.5 * (left - right)", WEAR),
     "wear-mirrored": ("damage/wear.py", "np.array([1.0, -1.0])[:, None]", "np.array([1.0, 1.0])[:, None]", WEAR),
     "wear-beyond-table": ("damage/wear.py", "slope * np.maximum(work - x[-1]", "0.0 * np.maximum(work - x[-1]", WEAR),

@@ -36,7 +36,7 @@ def test_solve_prints_json_and_writes_netcdf(tmp_path):
 
 def test_study_from_plan_to_repeat(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
-    assert "cases     6, 0 of them" in trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout
+    assert "cases    6, 0 of them" in trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout
     assert not (tmp_path / "results").exists(), "planning writes nothing"
     trackroller("run", "tiny.yaml", cwd=tmp_path)
     with xr.open_dataset(tmp_path / "results" / "tiny" / "study.nc") as ds:

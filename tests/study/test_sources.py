@@ -17,13 +17,14 @@ from trackroller.study.store import sources
 HERE = Path(__file__).parents[1]
 ROOT = sources.PACKAGE.parent
 FILES = sorted(sources.PACKAGE.rglob("*.py")) + sorted((ROOT / "validation").rglob("*.py"))
+DOCUMENTED = ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef
 
 
 def tree(text: str, drop_docstrings: bool) -> str:
     """Return the syntax tree as text, with raw and plain line breaks within strings made equal."""
     parsed = ast.parse(text)
     for node in ast.walk(parsed):
-        has_docstring = isinstance(node, (ast.Module, ast.ClassDef, ast.FunctionDef)) and ast.get_docstring(node)
+        has_docstring = isinstance(node, DOCUMENTED) and ast.get_docstring(node)
         if has_docstring and drop_docstrings:
             node.body[0] = ast.Expr(ast.Constant(...))
         if isinstance(node, ast.Constant) and isinstance(node.value, str):
