@@ -53,6 +53,7 @@ def test_code_runs_only_where_it_is_allowed(place):
     (place / "case.yaml").write_text("motor_force: 0\n")
     said = solve(place, code=2)
     assert "lining.py declares it: add --allow-code" in said and "ran" not in said
+    assert "lining.py declares it: add --allow-code" in command(place, "solve", "--limits", "lining", code=2)
     said = solve(place, "--allow-code", code=2)
     assert "must declare LIMIT = Limit(name='lining', ...)" in said and len(said.splitlines()) == 1
 

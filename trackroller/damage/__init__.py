@@ -18,7 +18,7 @@ from trackroller.damage import (
     wear,
 )
 from trackroller.damage.limit import TRACTIONS, Limit, declarations
-from trackroller.errors import check_names
+from trackroller.errors import InputError, check_names
 from trackroller.parameters import own_limits
 
 _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
@@ -40,6 +40,9 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
     `all` stands for all limits that have a verdict.
     """
     known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
+    for name in names:
+        if name not in known and (how := own_limits.hint(name)):
+            raise InputError(field, name, "limits that are loaded", how)
     check_names(field, names, (*known, "all"))
     wanted = known if "all" in names else names
     return (*dict.fromkeys(LIMITS[name].group for name in wanted), verdict.GROUP)

@@ -5,10 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.parameters import own_limits
 from trackroller.parameters.contact_models import DECLARED, MEANINGS
 from trackroller.parameters.declared import declared
 
@@ -136,8 +136,8 @@ class Option:
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
-            if self.name == "outputs" and (file := Path("config", "limits", f"{value}.py")).is_file():
-                raise InputError(where, value, self.allowed(), f"{file} declares it: add --allow-code.")
+            if self.name == "outputs" and (how := own_limits.hint(value)):
+                raise InputError(where, value, self.allowed(), how)
             raise unknown_name(where, value, self.values)
         return value
 

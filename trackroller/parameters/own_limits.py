@@ -20,6 +20,12 @@ from trackroller.errors import InputError
 VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
 
 
+def hint(name: Any) -> str:
+    """Return how to load the file of the folder config/limits that declares a limit; an empty text if none does."""
+    file = Path("config", "limits", f"{name}.py")
+    return f"{file} declares it: add --allow-code." if file.is_file() else ""
+
+
 @cache
 def digests() -> dict[Path, str]:
     """Return the SHA-256 of each allowed file, sorted by name; the files are read once, before they are loaded."""
