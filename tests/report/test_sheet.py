@@ -377,6 +377,12 @@ def test_no_label_of_the_drawing_lies_on_an_arrow_or_another_label(change, shape
     assert "r 6 mm" in texts and ("r 7 mm" in texts or "straight profile" in texts)
 
 
+def test_lengths_of_the_drawing_have_the_digits_of_a_drawing():
+    case = tr.Case.from_dict({"outer_radius": 26, "groove_depth": 3, "roller_profile_radius": -6.6})
+    texts = [label["text"] for label, _ in content_of(solve_sliding(case, ("forces",)))["labels"]]
+    assert f"A {case.axis_distance:.5g} mm" in texts and len(str(case.axis_distance)) > 7
+
+
 LETTERS = """(() => { let least = 99; const texts = document.createTreeWalker(document.body, NodeFilter.SHOW_TEXT);
   while (texts.nextNode()) { const owner = texts.currentNode.parentElement;
     if (!texts.currentNode.textContent.trim() || !owner.getClientRects().length) continue;

@@ -148,13 +148,13 @@ def _dimensions(
     """Return line [mm], text, index and direction of the label of the axis distance and of both profile radii."""
     side, groove = 1.5 * r_guide, outline[int(1.72 * ARC)]  # a point on the right flank
     radius = values["roller_profile_radius"]
-    profile = ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):g} mm", "C,TR")
+    profile = ("straight profile", "") if math.isinf(radius) else (f"r {abs(radius):.5g} mm", "C,TR")
     profile = ("drawn profile", "") if values.get("roller_profile") else profile
     rim = r_guide * np.array([-0.8, -0.6])
     return [
-        (np.array([(side, height / 2), (side, height)]), f"A {values['axis_distance']:g} mm", "T", (1.0, 0.0)),
+        (np.array([(side, height / 2), (side, height)]), f"A {values['axis_distance']:.5g} mm", "T", (1.0, 0.0)),
         (np.array([(side, height / 2), (side, 0.0)]), "", "", (1.0, 0.0)),
-        (np.stack([1.25 * rim, rim]), f"r {r_guide:g} mm", "C,G", (-1.0, 1.0)),
+        (np.stack([1.25 * rim, rim]), f"r {r_guide:.5g} mm", "C,G", (-1.0, 1.0)),
         (np.stack([groove + r_guide * np.array([0.9, -0.55]), groove]), *profile, (1.0, 1.0)),
     ]
 
