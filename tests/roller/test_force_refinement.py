@@ -41,9 +41,9 @@ def test_a_light_contact_has_its_own_load(monkeypatch, designs):
     found, grids = solved(monkeypatch, designs)
     monkeypatch.setattr(correction, "REFINED_ERROR", np.inf)
     rough, coarse = solved(monkeypatch, designs)
-    assert max(grids) == 2 * ELEMENTS and max(coarse) == ELEMENTS
+    assert max(grids) == correction.LIGHT_FACTOR * ELEMENTS and max(coarse) == ELEMENTS
     after, before = (np.abs(ds.normal_force.values / exact - 1.0) for ds in (found, rough))
-    assert after.max() < 0.04 < 0.1 < before.max()
+    assert after.max() < 0.02 < 0.1 < before.max()
     assert np.all(after.max(axis=1) < 0.5 * before.max(axis=1))
     assert found.converged.all()
 
@@ -51,6 +51,7 @@ def test_a_light_contact_has_its_own_load(monkeypatch, designs):
 def test_refined_forces_are_those_of_twice_the_elements(monkeypatch, designs):
     """Independent of the way there: a balance on twice the elements gives the same forces."""
     finer = dataclasses.replace(PRESETS["standard"], elements=2 * ELEMENTS)
+    monkeypatch.setattr(correction, "LIGHT_ERROR", np.inf)
     monkeypatch.setattr(correction, "REFINED_ERROR", 0.0)
     found, _ = solved(monkeypatch, designs)
     monkeypatch.setattr(correction, "REFINED_ERROR", np.inf)

@@ -36,6 +36,9 @@ TRACTION_TOLERANCE = 1e-3
 # by mu F_N. The change of F_N that it causes in the other contact, divided by that F_N, must not exceed it either.
 # The limit holds for `extrapolation.FITTED_AT` elements.
 REFINED_ERROR = 4e-3
+# Estimated relative error of F_N in the other contact above which a patch is solved on three times the elements, too.
+# Only contacts near lift-off have such an error.
+LIGHT_ERROR, LIGHT_FACTOR = 1e-2, 3
 
 
 def refined_above(elements: int) -> float:
@@ -153,8 +156,8 @@ class Correction:
     def _refined(self, patch: Any, slip: Slip, friction, rows: np.ndarray, solution: PatchSolution):
         """Return the forces (m, 3) [N, N, N mm] of patches and their estimated error (m,) [N].
 
-        They are those of the solutions `solution`, or of twice the elements where the error counts. In the balance an
-        error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
+        They are those of the solutions `solution`, or of two or three times the elements where the error counts. In the
+        balance an error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
         """
         value, force_error, side = solution.resultants.columns, solution.force_error.copy(), _side(slip)
         normal = np.empty((len(self.error), 2))
@@ -176,6 +179,15 @@ class Correction:
         _, limit = extrapolation.extrapolated(patch, creep, mu, self.elastic.take(rows), finer, plain, change)
         error = extrapolation.force_error(patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
         value[rough[good]], force_error[rough[good]] = (plain + limit)[good], error[good]
+        light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
+        if light.size:
+            elements = LIGHT_FACTOR * self.settings.elements
+            settings = dataclasses.replace(self.settings, elements=elements, tolerance=self.traction_tolerance)
+            elastic, rough = self.elastic.take(rows[light]), rough[light]
+            best = solve_patch(patch.take(light), creep.take(light), mu[light], elastic, settings)
+            self.count += light.size
+            good = best.converged
+            value[rough[good]], force_error[rough[good]] = best.resultants.columns[good], best.force_error[good]
         return value, force_error
 
     def on_finer(
