@@ -81,8 +81,7 @@ def adopt(target: str, results: Path) -> None:
                 shutil.copy(folder / f"{name}.json", DATA)
         measured = json.loads((DATA / "scaling.json").read_text(encoding="utf-8"))
         scaling.draw(measured["by_size"], measured["by_accuracy"], FIGURES)
-        if (DATA / "groove.json").is_file():
-            groove.draw(json.loads((DATA / "groove.json").read_text(encoding="utf-8")), FIGURES)
+        groove.draw(json.loads((DATA / "groove.json").read_text(encoding="utf-8")), FIGURES)
         return
     data = folder / f"{target}.json"
     if target == "tradeoff" and not all(json.loads(data.read_text(encoding="utf-8"))["ladders"].values()):

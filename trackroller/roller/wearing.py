@@ -40,7 +40,7 @@ FIRST = 0.05  # depth of the first step over the elastic approach of the new bod
 LEAST = 0.02  # depth of the least step over that of the first step, or of a step that wears SHARE of the depth
 GROWTH, SHRINK = 2.5, 0.3  # limits of the change of a step
 TRIES = 3  # steps in a row, each shorter, that end without a balance or in another regime
-STEPS = 30  # largest number of states, which bounds the processor time of a groove that goes on growing
+STEPS = 25  # largest number of states, which bounds the processor time of a groove that goes on growing
 ENDS = {
     "travel": "the travel asked for is reached",
     "permissible": "the permissible wear depth is reached",

@@ -70,6 +70,7 @@ def draw(measured: dict[str, Any], folder: Path) -> None:
         panels[0, 0].legend(frameon=False)
         style.head(figure, "Three rollers while they wear, at three resolutions")
         style.save(figure, folder, "groove")
+        (folder / "groove.svg").unlink()  # the page shows the PNG
 
 
 if __name__ == "__main__":
