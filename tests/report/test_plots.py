@@ -256,6 +256,21 @@ def test_long_names_of_designs_are_numbered_with_a_key(monkeypatch, longest):
 
 
 @pytest.mark.parametrize(
+    ("force", "said"), [(-12, "No design keeps a life in nine"), (0, "1.7225-quenched-tempered lasts longest in nine")]
+)
+def test_no_design_lasts_longest_in_nine_of_ten_conditions_if_none_has_a_life_there(force, said):
+    factors = {
+        "friction_coefficient": {"uniform": [0.06, 0.22]},
+        "roller_material": {"values": ["1.7225-normalised", "1.7225-quenched-tempered"]},
+    }
+    base = {"motor_force": force, "radial_force": -80}
+    named = {"name": "s", "base": base, "factors": factors, "design": "lhs", "samples": 40, "outputs": ["life"]}
+    with style.look():
+        _, info = designs.lives_by_design(tr.run(named | {"contact_model": "sliding"}, progress=False).view)
+    assert info.sentence.startswith(said)
+
+
+@pytest.mark.parametrize(
     ("values", "logarithmic"),
     [(np.linspace(0.02, 0.4, 20), False), (np.geomspace(0.02, 0.4, 20), True), (np.array([0.0, 1.0, 100.0]), False)],
 )
