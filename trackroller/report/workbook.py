@@ -57,7 +57,9 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     The path.
     """
     if path.suffix.lower() == ".csv":
-        write_whole(path, lambda beside: table.to_csv(beside, index=False))
+        texts = table.select_dtypes(exclude="number")
+        inert = table.assign(**{str(name): texts[name].map(_inert) for name in texts})
+        write_whole(path, lambda beside: inert.to_csv(beside, index=False))
         return path
     if path.suffix.lower() != ".xlsx":
         raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
