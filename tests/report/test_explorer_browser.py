@@ -622,6 +622,23 @@ def test_the_selection_is_exported_with_every_digit(page, grid, tmp_path):
     assert {row["regime"] for row in rows} <= {"rolling", "full_slip", "lift_off"}
 
 
+def test_texts_that_a_spreadsheet_would_run_are_exported_inert(browser, grid, place, tmp_path):
+    path = written(grid, place, "hostile")
+    text = path.read_text(encoding="utf-8")
+    assert "POM / POM" in text
+    path.write_text(text.replace("POM / POM", "=1+1"), encoding="utf-8")
+    page = browser.open(path)
+    page.browser.call("Browser.setDownloadBehavior", behavior="allow", downloadPath=str(tmp_path))
+    page.run("[...document.querySelectorAll('#explorer button')].find(b => b.textContent === 'Export CSV').click()")
+    target = tmp_path / "friction-and-fit-selection.csv"
+    page.run("new Promise(r => setTimeout(r, 1000))")
+    with target.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    assert {"PA6 / 1.7225-normalised", "'=1+1"} <= {row["material_pair"] for row in rows}
+    assert min(float(row["roller_profile_radius"]) for row in rows) < 0
+    page.close()
+
+
 def test_the_address_holds_the_view_and_wrong_addresses_do_no_harm(browser, pages):
     page = browser.open(pages["grid"])
     page.run(

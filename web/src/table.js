@@ -33,7 +33,10 @@ export function table(model) {
 
   function text(separator, chosen) {
     const kept = study.of("factor", "input", "output", "design", "state");
-    const quoted = (words) => (/[",\n\t]/.test(words) ? `"${words.replaceAll('"', '""')}"` : words);
+    const number = (words) => !Number.isNaN(Number(words.replace("inf", "Infinity")));
+    const runs = (words) => /^[=+\-@\t\r]/.test(words) && !number(words); // as a formula, in a spreadsheet
+    const inert = (words) => (runs(words) ? `'${words}` : words);
+    const quoted = (words) => (/[",\n\t]/.test(words) ? `"${inert(words).replaceAll('"', '""')}"` : inert(words));
     const lines = [["case", ...kept.map((c) => c.name)].map(quoted).join(separator)];
     for (const row of chosen) lines.push([String(study.caseOfRow(row)), ...kept.map((c) => rawText(c, row))].map(quoted).join(separator));
     return `${lines.join("\r\n")}\r\n`;
