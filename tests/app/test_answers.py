@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import threading
 import time
+from itertools import pairwise
 
 import fake_solver
 import numpy as np
@@ -15,7 +16,7 @@ import trackroller as tr
 from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
 from trackroller.app.picture import curve, picture, texts
-from trackroller.app.studies import checked, compare, listing, page_of
+from trackroller.app.studies import checked, headlines, listing, page_of
 from trackroller.errors import WorkError
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
 from trackroller.report.pages.sheet_facts import collect
@@ -110,6 +111,14 @@ def test_a_curve_is_the_results_of_its_cases():
     np.testing.assert_allclose(ends, ds.peak_stress.sel(body="roller").max("contact"), rtol=1e-6)
 
 
+def test_a_curve_is_there_for_every_result_and_follows_its_parameter():
+    found = curve({"heat_transfer_coefficient": 20, "cooled_area": 3000}, "ambient_temperature", [0.0, 60.0])["columns"]
+    assert {"normal_force[1]", "spin_pole_lateral[2]", "shakedown_utilisation[1,roller]", "slip"} <= set(found)
+    heat = found["utilisation[heat,guide]"]["values"]
+    assert all(cold < hot for cold, hot in pairwise(heat))
+    assert len(set(found["normal_force[1]"]["values"])) == 1
+
+
 def test_a_curve_names_what_it_leaves_out():
     found = curve({}, "roller_profile_radius", [-28.0, -1.75])
     values = found["columns"]["max_pressure"]["values"]
@@ -160,7 +169,7 @@ def test_altered_results_are_named_in_the_list_and_their_pages_refused(tmp_path,
     with pytest.raises(WorkError, match=r"report\.html was altered"):
         page_of("two", "report.html")
     with pytest.raises(WorkError, match=r"study\.nc was altered"):
-        compare(["two"])
+        headlines("two")
 
 
 def test_only_the_newest_request_of_a_page_is_worked_on():

@@ -74,6 +74,7 @@ def test_the_page_begins_with_the_roller_of_the_readme(browser, live):
     with closing(Page(browser, live.address, width=1280, height=800)) as shown:
         shown.until(SETTLED)
         given = dict(pair.split("=") for pair in shown.run("location.hash.slice(1)").split("&"))
+        assert shown.run("document.documentElement.scrollHeight") <= 800  # one screen without scrolling
         assert given["roller_material"] in readme and given["guide_material"] in readme
         call = readme.partition("tr.solve(tr.Case(")[2].partition(", **")[0]
         assert call == ", ".join(f"{name}={value}" for name, value in given.items() if not name.endswith("material"))
@@ -126,6 +127,45 @@ def test_a_wrong_value_is_named_beside_its_field_and_the_last_picture_stays(page
     type_into(page, "contact_angle", "35")
     page.until(SETTLED)
     assert page.run("document.querySelector('#field-contact_angle-said').textContent") == ""
+
+
+@pytest.mark.parametrize(
+    "text, said",
+    [
+        ("name: a\noutputs: 5\nfactors: {velocity: {values: [1, 2]}}", "outputs"),
+        ("name: a\nfactors: {velocity: {values: 3}, motor_force: null}", "factors.velocity"),
+        ("name: a\nfactors: 7\nroles: 3", "factors"),
+        ("name: [", "study file"),
+        ("- 1", "study file"),
+    ],
+)
+def test_every_wrong_study_file_is_named_in_words(page, text, said):
+    show(page, "study")
+    page.run(f"""(() => {{ const area = document.querySelector('textarea'); area.value = {json.dumps(text)};
+        area.dispatchEvent(new Event('input')); }})()""")
+    page.until(f"document.querySelector('#study-said').textContent.includes({json.dumps(said)})")
+    assert "TypeError" not in page.run("document.querySelector('#study-said').textContent")
+    assert page.run("document.querySelector('button.main').disabled")
+
+
+def test_a_factor_keeps_its_range_when_its_kind_changes(page):
+    page.run("document.querySelector('[aria-label=\"Make Axial force a factor of the study\"]').click()")
+    kind, values = (
+        f"document.querySelector('[aria-label=\"Axial force: {name}\"]')" for name in ("kind of values", "values")
+    )
+    seen = {}
+    for name in ("linspace", "normal", "uniform", "triangular", "values"):
+        page.run(f"{kind}.value = '{name}'; {kind}.dispatchEvent(new Event('change'))")
+        seen[name] = page.run(f"{values}.value")
+    assert seen["linspace"] == "24, 36, 5" and seen["normal"] == "30, 3"
+    assert seen["uniform"] == "24, 36" and seen["triangular"] == seen["values"] == "24, 30, 36"
+
+
+def test_a_wrong_material_is_named_beside_its_field(page):
+    type_into(page, "guide_material", "no such")
+    page.until("document.querySelector('#field-guide_material-said').textContent.includes(\"'no such'\")")
+    type_into(page, "guide_material", "1.7225-normalised")
+    page.until(SETTLED)
 
 
 def test_the_address_repeats_what_is_on_the_screen(page, browser, live):
@@ -215,9 +255,12 @@ def test_axe_finds_nothing(page, tab, width, scheme):
     assert found == []
 
 
-@pytest.mark.parametrize("width", [400, 800, 1280])
+@pytest.mark.parametrize("width", [400, 800, 1280, 1600])
 def test_no_width_scrolls_sideways(page, width):
     page.resize(width, 800)
+    steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+    page.run(f"trackroller.state.replace({json.dumps(steel | {'motor_force': 0, 'friction_coefficient': 0.1})})")
+    page.until("document.querySelector('.margins').textContent.includes('†')")
     for tab in ("roller", "whatif", "study", "results"):
         show(page, tab)
         assert page.run("document.documentElement.scrollWidth") <= width, tab

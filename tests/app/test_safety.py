@@ -122,6 +122,21 @@ def test_a_million_cases_are_refused_before_they_are_drawn(live):
     assert live.ask("start", text="name: big\nfactors: {velocity: {linspace: [1, 9, 1000000]}}")[0] == 422
 
 
+@pytest.mark.parametrize("table", ["/etc/passwd", "../../secret.csv", "linked.csv"])
+def test_a_study_reads_tables_of_its_folder_only(live, table):
+    secret = live.folder.parent / "secret.csv"
+    secret.write_text("axial_force\n4711\n")
+    (live.folder / "studies").mkdir(exist_ok=True)
+    if not (live.folder / "studies" / "linked.csv").is_symlink():
+        (live.folder / "studies" / "linked.csv").symlink_to(secret)
+    for question in ("checked", "start"):
+        _, found = live.ask(question, text=f"name: stolen\ndesign: table\ntable: {table}")
+        assert found["errors"][0]["field"] == "table"
+        assert "root:" not in message(found) and "4711" not in message(found)
+    (live.folder / "studies" / "own.csv").write_text("axial_force\n10\n20\n")
+    assert live.ask("checked", text="name: fine\ndesign: table\ntable: own.csv")[1]["errors"] == []
+
+
 def test_markup_in_names_stays_text(live):
     nasty = '<img src=x onerror="alert(1)">'
     _, found = live.ask(
@@ -184,7 +199,7 @@ def test_a_study_runs_to_its_report_and_is_deleted_after_asking(live):
     status, text, headers = live.get("results/small/report.html")
     assert status == 200 and "<title>" in text and "sandbox" in headers["Content-Security-Policy"]
     assert live.get("results/small/explorer.html")[0] == 200
-    (one,) = live.ask("compare", names=["small"])[1]
+    one = live.ask("headlines", name="small")[1]
     assert one["cases"] == 6 and one["factors"]["Axial force F_ax"] == "0, 30 N"
     assert live.ask("delete", name="small", confirm="")[0] == 422
     assert live.ask("delete", name="small", confirm="small")[0] == 200

@@ -83,8 +83,7 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
 
 
 class _CallableModule(ModuleType):
-    def __call__(self, case: Any = None, folder: Path | str = ".", height: int = 820) -> Frame:
-        return frame(case, folder, height)
+    __call__ = staticmethod(frame)
 
 
 sys.modules[__name__].__class__ = _CallableModule

@@ -25,7 +25,7 @@ from trackroller.roller.limits import Limits
 from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.settings import checked_case
 from trackroller.roller.solver import solve
-from trackroller.study.outputs import outputs
+from trackroller.study.outputs import every_name, outputs
 from trackroller.yaml_file import parse_yaml, write_yaml
 
 Values = dict[str, Any]
@@ -143,8 +143,7 @@ def _sections(ds: xr.Dataset) -> list[dict[str, Any]]:
 
 def sheet(values: Values) -> str:
     """Return the sheet of a case as a page to print."""
-    groups = (*LIVE, "subsurface", *_JUDGED, "limits")
-    return render(_solved(json.dumps(values, sort_keys=True), "standard", groups))
+    return render(_solved(json.dumps(values, sort_keys=True), "standard", (*LIVE, *_JUDGED, "limits", "subsurface")))
 
 
 def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
@@ -177,12 +176,14 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
             refused = str(exc.errors[0])
     if not cases:
         raise InputError(over, f"{low:g} to {high:g}", "values of which one at least can be solved", refused)
-    ds = solve(cases, LIVE[:-1], **{"accuracy": "preview", **read(values)[1]})
+    ds = solve(cases, (*LIVE[:-1], *_JUDGED, "limits"), **{"accuracy": "preview", **read(values)[1]})
     columns = {}
-    for one in outputs(ds, ("case",), keep=("rolling", "full_slip", "lift_off"), unlimited=True, scale="natural"):
+    names, regimes = every_name(ds, (), ("case",)), ("rolling", "full_slip", "lift_off")
+    for one in outputs(ds, (), names, regimes, unlimited=True, scale="natural"):
         column = np.full(POINTS, np.nan)
         column[kept] = one.values
-        columns[one.name] = {"label": one.long_name, "unit": unit_text(one.units), "values": column.tolist()}
+        if not np.isnan(column).all():
+            columns[one.name] = {"label": one.long_name, "unit": unit_text(one.units), "values": column.tolist()}
     return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
 
 

@@ -60,11 +60,10 @@ class Refused(tornado.web.HTTPError):
 
 
 SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet"), "picture")  # the thread of the solver answers
-STUDIES = ("checked", "listing", "text_of", "start", "resume", "pause", "delete", "compare", "page_of")
+STUDIES = ("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines", "page_of")
 PAGES = ("sheet", "page_of")  # have addresses of their own
 FILES = {"all_fields": "fields"} | dict.fromkeys(STUDIES, "studies")  # the thread of the files answers
 _loading = threading.Lock()
-NEWEST = ("picture", "curve", "checked", "listing")  # an older request of the same page is not worth an answer
 
 
 @functools.cache
@@ -104,8 +103,8 @@ class _Handler(tornado.web.RequestHandler):
     def prepare(self) -> None:
         """Refuse who does not know the token, who asks under another name of this machine, and other sites."""
         server, headers = self.settings["server"], self.request.headers
-        if self.request.host not in server.names:
-            raise Refused(403, f"This server answers at {HOST}:{server.port} only.")
+        if self.request.host != server.host:
+            raise Refused(403, f"This server answers at {server.host} only.")
         if not hmac.compare_digest(str(self.path_args[0]).encode(), server.token.encode()):
             raise Refused(
                 403, "The token in the address is missing or wrong. Open the address that the terminal shows."
@@ -164,8 +163,7 @@ class _Answer(_Handler):
         if len(self.request.body) > LARGEST:
             raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
         body = MAPPING.validate_json(self.request.body)
-        page = str(body.pop("page", ""))
-        found = await self.answered(name, page if name in NEWEST else "", **body)
+        found = await self.answered(name, str(body.pop("page", "")), **body)
         self.set_header("Content-Type", "application/json")
         self.finish(json.dumps(plain(found), allow_nan=False).replace("<", "\\u003c"))
 
@@ -209,9 +207,8 @@ class Server:
             sockets = tornado.netutil.bind_sockets(port, HOST)
         except OSError as exc:
             raise WorkError(f"port {port} is not free ({exc.strerror}). Give another number with --port.") from None
-        self.port = sockets[0].getsockname()[1]
-        self.address = f"http://{HOST}:{self.port}/{self.token}/"
-        self.names = tuple(f"{name}:{self.port}" for name in (HOST, "localhost"))
+        self.host = f"{HOST}:{sockets[0].getsockname()[1]}"
+        self.address = f"http://{self.host}/{self.token}/"
         application = tornado.web.Application(
             [
                 (r"/([^/]*)/sheet", _Sheet),

@@ -22,7 +22,7 @@ from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.analysis.table import StudyView
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, write_text
+from trackroller.files import files_beside, find_beside, write_text
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
@@ -69,8 +69,7 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
     """
     out: dict[str, Any] = {"text": text, "study": None, "errors": [], "plan": [], "doubts": []}
     try:
-        given = {key: value for key, value in (study or {}).items() if value not in (None, "", {}, [])}
-        out["text"] = write_yaml(given) if text is None else text
+        out["text"] = write_yaml(study or {}) if text is None else text
         out["study"] = parse_mapping(out["text"], "study file")
         parsed = _study(out["text"])
         out |= {"plan": plan_rows(parsed, status_of(parsed, RESULTS)), "doubts": parsed.doubts()}
@@ -83,8 +82,11 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
 
 def _study(text: str) -> Study:
     """Return the checked study of a text, unless it is too large for the page."""
+    data = parse_mapping(text, "study file")
     with errors_by_line(text, aliases=ALIASES), files_beside(TEXTS / "study.yaml"):
-        study = parse_study(parse_mapping(text, "study file"), TEXTS / "study.yaml")
+        if data.get("table"):
+            find_beside(data["table"], "table")  # only the folder of the page is read
+        study = parse_study(data, TEXTS / "study.yaml")
     cases = _least_cases(study)
     if cases <= MOST_CASES:  # a larger design may fill the memory when it is drawn
         cases = study.drawn.size
@@ -179,8 +181,8 @@ def _entry(name: str) -> dict[str, Any] | None:
     solved = sum(n for key, n in chunks.items() if folder.chunk(key).is_file())
     whole = folder.gathered.is_file() and solved == sum(chunks.values())
     files = list(_stats(folder.root))
-    newest = max((stat.st_mtime for stat in files), default=0.0)
-    error = "" if works else progress.get("error") or _altered(folder.gathered)
+    newest, size = max((stat.st_mtime for stat in files), default=0.0), sum(stat.st_size for stat in files)
+    error = "" if works else progress.get("error") or _altered(folder.gathered, newest, size)
     state = "running" if works else "stopped" if error else "done" if whole else "paused"
     return {
         "name": name,
@@ -191,10 +193,9 @@ def _entry(name: str) -> dict[str, Any] | None:
         "total": total,
         "done": total if state == "done" else progress.get("done", solved) if works else solved,
         "failed": progress.get("failed"),
-        "bytes": sum(stat.st_size for stat in files),
+        "bytes": size,
         "date": datetime.datetime.fromtimestamp(newest).isoformat(" ", "minutes"),
         "pages": [page for page in PAGES if (folder.root / page).is_file()],
-        "text": (TEXTS / f"{name}.yaml").is_file() or folder.study_file.is_file(),
     }
 
 
@@ -206,15 +207,10 @@ def _stats(root: Path) -> Iterator[os.stat_result]:
                 yield os.lstat(Path(place, name))
 
 
-def _altered(path: Path) -> str:
-    """Return what is wrong with a result that was altered after it was written, '' if it is as it was written."""
-    found = path.stat() if path.is_file() else None
-    return _altered_of(path, found.st_mtime_ns, found.st_size) if found else ""
-
-
-@functools.lru_cache(1000)
-def _altered_of(path: Path, date: int, size: int) -> str:
-    return altered(path) or ""  # the list is made every few seconds, and a digest takes up to a second
+@functools.lru_cache(1000)  # the list is made every few seconds, and a digest takes up to a second
+def _altered(path: Path, newest: float, size: int) -> str:
+    """Return what is wrong with a result that was altered after it was written; date and size are of its folder."""
+    return (altered(path) if path.is_file() else "") or ""
 
 
 def text_of(name: str) -> dict[str, Any]:
@@ -234,12 +230,8 @@ def page_of(name: str, page: str) -> Path:
     return check_sealed(path)
 
 
-def compare(names: list[str]) -> list[dict[str, Any]]:
-    """Return factors, headline numbers and the sentences of *In short* of some studies."""
-    return [_headlines(name) for name in names[:2]]
-
-
-def _headlines(name: str) -> dict[str, Any]:
+def headlines(name: str) -> dict[str, Any]:
+    """Return factors, headline numbers and the sentences of *In short* of a study."""
     folder = folder_of(name)
     results = read_results(folder.root)
     view = results.view.analysed(stored_analysis(results, folder.root))

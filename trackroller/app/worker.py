@@ -94,10 +94,9 @@ def _work(name: str, progress: Progress) -> None:
     from trackroller.analysis.deciding import run_any  # heavy: analysis
     from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
     from trackroller.solved import open_study
-    from trackroller.study.file.load import load_study
-    from trackroller.study.status import status_of
+    from trackroller.study.status import find_study, status_of
 
-    study = load_study(Path("studies", f"{name}.yaml"))
+    study = find_study(f"studies/{name}.yaml")
     plan = run_any(study, started=progress.started, progress=progress.advanced)
     status = status_of(study)
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)

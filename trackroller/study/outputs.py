@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
@@ -93,7 +94,8 @@ def flat(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
     return values.reshape(int(np.prod([ds.sizes[d] for d in dims])), *values.shape[len(dims) :])
 
 
-def _available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
+def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
+    """Return the variables that hold results with one number a case, or a contact, body or limit of it."""
     known = set(factors) | set(PARAMETERS) | set(MATERIAL_FIELDS) | set(MAPPING_FIELDS) | BOOKKEEPING
     return [
         str(name)
@@ -105,9 +107,19 @@ def _available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) ->
     ]
 
 
+def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
+    """Return the names of all outputs, those that are analysed by default first."""
+    factors = list(factors)
+    names = default_names(ds, factors, dims)
+    for name in available(ds, factors, dims):
+        places = itertools.product(*(map(str, ds[dim].values.tolist()) for dim in ds[name].dims if dim not in dims))
+        names += [f"{name}[{','.join(place)}]" if place else name for place in places]
+    return list(dict.fromkeys(names))
+
+
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the outputs that are analysed by default: those of `DEFAULTS`, otherwise every scalar result."""
-    free = _available(ds, factors, dims)
+    free = available(ds, factors, dims)
     names = [n for n, (var, *_) in DEFAULTS.items() if var in free and np.isfinite(ds[var]).any()]
     for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"{body}_life_cycles" in names:
@@ -244,7 +256,7 @@ def outputs(
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
-    options = _available(ds, factors, dims)
+    options = available(ds, factors, dims)
     columns = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
         values, units, words, usual = _raw(ds, name, dims, options)

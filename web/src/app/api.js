@@ -22,6 +22,7 @@ export async function ask(name, body = {}, slot = "") {
     throw new Refused([{ field: "", message: "The server does not answer. Start it again: trackroller app" }]);
   }
   const found = await answer.json();
+  if (found.stale) return new Promise(() => {}); // a newer question of this slot gets the answer
   if (!answer.ok) throw new Refused(found.errors ?? [{ field: "", message: "The server refused." }]);
   return found;
 }

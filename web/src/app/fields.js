@@ -82,7 +82,7 @@ export function parameterRow(parameter, { change, curve, factor }) {
       const size = value === null ? NaN : asNumber(value);
       if (document.activeElement !== field) field.value = textOf(value);
       node.classList.toggle("given", given !== undefined);
-      field.placeholder = parameter.optional ? "not given" : "";
+      field.placeholder = parameter.optional ? "none" : "";
       const ends = endsFor(parameter, size);
       range.hidden = ends === null;
       range.disabled = !Number.isFinite(size);

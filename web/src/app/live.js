@@ -19,7 +19,7 @@ export function live({ values, inside, shown, failed }) {
     busy = true;
     try {
       const picture = await ask("picture", { values: own.values, accuracy: own.accuracy, complete: own.complete, inside: own.inside });
-      if (!picture.stale && (own.version === version || own.accuracy === "preview")) shown(picture, own);
+      if (own.version === version || own.accuracy === "preview") shown(picture, own);
     } catch (error) {
       if (own.version === version) failed(error.errors ?? [{ field: "", message: String(error) }]);
       if (!error.errors) console.error(error);

@@ -41,8 +41,9 @@ async function start() {
     failed(errors) {
       for (const row of rows.values()) row.complain("");
       for (const { field, message } of errors) {
-        const named = [...rows.keys()].find((name) => name === field || field.startsWith(`${name}.`) || field.startsWith(`${name} `));
-        rows.get(named)?.complain(message);
+        const unknown = (name) => state.values[name] && !offered.materials.some((m) => m.name === state.values[name]);
+        const [head] = field.split(/[., (]/); // of "roller_profile.file" and "axial_force, line 1"
+        rows.get(head === "material" ? offered.bodies.find(unknown) : head)?.complain(message);
       }
       view.refuse(errors);
     },

@@ -3,7 +3,7 @@ import { CIVIDIS, mixed, parsed, theme } from "../colours.js";
 import { canvas, el, replace } from "../dom.js";
 import { number } from "../words.js";
 
-const HEIGHT = 132;
+const HEIGHT = 124;
 const FOOT = 22; // room for the ends of the axes
 
 const ramp = Uint8ClampedArray.from({ length: 256 * 3 }, (_, i) => {
@@ -57,7 +57,8 @@ function map(label) {
 export function maps() {
   const parts = [1, 2].map((contact) => map(`Contact ${contact}`));
   const legend = el("p", { class: "ramp", "aria-hidden": "true" });
-  const node = el("div", { class: "maps" }, parts.map((part) => part.node), legend);
+  const signs = el("p", { class: "ramp" });
+  const node = el("div", { class: "maps" }, parts.map((part) => part.node), legend, signs);
 
   function legendOf(field, top) {
     replace(legend, "0", el("canvas", { class: "scale", width: 128, height: 1 }), `${number(top, 3)} ${field.unit} ${field.words}`);
@@ -84,8 +85,8 @@ export function maps() {
       const words = `largest ${field.words} ${number(field.top, 3)} ${field.unit}`;
       part.caption.append(`: ${number(field.top, 3)} ${field.unit}`);
       part.surface.node.setAttribute("aria-label", `Contact ${i + 1}: ${words}${patch.pole ? `, spin pole at x = ${number(patch.pole[0], 3)} mm` : ""}`);
-      part.node.title = "The rolling direction points up. White outline: adhesion area. Dot: spin pole.";
     });
+    signs.textContent = found.length ? "Up: rolling direction. Dot: spin pole. White: adhesion." : "";
     if (found.length) legendOf(found[0].fields[kind], top);
     else replace(legend);
   }
@@ -161,8 +162,8 @@ export function maps() {
       part.bar(at, box.x[1] - box.x[0]);
       part.caption.append(`: ${number(one.field.top, 3)} ${one.field.unit}`);
       part.surface.node.setAttribute("aria-label", `Contact ${i + 1}, ${body}: largest von Mises stress ${number(one.field.top, 3)} MPa below the surface`);
-      part.node.title = "Section across the track; depth points down.";
     });
+    signs.textContent = "Sections across the track; depth points down.";
     if (own.length) legendOf(own[0].field, top);
   }
 

@@ -49,13 +49,14 @@ function margins(list, complete) {
       el("td", {}, m.body.includes(" and ") ? "both" : m.body),
       el("td", {}, bar(m)),
       el("td", { class: "n" }, m.factor),
-      el("td", { class: "n" }, m.life),
+      el("td", { class: "n" }, m.beyond && Number.isFinite(m.hours) ? `${m.life.split(" (")[0]} †` : m.life.split(" (")[0]),
     ),
   );
   const guessed = list.some((m) => m.guessed) ? "* rests on placeholders of a material. " : "";
+  const beyond = list.some((m) => m.beyond && Number.isFinite(m.hours)) ? "† beyond the S-N data. " : "";
   return [
     el("table", { class: "margins" }, el("thead", {}, head), el("tbody", {}, body)),
-    el("p", { class: "soft" }, guessed, "Margin: permitted over present load; at least 1 is required.", complete ? "" : " The distances to slip and lift-off follow when it rests."),
+    el("p", { class: "soft" }, guessed, beyond, "Margin: permitted over present load; at least 1 is required.", complete ? "" : " The distances to slip and lift-off follow when it rests."),
   ];
 }
 
@@ -77,7 +78,7 @@ export function pictureView({ again }) {
   const limits = el("div", {});
   const lives = el("div", {});
   const whole = el("details", { class: "whole" }, el("summary", {}, "Slip, and loads on the bearing"));
-  const unchecked = el("details", {}, el("summary", {}, "Not checked, and what the data rest on"));
+  const unchecked = el("details", {}, el("summary", {}, "Not checked, and placeholders"));
   const section = (title, ...content) => el("section", {}, el("h2", {}, title), ...content);
   const node = el(
     "div",

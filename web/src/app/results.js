@@ -27,8 +27,7 @@ export function resultsView(state, { open, told }) {
   async function look() {
     clearTimeout(timer);
     try {
-      const found = await ask("listing");
-      if (!found.stale) list = found;
+      list = await ask("listing");
     } catch (error) {
       said.textContent = error.message;
     }
@@ -62,7 +61,7 @@ export function resultsView(state, { open, told }) {
         done && study.pages.length < 2 ? button("Make the pages", () => act("resume", { name: study.name }), "of ") : null,
         study.state === "running" ? button("Pause", () => act("pause", { name: study.name })) : null,
         ["paused", "stopped"].includes(study.state) ? button("Resume", () => act("resume", { name: study.name })) : null,
-        study.text ? button("Edit", async () => open((await ask("text_of", { name: study.name })).text)) : null,
+        button("Edit", async () => open((await ask("text_of", { name: study.name })).text)),
         study.state !== "running" ? button("Delete", () => question(study)) : null,
       ),
     );
@@ -87,7 +86,7 @@ export function resultsView(state, { open, told }) {
     if (!chosen.size) return replace(beside);
     replace(beside, el("p", {}, "Reading the results …"));
     try {
-      const found = await ask("compare", { names: [...chosen] });
+      const found = await Promise.all([...chosen].map((name) => ask("headlines", { name }, name)));
       const rows = (part, text) => {
         const keys = [...new Set(found.flatMap((one) => Object.keys(one[part])))];
         return keys.map((key) => {
@@ -111,7 +110,7 @@ export function resultsView(state, { open, told }) {
       "dialog",
       { "aria-labelledby": "delete-question" },
       el("p", { id: "delete-question" }, `Delete the results of '${study.name}' (${size(study.bytes)})? Its study file stays.`),
-      el("div", { class: "tools" }, el("button", { type: "button", onclick: () => dialog.close() }, "Keep"), el("button", { type: "button", class: "danger", onclick: () => (dialog.close(), chosen.delete(study.name), act("delete", { name: study.name, confirm: study.name })) }, "Delete")),
+      el("div", { class: "tools" }, el("button", { type: "button", onclick: () => dialog.close() }, "Keep"), el("button", { type: "button", class: "danger", onclick: () => (dialog.close(), chosen.delete(study.name), compare(), act("delete", { name: study.name, confirm: study.name })) }, "Delete")),
     );
     dialog.addEventListener("close", () => dialog.remove());
     document.body.append(dialog);

@@ -3,7 +3,17 @@ import { ask } from "./api.js";
 import { el, replace, select } from "../dom.js";
 
 const PAUSE = 300; // ms without a change until the study is checked
-const RANGED = { uniform: 2, loguniform: 2, linspace: 3, logspace: 3, normal: 2, truncnormal: 4, triangular: 3 };
+// The numbers of each kind for values from `low` to `high`.
+const RANGED = {
+  values: (low, high) => [low, (low + high) / 2, high],
+  linspace: (low, high) => [low, high, 5],
+  logspace: (low, high) => [low, high, 5],
+  uniform: (low, high) => [low, high],
+  loguniform: (low, high) => [low, high],
+  normal: (low, high) => [(low + high) / 2, (high - low) / 4],
+  truncnormal: (low, high) => [(low + high) / 2, (high - low) / 4, low, high],
+  triangular: (low, high) => [low, (low + high) / 2, high],
+};
 const KINDS = {
   values: "list of values",
   linspace: "even steps: first, last, how many",
@@ -35,6 +45,7 @@ function read(text) {
   const one = (word) => (word.trim() !== "" && Number.isFinite(Number(word)) ? Number(word) : word.trim() === "inf" ? "inf" : word.trim());
   return parts.map((part) => (part.trim().startsWith("[") ? part.trim().slice(1, -1).split(",").map(one) : one(part))).filter((v) => v !== "");
 }
+const filled = (mapping) => Object.fromEntries(Object.entries(mapping).filter(([, value]) => value !== "" && (typeof value !== "object" || Object.keys(value ?? {}).length)));
 const written = (value) => (Array.isArray(value) ? value.map((v) => (Array.isArray(v) ? `[${v.join(", ")}]` : String(v))).join(", ") : String(value ?? ""));
 
 export function studyView(state, offered, { started }) {
@@ -88,8 +99,7 @@ export function studyView(state, offered, { started }) {
 
   async function check(body) {
     try {
-      const answer = await ask("checked", body);
-      if (answer.stale) return;
+      const answer = await ask("checked", body.study ? { study: filled(body.study) } : body);
       text = answer.text;
       if (document.activeElement !== area) area.value = text;
       if (answer.study) (study = answer.study).factors ??= {};
@@ -113,7 +123,7 @@ export function studyView(state, offered, { started }) {
   }
 
   function factor(key) {
-    const spec = study.factors[key];
+    const spec = study.factors[key] ?? {};
     const kind = Object.keys(spec).find((k) => k in KINDS) ?? "values";
     const kinds = el("select", { "aria-label": `${labelOf(key)}: kind of values` }, Object.entries(KINDS).map(([k, words]) => el("option", { value: k }, words)));
     kinds.value = kind;
@@ -124,10 +134,11 @@ export function studyView(state, offered, { started }) {
       later({ study });
     };
     kinds.addEventListener("change", () => {
+      const before = Object.keys(study.factors[key] ?? {}).find((k) => k in KINDS);
       const numbers = read(field.value).filter((v) => typeof v === "number");
-      const [low, high] = [Math.min(...numbers), Math.max(...numbers)];
-      const made = { 2: [low, high], 3: kinds.value === "triangular" ? [low, (low + high) / 2, high] : [low, high, 5], 4: [(low + high) / 2, (high - low) / 4, low, high] }[RANGED[kinds.value]];
-      if (made && numbers.length) field.value = written(kinds.value === "normal" ? [(low + high) / 2, (high - low) / 4] : made);
+      const [one, two] = numbers;
+      const [low, high] = before === "normal" ? [one - 2 * two, one + 2 * two] : before === "truncnormal" ? numbers.slice(2) : before?.endsWith("space") ? [one, two] : [Math.min(...numbers), Math.max(...numbers)];
+      if (numbers.length > 1 && RANGED[kinds.value]) field.value = written(RANGED[kinds.value](low, high).map((v) => Number(v.toPrecision(4))));
       change();
     });
     field.addEventListener("change", change);
@@ -154,7 +165,7 @@ export function studyView(state, offered, { started }) {
     samples.node.hidden = !SAMPLED.includes(design.field.value);
     if (typeof (study.contact_model ?? "kalker") === "string") model.field.value = study.contact_model ?? "kalker";
     accuracy.field.value = study.accuracy ?? "standard";
-    const chosen = study.outputs ?? ["forces", "contact", "peak_stress", "life"];
+    const chosen = Array.isArray(study.outputs) ? study.outputs : ["forces", "contact", "peak_stress", "life"];
     for (const { group, box } of outputs) box.checked = chosen.includes(group);
     for (const key of [...saidOf.keys()]) if (key.startsWith("factors.")) saidOf.delete(key);
     replace(factors, Object.keys(study.factors).length ? Object.keys(study.factors).map(factor) : el("p", { class: "soft" }, "Choose factors with + beside a field of the roller, or here."));
@@ -214,8 +225,10 @@ export function studyView(state, offered, { started }) {
       question.node,
       el("h3", {}, "Factors"),
       factors,
+      message("factors"),
       el("div", { class: "tools" }, choose.node, take),
       base,
+      message("base"),
       el("h3", {}, "Design"),
       el("div", { class: "tools" }, design.node, message("design")),
       samples.node,

@@ -47,7 +47,9 @@ export function whatIf(state, offered, { rows }) {
     const columns = [...state.pins, state.values].map((values) => pictures.get(key(values)) ?? new Map());
     if (state.tab !== "whatif") return;
     [...state.pins, state.values].forEach(solve);
-    const names = [...new Set(columns.flatMap((column) => [...column.keys()]))];
+    const every = [...new Set(columns.flatMap((column) => [...column.keys()]))];
+    const groups = [...new Set(every.map((name) => name.split("|")[0]))];
+    const names = groups.flatMap((head) => every.filter((name) => name.startsWith(`${head}|`)));
     const heads = state.pins.map((values, i) =>
       el(
         "th",
@@ -96,9 +98,9 @@ export function whatIf(state, offered, { rows }) {
   async function solveCurve() {
     try {
       const answer = await ask("curve", { values: state.values, over: over.field.value, ends: [Number(from.value), Number(to.value)] });
-      if (answer.stale) return;
       found = answer;
       const names = Object.entries(found.columns);
+      for (const [, column] of names) column.label = column.label.replace(/\((?=[12])/, "(contact ").replace(/,(?=\w+\)$)/, ", ");
       wanted = found.columns[result.field.value] ? result.field.value : found.columns[wanted] ? wanted : "roller_life_hours" in found.columns ? "roller_life_hours" : names[0][0];
       replace(result.field, names.map(([name, { label, unit }]) => el("option", { value: name }, unit === "–" ? label : `${label} [${unit}]`)));
       result.field.value = wanted;
@@ -153,7 +155,7 @@ export function whatIf(state, offered, { rows }) {
   }
 
   // texts
-  const text = el("pre", { tabindex: "0", "aria-label": "The case as text" });
+  const text = el("pre", { tabindex: "0", role: "region", "aria-label": "The case as text" });
   const kind = select("Copy as", ["YAML", "command", "Python"].map((name) => [name, name]), "command", () => write());
   const copied = el("button", { type: "button", onclick: () => copy(text.textContent, copied) }, "Copy");
   async function write() {
