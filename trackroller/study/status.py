@@ -169,7 +169,7 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
-        ("until", f"this is the first look; the sample doubles up to {until.at_most} cases" if until else ""),
+        ("until", f"the sample doubles until its intervals are narrow, up to {until.at_most} cases" if until else ""),
         ("search", generations if study.config.design == "optimise" else ""),
         ("unused", status.unused),
         ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),
