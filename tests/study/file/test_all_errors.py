@@ -129,6 +129,7 @@ def test_a_table_of_cases_names_all_its_errors_in_order(tmp_path):
         "t.csv, line 1: table column = 'roller_materal'",
         "t.csv, line 4: radial_force = '0.3 kN'",
         "t.csv, line 4: friction_coefficient = '5'",
+        "t.csv, line 4: roller_material = 'PA7'",
         "t.csv, line 5: table = '-0,2, c, typical'",
         "t.csv, line 6: friction_coefficient = 'high'",
     ]

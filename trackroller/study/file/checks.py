@@ -21,6 +21,7 @@ from trackroller.study.design.draws import check_listed, table_lines
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.roles import check_roles
 from trackroller.study.design.saltelli import serves
+from trackroller.study.file.csv import column_names, read_rows
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
@@ -216,15 +217,19 @@ def check_material_names(base: Mapping[str, Any], factors: Mapping[str, Any], da
 
 def check_cells(study: Study) -> None:
     """Check the names and cells of a table of cases; raise the errors of all its lines together."""
-    columns, wrong = study.drawn.columns, Collector()
-    for name in (name for name in (*MATERIAL_FIELDS, "material_pair") if name in columns):
-        cells = dict(zip(table_lines(study.table_path), columns[name].tolist(), strict=True))
-        for value, line in {value: line for line, value in reversed(cells.items())}.items():  # its first line
-            for material in value if isinstance(value, tuple) else (value,):
-                try:
-                    study.materials.material(material, name)
-                except InputError as error:
-                    wrong.errors.append(error.at(study.table_path, line))
+    wrong, known = Collector(), (*MATERIAL_FIELDS, "material_pair")
+    with wrong.part():
+        _ = study.drawn  # names and numbers
+    if set(known) & set(column_names(study.table_path, "table")):
+        names, _, lines = read_rows(study.table_path, "table", "case", Collector(), most=math.inf)
+        for name in (name for name in names if name in known):
+            cells = {line: row[names.index(name)] for line, row in lines.items()}
+            for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():  # its first line
+                for material in filter(None, map(str.strip, cell.split("/") if name == "material_pair" else [cell])):
+                    try:
+                        study.materials.material(material, name)
+                    except InputError as error:
+                        wrong.errors.append(error.at(study.table_path, line))
     wrong.check()
 
 
