@@ -21,6 +21,7 @@ from trackroller.study.file.config import StudyFile
 from trackroller.study.file.csv import column_names
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
+from trackroller.study.file.until import Until
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 
@@ -31,8 +32,11 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
-        options = Analysis.model_fields if detail["loc"][0] == "analysis" and len(detail["loc"]) > 1 else None
-        return unknown_name("study key", where.removeprefix("analysis."), options or StudyFile.model_fields)
+        rooms = {"analysis": Analysis.model_fields, "until": Until.model_fields}
+        options = rooms.get(str(detail["loc"][0])) if len(detail["loc"]) > 1 else None
+        return unknown_name(
+            "study key", str(detail["loc"][-1]) if options else where, options or StudyFile.model_fields
+        )
     if detail["type"] == "missing":
         return InputError(where, None, "every study needs this key", f"Add a line '{where}: ...'.")
     allowed = detail["msg"].replace("Input should be ", "it must be ")

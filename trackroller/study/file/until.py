@@ -32,7 +32,7 @@ class Until(BaseModel):
         "output's range (morris), of log10 B10 or a probability (inner_outer)",
     )
     of: tuple[str, ...] = Field(
-        min_length=1, description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a target"
+        description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a target"
     )
     at_most: int = Field(200_000, ge=1, le=10_000_000, description="largest number of cases")
     hours: float | None = Field(None, gt=0, description="time of solving on one core, all runs together")
@@ -42,9 +42,9 @@ class Until(BaseModel):
     @classmethod
     def _of(cls, value: Any) -> Any:
         listed = [value] if isinstance(value, str) else value
-        if isinstance(listed, (list, tuple)) and all(isinstance(name, str) for name in listed):
+        if isinstance(listed, (list, tuple)) and listed and all(isinstance(name, str) for name in listed):
             return tuple(dict.fromkeys(name.replace(" ", "") for name in listed))
-        raise InputError("until.of", value, "a list of outputs", EXAMPLE)
+        raise InputError("until.of", value, "a list of at least one output", EXAMPLE)
 
     def first_look(self, design: str) -> int:
         """Return the number of samples of the first look."""
