@@ -109,7 +109,7 @@ def test_a_study_without_a_solved_case_or_without_its_gathered_file_says_so(tmp_
     assert code == 2 and "no case is solved yet" in err
     run_study(study).folder.gathered.unlink()
     code, _, err = command(("report", "stopped"))
-    assert code == 2 and "study.nc is missing" in err
+    assert code == 2 and "not gathered into study.nc" in err
 
 
 def test_a_study_that_grows_is_unfinished_until_it_is_gathered_again(tmp_path, monkeypatch):

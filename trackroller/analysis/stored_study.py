@@ -113,7 +113,7 @@ def _read_unfinished(folder: StudyFolder) -> StudyResults:
     design, found, place = locate(study, folder)
     rows = np.flatnonzero(place >= 0)
     if len(rows) in (0, len(place)):
-        state = "every case is solved, but study.nc is missing" if len(rows) else "no case is solved yet"
+        state = "every case is solved, but not gathered into study.nc" if len(rows) else "no case is solved yet"
         raise InputError("study", str(folder.root), f"a study with results; {state}", "Run the study to its end first.")
     drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
     data = labelled(study, drawn, cases, *collect(found, place[rows], folder.root)).assign_coords(case=rows)

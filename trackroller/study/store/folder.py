@@ -134,7 +134,7 @@ def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = N
     """Wait until `try_lock` succeeds; call `tell` once if another process holds the lock."""
     while not try_lock(stream, shared):
         if tell is not None:
-            tell(f"{Path(stream.name).stem}: another process works on this, waiting for it")
+            tell(f"{Path(stream.name).stem.lstrip('.')}: another process works on this, waiting for it")
             tell = None
         time.sleep(0.05)
 
