@@ -65,6 +65,14 @@ def test_odd_studies(value):
             call(value)
 
 
+@pytest.mark.parametrize("value", ODD, ids=kind)
+@pytest.mark.parametrize("key", ["name", "base", "factors", "design", "samples", "outputs", "analysis"])
+def test_odd_values_of_a_study(key, value):
+    study = {"name": "a", "factors": {"friction_coefficient": {"values": [0.1, 0.2]}}, "contact_model": "sliding"}
+    with pytest.raises(tr.InputError, match=key):
+        tr.load_study({**study, key: value})
+
+
 def test_a_data_set_of_numbers_that_no_double_holds():
     for column in (np.array([10**400, 1], object), np.array([True, False]), np.array([1j, 0])):
         with pytest.raises(tr.InputError, match="axial_force"):

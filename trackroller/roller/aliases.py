@@ -100,8 +100,8 @@ def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any
     The two become factors of the study, also if they stand in `base`, and the expression `AXIS_DISTANCE` uses them.
     `wrong` collects the errors; aliases and radii that are wrong are left out.
     """
-    base, factors = data.get("base"), data.get("factors")
-    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in (base or {}, factors or {}))
+    given = ({} if data.get(key) is None else data[key] for key in ("base", "factors"))
+    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in given)
     if not isinstance(base, dict) or not isinstance(factors, dict):
         return dict(data)
     parts = {"base": base, "factors": factors}

@@ -7,6 +7,7 @@ from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Annotated, Any, Literal
 
+import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
 
 from trackroller.errors import Collector, InputError
@@ -159,7 +160,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     @classmethod
     def _whole(cls, value: Any, info: Any) -> Any:
         for one in value if isinstance(value, (list, tuple)) else (value,):
-            if isinstance(one, (bool, str)):
+            if isinstance(one, (bool, str, bytes, np.bool_)):
                 raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
         return value
 
