@@ -100,16 +100,16 @@ def study_with_radii(data: Mapping[str, Any], wrong: Collector) -> dict[str, Any
     The two become factors of the study, also if they stand in `base`, and the expression `AXIS_DISTANCE` uses them.
     `wrong` collects the errors; aliases and radii that are wrong are left out.
     """
-    given = ({} if data.get(key) is None else data[key] for key in ("base", "factors"))
-    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in given)
+    parts: list[Any] = [{} if data.get(key) is None else data[key] for key in ("base", "factors")]
+    base, factors = (dict(part) if isinstance(part, Mapping) else part for part in parts)
     if not isinstance(base, dict) or not isinstance(factors, dict):
         return dict(data)
-    parts = {"base": base, "factors": factors}
-    for section, part in parts.items():
-        parts[section] = {name: value for name, value in part.items() if name not in ALIASES}
+    sections = {"base": base, "factors": factors}
+    for section, part in sections.items():
+        sections[section] = {name: value for name, value in part.items() if name not in ALIASES}
         with wrong.part(section):
-            parts[section] = renamed(part)
-    base, factors = parts.values()
+            sections[section] = renamed(part)
+    base, factors = sections.values()
     derived = {"expression": AXIS_DISTANCE}
     own = {name: value for name, value in factors.items() if name != "axis_distance" or value != derived}
     before = len(wrong.errors)
