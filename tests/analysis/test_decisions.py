@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from trackroller.analysis.groups import classes
-from trackroller.analysis.targets import _all, _hits
+from trackroller.analysis.targets import _all, hits_of
 from trackroller.report.explorer.pack import _numbers
 from trackroller.report.explorer.sample import RARE, sample_rows
 from trackroller.report.numbers import level_text
@@ -34,7 +34,7 @@ def test_a_value_on_an_edge_belongs_to_the_class_above():
 
 def test_a_target_is_met_at_its_limits():
     values = SimpleNamespace(values=np.array([9.9, 10.0, 15.0, 20.0, 20.1, np.nan]))
-    assert _hits(values, {"min": 10.0, "max": 20.0}, None).tolist() == [0, 1, 1, 1, 0, 0]
+    assert hits_of(values, {"min": 10.0, "max": 20.0}, None).tolist() == [0, 1, 1, 1, 0, 0]
 
 
 def test_all_targets_of_a_body_are_met_with_the_least_of_their_probabilities():

@@ -172,6 +172,9 @@ class Audit:
         if "constraints" in self.told and frame["inside"].any():
             assert f"{frame['valid'].sum() or 'None'} of the {frame['inside'].sum()} meet" in text
         limits = self.said("What limits")
+        silent = "motor_force" not in {**self.told.get("base", {}), **self.told["factors"]}
+        assert ("silent_drive" in limits) == (silent and (frame["regime"] == 1).any())
+        limits.pop("silent_drive", None)
         for kind_text in limits.values():
             code = 1 if kind_text.startswith("Full slip") else 2 if kind_text.startswith("Lift-off") else 3
             hit = int((frame["regime"] == code).sum())
