@@ -38,8 +38,12 @@ def design_words(designs: Designs, row: pd.Series) -> str:
 
 
 def condition_words(designs: Designs, case: int) -> str:
-    """Name the conditions of a case."""
-    return ", ".join(setting(name, designs.view.table[name].iloc[case]) for name in designs.conditions)
+    """Name the conditions of a case, without those that do not change the goal of its design there."""
+    table, goal = designs.view.table, designs.view.column(designs.goal[0])
+    own = designs.usable & (designs.place == designs.place[case])
+    alike = own & (goal == goal[case])
+    told = [n for n in designs.conditions if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
+    return ", ".join(setting(name, table[name].iloc[case]) for name in told or designs.conditions)
 
 
 def alone(designs: Designs) -> bool:

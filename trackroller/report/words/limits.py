@@ -10,6 +10,7 @@ from trackroller.analysis.lives import FIRST_LIMIT, body_lives
 from trackroller.analysis.table import StudyView
 from trackroller.analysis.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
 from trackroller.damage import LIMITS
+from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.report.numbers import capital, count, lasting, listing, rounded
 from trackroller.report.tables.limits import guessed_values
 from trackroller.report.words.designs import design_words
@@ -58,14 +59,19 @@ def guesses(view: StudyView) -> Sentence | None:
 
 
 def worn(view: StudyView) -> Sentence | None:
-    """Say how many lives exceed the run-in distance, from which on the worn groove decides; None if none does."""
-    rows = view.valid & view.flagged("worn")
+    """Say in how many cases the groove wears away before the life ends; None if in none."""
+    rows, name = view.valid & view.flagged("worn"), FIRST_LIMIT[0]
+    end = "a life of roller or guide ends"
+    if view.has(name):
+        speed = view.column("velocity") if view.has("velocity") else float(view.data["velocity"])
+        travel = KM_PER_HOUR * speed * view.column(name)
+        rows, end = rows & (travel > view.column("run_in_distance")), "the pair reaches its first limit"
     if not rows.any():
         return None
     km = view.column("run_in_distance")[rows]
     text = f"In {count(int(rows.sum()))} of {count(int(view.valid.sum()))} valid cases the groove wears away "
-    text += f"(run-in distance {rounded(km.min())} to {rounded(km.max())} km) before the lives end: the rate of the "
-    text += "new profiles gives these lives by order of magnitude only."
+    text += f"(run-in distance {rounded(km.min())} to {rounded(km.max())} km) before {end}: the rate of "
+    text += "the new profiles gives the lives of these cases by order of magnitude only."
     return Sentence("worn", text, {"count": int(rows.sum()), "least": km.min(), "most": km.max()}, view.valid)
 
 
