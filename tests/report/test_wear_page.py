@@ -71,3 +71,21 @@ def test_the_surfaces_touch_and_hold_the_worn_depth(whole):
     gap = whole.roller_surface - whole.guide_surface
     assert gap.min("place").values == pytest.approx(0.0, abs=1e-12)
     np.testing.assert_array_equal(whole.guide_surface.values, -whole.worn_depth.sel(body="guide").values)
+
+
+def test_the_page_states_the_wear_coefficient_and_that_it_is_a_placeholder(tmp_path):
+    case = {"motor_force": 0, "axial_force": 0, "friction_coefficient": 0.2}
+    ds = tr.wear(case, to=1, contact_model="sliding", accuracy="preview")
+    page = tr.report(ds, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "wear coefficient <i>k</i><sub>W</sub>" in page and "expected from 1e-05 to 0.0001" in page
+
+
+def test_the_sentence_on_pressure_tells_jumps_between_states_and_no_state_twice(whole):
+    worn = whole.assign(max_pressure=whole.max_pressure.copy())
+    rising = np.linspace(400.0, 600.0, worn.sizes["travel"])
+    worn["max_pressure"] = worn.max_pressure * 0.0 + xr.DataArray(rising, dims="travel")
+    smooth = sentences(worn)[1]
+    assert smooth.values["jump"] == 0.0 and smooth.text.count("600 MPa") == 1 and "jumps" not in smooth.text
+    worn["max_pressure"][{"travel": 2}] = 1.2 * rising[3]
+    told = sentences(worn)[1]
+    assert told.values["jump"] == pytest.approx(0.2) and "jumps by 20 % or more" in told.text

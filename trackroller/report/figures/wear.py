@@ -89,8 +89,8 @@ def over_patch(ds: xr.Dataset) -> style.Drawn:
         axes.set_title(f"contact {contact}")
         axes.set_xlabel("lateral place [mm]")
     panels[0].set_ylabel("worn depth [µm]")
-    panels[0].set_ylim(bottom=0)
-    panels[-1].legend(frameon=False)
+    panels[0].set_ylim(0.0, 1.5 * panels[0].get_ylim()[1])  # room for the legend
+    panels[-1].legend(frameon=False, loc="upper left")
     caption = f"Worn depth after the run-in distance of {rounded(float(ds['run_in_distance']))} km, at the first rate."
     return figure, style.FigureInfo("wear_depth", caption, "")
 
@@ -122,7 +122,7 @@ def course(ds: xr.Dataset) -> style.Drawn:
                 axes.plot(travel, values, color=colour if "body" in own.dims else "0.25", ls=line, marker=".", label=of)
         axes.set_xlabel("travel [km]")
         axes.set_title(words)
-        axes.set_ylim(bottom=0)
+        axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])  # room for the legend
         axes.legend(frameon=False)
     style.head(figure, "Depth, pressure and fatigue over the travel")
     error = 1e3 * float(ds["groove_depth_error"][-1])

@@ -15,6 +15,7 @@ from trackroller.report.numbers import capital, with_unit
 from trackroller.report.pages.sheet import _pictures
 from trackroller.report.pages.sheet_facts import body_materials, versions_text
 from trackroller.report.tables.inputs import input_rows
+from trackroller.report.tables.limits import placeholders
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.wear import deeper_contact, sentences
@@ -94,7 +95,7 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
         "states": state_table(ds),
         "inputs": input_rows(inputs_of(ds)),
         "materials": body_materials(materials_of(ds)),
-        "flags": sorted(flags),
+        "flags": [*placeholders(ds), *sorted(flags)],
         "command": f"trackroller wear {shlex.quote(file)} --to {float(ds.attrs['to']):g}km "
         f"--report {shlex.quote(Path(path).name)}",
         "options": ", ".join(f"{name} {ds.attrs[name]}" for name in ("contact_model", "accuracy") if name in ds.attrs),

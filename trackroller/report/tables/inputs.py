@@ -27,6 +27,7 @@ MATERIAL_ROWS = (  # attribute, words, unit
     ("scatter_in_stress", "scatter of the strength T_S = S_90/S_10", ""),
     ("yield_strength", "yield strength R_e", "MPa"),
     ("hardness", "Brinell hardness", "HB"),
+    ("wear_coefficient", "wear coefficient k_W", "mm³/(N m)"),
 )
 
 

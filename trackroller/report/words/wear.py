@@ -14,6 +14,8 @@ from trackroller.roller.wearing import ENDS
 if TYPE_CHECKING:
     import xarray as xr
 
+NOISE = 0.05  # jump of the pressure between neighbouring states that is told; a smooth peak stays far below
+
 
 def deeper_contact(ds: xr.Dataset) -> int:
     """Return the contact whose profiles have lost more depth at the end; contact 1 if both are alike."""
@@ -27,11 +29,10 @@ def run_in(ds: xr.Dataset) -> str:
         return ""
     rates = ds["wear_depth_per_km"]
     first = rates.max("contact")
-    lost = [
-        f"the {body} {rounded(1e3 * float(first.sel(body=body)))} µm" for body in BODIES if first.sel(body=body) > 0
-    ]
+    depths = {body: 1e3 * float(first.sel(body=body)) for body in BODIES}
+    lost = [f"the {body} loses {rounded(depth)} µm" for body, depth in depths.items() if depth > 0.0]
     return (
-        f"At first {' and '.join(lost)} a km are worn off; after {rounded(float(ds['run_in_distance']))} km (run-in "
+        f"At first {' and '.join(lost)} a km; after {rounded(float(ds['run_in_distance']))} km (run-in "
         "distance) the profiles have changed as much as their gap at the edge of the patch."
     )
 
@@ -54,12 +55,25 @@ def _pressure(ds: xr.Dataset) -> Sentence:
     own = ds.sel(contact=deeper_contact(ds))
     pressure, wide = own["max_pressure"].values, own["semi_axis_lateral"].values
     most, travel = int(np.argmax(pressure)), own["travel"].values
+    between = f", {rounded(pressure[most])} MPa at {rounded(travel[most])} km" if 0 < most < len(travel) - 1 else ""
     text = (
-        f"The largest pressure of contact {int(own['contact'])} is {rounded(pressure[0])} MPa at first, "
-        f"{rounded(pressure[most])} MPa at {rounded(travel[most])} km and {rounded(pressure[-1])} MPa at the end, "
-        f"where the patch is {rounded(wide[-1] / wide[0])} times as wide as at first."
+        f"The largest pressure of contact {int(own['contact'])} is {rounded(pressure[0])} MPa at first{between} and "
+        f"{rounded(pressure[-1])} MPa at the end, where the patch is {rounded(wide[-1] / wide[0])} times as wide as at "
+        "first."
     )
-    return Sentence("wear_pressure", text, {"first": pressure[0], "largest": pressure[most], "last": pressure[-1]})
+    jump = largest_jump(pressure)
+    if jump > NOISE:
+        text += f" The pressure jumps by {100 * jump:.0f} % or more between neighbouring states, because the elements "
+        text += "do not resolve the worn profile: pressure, stress and damage sum are rough estimates."
+    values = {"first": pressure[0], "largest": pressure[most], "last": pressure[-1], "jump": jump}
+    return Sentence("wear_pressure", text, values)
+
+
+def largest_jump(pressure: np.ndarray) -> float:
+    """Return by how much a state lies beyond both of its neighbours at most, relative to the nearer one [1]."""
+    before, own, after = pressure[:-2], pressure[1:-1], pressure[2:]
+    near = np.clip(own, np.minimum(before, after), np.maximum(before, after))
+    return float(np.max(np.abs(own - near) / near, initial=0.0))
 
 
 def _life(ds: xr.Dataset, body: str) -> Sentence | None:
