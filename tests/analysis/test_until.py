@@ -38,6 +38,13 @@ NORMAL = {
     "friction_coefficient": {"normal": [0.2, 0.01]},
     "motor_force": {"values": [0, -9]},
 }
+ASKED = {
+    "sobol": "first-order indices",
+    "lhs": "first-order indices",
+    "saltelli": "first-order and total indices",
+    "morris": "effects mu*, as shares of the output's range,",
+    "inner_outer": "the quantity of each design point",
+}
 DESIGNS = ["sobol", "lhs", "saltelli", "morris", "inner_outer"]
 
 
@@ -79,7 +86,9 @@ def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
     cases = [look["cases"] for look in found["looks"]]
     assert cases == [cases[0] << i for i in range(len(cases))] and solved.data.sizes["case"] == cases[-1]
     assert solved.config.samples == study_of(design).config.samples << (len(cases) - 1)
-    assert grown(solved.view).values["cases"] == cases[-1]
+    said = grown(solved.view)
+    assert said.values["cases"] == cases[-1]
+    assert f"asked for {ASKED[design]} within ± 0.05 (95 % intervals)." in said.text and found["stopped"] in said.text
     if design != "inner_outer":
         index = {"saltelli": "ST", "morris": "mu_star"}.get(design, "first")
         part = solved.indices().sel(output="normal_force_1")

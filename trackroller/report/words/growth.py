@@ -9,6 +9,14 @@ from trackroller.report.words.sentence import Sentence
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import DEFAULTS
 
+HEADLINE_WORDS = {  # by design, the quantities whose intervals count
+    "sobol": "first-order indices",
+    "lhs": "first-order indices",
+    "saltelli": "first-order and total indices",
+    "morris": "effects mu*, as shares of the output's range,",
+    "inner_outer": "the quantity of each design point",
+}
+
 
 def quantity_words(name: str, design: str) -> str:
     """Name an entry of `until.of` in words."""
@@ -20,17 +28,18 @@ def quantity_words(name: str, design: str) -> str:
 
 
 def grown(view: StudyView) -> Sentence | None:
-    """Say at how many cases a sample stopped growing, why, and how wide its intervals are; None for other studies."""
+    """Say what a growing sample was to reach, why it stopped, and what it reached; None for other studies."""
     found = looks_of(view.solved) if view.results is not None else None
     if found is None:
         return None
-    last = found["looks"][-1]
+    last, design = found["looks"][-1], view.solved.design.method
     wide = [
-        f"no interval for the {quantity_words(name, view.solved.design.method)}"
+        f"no interval for the {quantity_words(name, design)}"
         if width is None
-        else f"± {rounded(width, 2)} for the {quantity_words(name, view.solved.design.method)} ({last['at'][name]})"
+        else f"± {rounded(width, 2)} for the {quantity_words(name, design)} ({last['at'][name]})"
         for name, width in last["half_width"].items()
     ]
-    text = f"The sample stopped growing at {count(last['cases'])} cases: {found['stopped']}. Widest 95 % interval: "
+    text = f"The study asked for {HEADLINE_WORDS[design]} within ± {found['half_width']:g} (95 % intervals). "
+    text += f"The sample stopped growing at {count(last['cases'])} cases: {found['stopped']}. Widest interval: "
     text += f"{', '.join(wide)}, from {found['replicates']} independent replicates."
     return Sentence("grown", text, {"cases": last["cases"], "half_width": last["half_width"]})
