@@ -205,7 +205,13 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
 @pytest.mark.parametrize(
     ("keys", "says"),
     [
-        ({"constraints": ["max_pressure < 100", "max_pressure > 200"]}, "No design is valid in all 2 conditions"),
+        ({"constraints": ["max_pressure < 100", "max_pressure > 200"]}, "No design is valid in any condition"),
+        ({"constraints": ["friction_coefficient < 0.15"]}, "No design is valid in all 2 conditions"),
+        (
+            {"factors": {**STUDY["factors"], "roller_profile_radius": {"uniform": [-9, -6.4]}}},
+            "roller profile radius −0.05 mm changes",
+        ),
+        ({"goals": {"axial_force": "max"}}, "have the same goals, so the goals do not choose among them"),
         (
             {
                 "goals": {"probability(pair_life_hours)": "max"},
@@ -218,12 +224,17 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
 def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, says):
     small = {"budget": {"designs": 8, "population": 4}}
     solved = tr.open_study(search_designs(changed(**keys, **small), tmp_path).folder.root)
-    assert says in " ".join(best_of(solved.view)[0])
+    said, table = best_of(solved.view)
+    assert says in " ".join(said)
+    invalid = said[0].startswith("No design is valid")
+    assert invalid != any(text.startswith("Recommended") for text in said)
+    assert (table is None) == ("valid in any" in said[0])
 
 
 @pytest.mark.parametrize(
     ("keys", "says"),
     [
+        ({"budget": {"desings": 8}}, "Did you mean 'designs'"),
         ({"budget": {"designs": 0}}, "budget.designs = 0"),
         ({"budget": {"hours": 0}}, "budget.hours = 0"),
         ({"goals": {"pair_life_hour": "max"}}, "Did you mean 'pair_life_hours'"),

@@ -14,6 +14,7 @@ from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import Life, capital, count, head_unit, percent, rounded, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEYOND_MEANS, alone, condition_words
+from trackroller.report.words.optimum import least_violation
 
 BEST = 5  # designs that stand side by side
 
@@ -119,7 +120,7 @@ def _note(designs: Designs) -> str:
 def optima_table(view: StudyView) -> Table | None:
     """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
     search = optimum_of(view.solved) if view.results is not None else None
-    if search is None:
+    if search is None or least_violation(search) == 1:
         return None
     shown = sorted(search["optima"], key=lambda one: one["design"] != search["recommended"])[:BEST]
     choices = [choices_of(view.solved, one["design"]) for one in shown]
@@ -135,6 +136,7 @@ def optima_table(view: StudyView) -> Table | None:
             rows.append([f"{head}{mark}", *numbers])
     if any(one["violation"][0] for one in shown):
         rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
-    heads = ["Recommended", *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
-    note = "Each design is judged over all its conditions. Bold: differs from the recommended design."
+    first = "Closest to valid" if least_violation(search) else "Recommended"
+    heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
+    note = "Each design is judged over all its conditions. Bold: differs from the first design."
     return _compared("optima", "Optima of the search", heads, rows, note)

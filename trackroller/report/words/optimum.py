@@ -8,6 +8,7 @@ import numpy as np
 
 from trackroller.analysis.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.analysis.table import StudyView
+from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import capital, count, lasting, listing, long_name, percent, plain, quantity, setting
 from trackroller.report.words.sentence import Sentence
 
@@ -24,9 +25,16 @@ def optimum_sentences(view: StudyView) -> list[Sentence]:
     search = optimum_of(view.solved) if view.results is not None else None
     if search is None:
         return []
-    said = [_recommended(view, search), _invalid(view, search), _unreached(view, search)]
-    said += [_checked(view, search), _tolerance(view, search), _searched(search)]
+    said = [_invalid(view, search)]
+    if least_violation(search) < 1:
+        said += [_recommended(view, search), _unreached(view, search), _checked(view, search), _tolerance(view, search)]
+    said.append(_searched(search))
     return [Sentence("optimum", text) for text in said if text]
+
+
+def least_violation(search: dict[str, Any]) -> float:
+    """Return the share of the conditions in which the best design is not valid [1]; 0 if a design is always valid."""
+    return float(min(one["violation"][0] for one in search["optima"]))
 
 
 def design_words(view: StudyView, number: int) -> str:
@@ -46,25 +54,28 @@ def goal_texts(view: StudyView, search: dict[str, Any], one: dict[str, Any]) -> 
 
 def _recommended(view: StudyView, search: dict[str, Any]) -> str:
     best = next(one for one in search["optima"] if one["design"] == search["recommended"])
-    text = f"Recommended: {design_words(view, best['design'])}. Its goals: {listing(goal_texts(view, search, best))}"
+    head = "Closest to valid" if least_violation(search) else "Recommended"
+    text = f"{head}: {design_words(view, best['design'])}. Its goals: {listing(goal_texts(view, search, best))}"
     if search["front"] == 1:
         return f"{text}. It is best in every goal."
+    if all(one["values"] == best["values"] for one in search["optima"]):
+        return f"{text}. {count(search['front'])} designs have the same goals, so the goals do not choose among them."
     return f"{text}. Of {count(search['front'])} Pareto-optimal designs it is nearest to the best of every goal."
 
 
 def _invalid(view: StudyView, search: dict[str, Any]) -> str:
     """Say that no design is valid in all conditions, and why."""
-    least = min(one["violation"][0] for one in search["optima"])
+    least = least_violation(search)
     if least == 0:
         return ""
     many = view.solved.design.meta["inner_samples"]
     causes = sorted(search["reasons"].items(), key=lambda pair: -pair[1])
     excluded = listing([f"{plain(word)} ({count(n)} cases)" for word, n in causes])
-    return (
-        f"No design is valid in all {count(many)} conditions: the best ones fail in {percent(least)} of them. "
-        f"Cases are excluded by {excluded}. Relax a constraint, widen a range, or remove a condition that no design "
-        "holds."
-    )
+    text = f"No design is valid in all {count(many)} conditions: the best ones fail in {percent(least)} of them. "
+    if least == 1:
+        text = "No design is valid in any condition. " if many > 1 else "No design is valid. "
+    text += f"Cases are excluded by {excluded}. Relax a constraint, widen a range, or remove a condition in which no "
+    return f"{text}design is valid."
 
 
 def _unreached(view: StudyView, search: dict[str, Any]) -> str:
@@ -74,7 +85,7 @@ def _unreached(view: StudyView, search: dict[str, Any]) -> str:
         values, _, words = goal_column(view.solved, goal)
         if way == "max" and not np.nanmax(values, initial=0.0) > 0:
             low.append(words)
-    return f"No design reaches a {listing(low)} above 0: the goal is out of reach in these ranges." if low else ""
+    return f"No design brings the {listing(low)} above 0: the goal is out of reach in these ranges." if low else ""
 
 
 def _checked(view: StudyView, search: dict[str, Any]) -> str:
@@ -95,7 +106,8 @@ def _tolerance(view: StudyView, search: dict[str, Any]) -> str:
     words = [goal_column(view.solved, goal)[2] for goal in search["goals"]]
     changed = []
     for near in search["neighbours"]:
-        head = f"{long_name(near['choice'])} {near['step']}"
+        step, units = float(near["step"]), PARAMETERS[near["choice"]].unit if near["choice"] in PARAMETERS else "1"
+        head = f"{long_name(near['choice'])} {'+' if step > 0 else ''}{quantity(step, units)}"
         if near["violation"] > best["violation"][0]:
             changed.append(f"{head} makes it invalid in {percent(near['violation'])} of the conditions")
             continue

@@ -20,6 +20,7 @@ from trackroller.study.file.checks import check_cells, check_geometry, check_mat
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.csv import column_names
 from trackroller.study.file.goals import Analysis
+from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.yaml_file import errors_by_line, parse_mapping
@@ -32,13 +33,15 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
-        rooms = {"analysis": Analysis.model_fields, "until": Until.model_fields}
+        rooms = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
         options = rooms.get(str(detail["loc"][0])) if len(detail["loc"]) > 1 else None
         return unknown_name(
             "study key", str(detail["loc"][-1]) if options else where, options or StudyFile.model_fields
         )
     if detail["type"] == "missing":
-        return InputError(where, None, "every study needs this key", f"Add a line '{where}: ...'.")
+        *room, key = (str(part) for part in detail["loc"])
+        needs = f"{room[-1] if room else 'every study'} needs this key"
+        return InputError(where, None, needs, f"Add {key}: ... to {room[-1]}." if room else f"Add a line '{key}: ...'.")
     allowed = detail["msg"].replace("Input should be ", "it must be ")
     for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):
         allowed = allowed.replace(f"valid {word}", plain)
