@@ -116,6 +116,8 @@ def stopped_runs(place, tries, seed, sent, phases):
         assert code in (0, *(STOPPED_CODES if sent == signal.SIGINT else (-sent,))), f"{phase}: {code} {told}"
         assert "Traceback" not in told, f"{phase}: {told}"
         stopped[phase] += code != 0
+        if code == 0:  # it ended before the signal: the machine has become faster
+            lengths[phase] *= 0.7
         if code in STOPPED_CODES:
             assert told.strip().splitlines()[-1].startswith("trackroller: stopped. The finished chunks"), told
     command(place, ("run", "study.yaml", "-q", "--report"), "rough")
@@ -126,7 +128,7 @@ def stopped_runs(place, tries, seed, sent, phases):
         sets = [xr.load_dataset(place / results / "stopped" / name).drop_attrs() for results in ("rough", "calm")]
         xr.testing.assert_identical(*sets)
     assert not [path for path in (place / "rough/stopped").rglob(".*.tmp")], "temporary files are removed"
-    assert sum(stopped.values()) > tries / 4, stopped
+    assert sum(stopped.values()) >= tries / 4, stopped
 
 
 @pytest.mark.slow

@@ -51,7 +51,7 @@ const written = (value) => (Array.isArray(value) ? value.map((v) => (Array.isArr
 export function studyView(state, offered, { started }) {
   let study = { name: "my-study", description: "", factors: {} };
   let text = "";
-  let timer = 0;
+  let [timer, newest] = [0, 0];  // an answer to an earlier text or study would take back what was changed since
   let sound = false;
   const roleOf = (name) => offered.parameters.find((p) => p.name === name)?.role ?? "choice";
   const labelOf = (name) => offered.parameters.find((p) => p.name === name)?.label ?? name.replaceAll("_", " ").replace(/^./, (c) => c.toUpperCase());
@@ -93,20 +93,23 @@ export function studyView(state, offered, { started }) {
   }
   function later(body) {
     clearTimeout(timer);
+    newest += 1;
     go.disabled = true;
     timer = setTimeout(() => check(body), PAUSE);
   }
 
   async function check(body) {
+    const own = (newest += 1);
     try {
       const answer = await ask("checked", body.study ? { study: filled(body.study) } : body);
+      if (own !== newest) return;
       text = answer.text;
       if (document.activeElement !== area) area.value = text;
       if (answer.study) (study = answer.study).factors ??= {};
       if (answer.study && body.text !== undefined) fill();
       tell(answer);
     } catch (error) {
-      tell({ errors: error.errors ?? [{ field: "", message: String(error) }], plan: [], doubts: [] });
+      if (own === newest) tell({ errors: error.errors ?? [{ field: "", message: String(error) }], plan: [], doubts: [] });
     }
   }
 
