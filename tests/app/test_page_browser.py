@@ -156,9 +156,8 @@ def test_a_factor_keeps_its_range_when_its_kind_changes(page):
     )
     seen = {}
     # answers that come after the next change must not take it back
-    page.run(
-        "own = window.fetch; window.fetch = (...all) => new Promise((go) => setTimeout(go, 250)).then(() => own(...all))"
-    )
+    late = "(...all) => new Promise((go) => setTimeout(go, 250)).then(() => own(...all))"
+    page.run(f"own = window.fetch; window.fetch = {late}")
     for name in ("linspace", "normal", "uniform", "triangular", "values"):
         page.run(f"{kind}.value = '{name}'; {kind}.dispatchEvent(new Event('change'))")
         seen[name] = page.run(f"{values}.value")
