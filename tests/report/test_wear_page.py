@@ -1,5 +1,7 @@
 """The page and the command of a roller that wears: sentences from the rows, figures, and a run that goes on."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 import xarray as xr
@@ -10,6 +12,7 @@ from trackroller.cli.main import app
 from trackroller.report.figures.wear import course, profiles
 from trackroller.report.pages.wear import state_table
 from trackroller.report.words.wear import deeper_contact, sentences
+from trackroller.roller.groove import Groove, travel_to_depth
 
 CASE = """
 motor_force: -10
@@ -77,6 +80,7 @@ def test_the_page_states_the_wear_coefficient_and_that_it_is_a_placeholder(tmp_p
     case = {"motor_force": 0, "axial_force": 0, "friction_coefficient": 0.2}
     ds = tr.wear(case, to=1, contact_model="sliding", accuracy="preview")
     page = tr.report(ds, tmp_path / "page.html").read_text(encoding="utf-8")
+    assert "--report page.html --set contact_model=sliding --set accuracy=preview<" in page
     assert "wear coefficient <i>k</i><sub>W</sub>" in page and "expected from 1e-05 to 0.0001" in page
 
 
@@ -89,3 +93,11 @@ def test_the_sentence_on_pressure_tells_jumps_between_states_and_no_state_twice(
     worn["max_pressure"][{"travel": 2}] = 1.2 * rising[3]
     told = sentences(worn)[1]
     assert told.values["jump"] == pytest.approx(0.2) and "jumps by 20 % or more" in told.text
+
+
+def test_a_place_that_hardly_wears_gives_no_warning_on_the_way_to_the_permissible_depth():
+    one = Groove(1.0, np.zeros((1, 2, 2)), np.zeros(1), np.zeros(1))
+    two = replace(one, travel=2.0, depth=np.array([[[0.1, 5e-324], [0.0, 0.0]]]))
+    with np.errstate(all="raise", under="ignore"):
+        assert travel_to_depth(one, two, 0.05) == pytest.approx(1.5)
+        assert travel_to_depth(one, two, 0.2) == np.inf

@@ -49,6 +49,6 @@ def between(one: Groove, two: Groove, travel: float) -> Groove:
 def travel_to_depth(one: Groove, two: Groove, depth: float) -> float:
     """Return the travel [km] at which the deepest place reaches `depth` [mm] between two states; inf if it does not."""
     grown = two.depth - one.depth
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         part = np.where(two.depth >= depth, (depth - one.depth) / grown, np.inf)
     return float(one.travel + max(np.min(part, initial=np.inf), 0.0) * (two.travel - one.travel))

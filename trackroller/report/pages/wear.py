@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.parameters import BODIES
+from trackroller.parameters import BODIES, OPTIONS
 from trackroller.report import html
 from trackroller.report.numbers import capital, with_unit
 from trackroller.report.pages.sheet import _pictures
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 
 MOST = 12  # rows of the table
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes
+STATED = ("contact_model", "accuracy", "wear_law", "life_rule", "life_criterion")  # options of the repeated command
 COLUMNS = (
     ("max_pressure", "pressure", 1.0, "MPa"),
     ("semi_axis_lateral", "half width", 1.0, "mm"),
@@ -88,6 +89,7 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
 
     drawn = _pictures(partial(style.draw_all, [partial(wear.profiles, ds), partial(wear.course, ds)]))
     flags = {f"{flag.sentence} {flag.remedy}" for i in (0, -1) for flag in flags_of(ds.isel(travel=i))}
+    chosen = [f" --set {n}={ds.attrs[n]}" for n in STATED if ds.attrs.get(n, OPTIONS[n].default) != OPTIONS[n].default]
     content = {
         "name": "A track roller while it wears",
         "said": [sentence.text for sentence in sentences(ds)],
@@ -97,7 +99,7 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
         "materials": body_materials(materials_of(ds)),
         "flags": [*placeholders(ds), *sorted(flags)],
         "command": f"trackroller wear {shlex.quote(file)} --to {float(ds.attrs['to']):g}km "
-        f"--report {shlex.quote(Path(path).name)}",
+        f"--report {shlex.quote(Path(path).name)}{''.join(chosen)}",
         "options": ", ".join(f"{name} {ds.attrs[name]}" for name in ("contact_model", "accuracy") if name in ds.attrs),
         "versions": versions_text(),
     }
