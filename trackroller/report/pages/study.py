@@ -11,6 +11,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller import parameters
+from trackroller.analysis.judging import OPTIMUM
+from trackroller.analysis.looks import UNTIL
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import headline, main_lives, robust_design
 from trackroller.analysis.table import StudyView
@@ -61,7 +63,7 @@ SECTIONS = {  # where a figure stands, by the beginning of its name
 _ELSEWHERE = (
     "notice study materials friction comment title coordinates Conventions life_conventions sign_conventions design"
 )
-_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS}  # attributes that do not stand in the record
+_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL}  # attributes that do not stand in the record
 
 
 def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
