@@ -95,7 +95,9 @@ def _checked(view: StudyView, search: dict[str, Any]) -> str:
         for a, b in zip(one["values"], one["reference"], strict=True)
     ]
     worse = sum(one["violation"][1] > one["violation"][0] for one in search["optima"])
-    text = f"Solved again at `reference`, the goals of {count(len(search['optima']))} optima change by at most "
+    many = len(search["optima"])
+    what = f"{count(many)} optima change" if many > 1 else "the optimum change"
+    text = f"Solved again at `reference`, the goals of {what} by at most "
     text += f"{100 * max(changes):.2g} %."
     return text + (f" {count(worse)} of them are valid in fewer conditions there." if worse else "")
 
@@ -112,7 +114,7 @@ def _tolerance(view: StudyView, search: dict[str, Any]) -> str:
             changed.append(f"{head} makes it invalid in {percent(near['violation'])} of the conditions")
             continue
         changes = [
-            f"{words[i]} by {100 * (b / a - 1):+.2g} %"
+            f"{words[i]} by {100 * (b / a - 1):+.2g} %".replace("-", "−")
             for i, (a, b) in enumerate(zip(best["values"], near["values"], strict=True))
             if a and np.isfinite([a, b]).all() and abs(b / a - 1) > SMALL
         ]
@@ -121,6 +123,8 @@ def _tolerance(view: StudyView, search: dict[str, Any]) -> str:
 
 
 def _searched(search: dict[str, Any]) -> str:
-    text = f"The search solved {count(search['designs'])} designs in {search['generations']} generations with "
+    designs, generations = search["designs"], search["generations"]
+    text = f"The search solved {count(designs)} design{'s' * (designs != 1)} in {generations} "
+    text += f"generation{'s' * (generations != 1)} with "
     text += f"`{search['model']}`; {count(search['valid'])} are valid in all conditions. It ended because "
     return capital(f"{text}{search['stopped']}.")
