@@ -164,7 +164,7 @@ def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
         ({"until": {"half_width": 0, "of": ["normal_force_1"]}}, "until.half_width = 0"),
         ({"until": {"half_width": 0.1, "of": 3}}, "until.of = 3 .*a list of at least one output"),
         ({"until": {"half_width": 0.1, "of": []}}, "a list of at least one output"),
-        ({"until": {"halfwidth": 0.1, "of": ["normal_force_1"]}}, "study key = 'halfwidth'.*half_width"),
+        ({"until": {"halfwidth": 0.1, "of": ["normal_force_1"]}}, "until = 'halfwidth'.*half_width"),
         ({"until": {"half_width": 0.1, "of": ["normal_forse_1"]}}, "normal_force_1"),
         ({"until": {"half_width": 0.1, "of": ["pair_life_hours"]}}, "group life is not among"),
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "replicates": 4}}, "until.replicates = 4"),

@@ -90,6 +90,14 @@ def test_a_study_file_names_all_its_errors_in_order(tmp_path):
     assert [line[: len(start)] for line, start in zip(told, starts, strict=True)] == starts
 
 
+def test_a_key_that_stands_in_the_wrong_mapping_has_its_line(tmp_path):
+    factors = "name: a\nfactors: {friction_coefficient: {values: [0.1, 7]}}\n"
+    (tmp_path / "s.yaml").write_text(f"{factors}analysis:\n  keep: [valid]\n  pareto: {{max_pressure: min}}\n")
+    told = lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr)
+    assert starts_of(told)[0] == "line 2: factors.friction_coefficient.values = 7"
+    assert "line 5: analysis = 'pareto'" in starts_of(told)
+
+
 def starts_of(told: list[str]) -> list[str]:
     """Return each message up to the value that it refuses."""
     return [line.partition(" is not usable")[0] for line in told]

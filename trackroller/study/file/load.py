@@ -33,11 +33,11 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return context
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
+        place, name = str(detail["loc"][0]), str(detail["loc"][-1])
         rooms = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
-        options = rooms.get(str(detail["loc"][0])) if len(detail["loc"]) > 1 else None
-        return unknown_name(
-            "study key", str(detail["loc"][-1]) if options else where, options or StudyFile.model_fields
-        )
+        if len(detail["loc"]) > 1 and place in rooms:
+            return unknown_name(place, name, rooms[place])
+        return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
         needs = f"{room[-1] if room else 'every study'} needs this key"
