@@ -76,7 +76,7 @@ def test_solved_cases_are_those_of_the_whole_design(tmp_path, monkeypatch, desig
 
 
 @pytest.mark.long
-@pytest.mark.parametrize("design", ["grid", "inner_outer"])
+@pytest.mark.parametrize("design", ["grid", pytest.param("inner_outer", marks=pytest.mark.slow)])
 def test_commands_show_the_solved_cases_and_seal_nothing(tmp_path, monkeypatch, design):
     monkeypatch.chdir(tmp_path)
     study, count = stopped_study(design)

@@ -166,7 +166,10 @@ rule mine:
     ("snakefile", "config", "own", "words"),
     [
         ("Snakefile", "", "samples: 3\n", ["--config", "study=tiny.yaml"]),
-        ("workflow/Snakefile", 'config: config["roller"]', "samples: 3\nroller: {study: tiny.yaml}\n", []),
+        pytest.param(
+            *("workflow/Snakefile", 'config: config["roller"]', "samples: 3\nroller: {study: tiny.yaml}\n", []),
+            marks=pytest.mark.slow,
+        ),
     ],
 )
 def test_another_workflow_imports_this_one(place, snakefile, config, own, words):
