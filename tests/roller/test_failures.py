@@ -62,7 +62,6 @@ def test_each_hint_needs_its_own_condition():
     """A hint is given for the row, the contact model in use and the options whose condition holds, and no other."""
     points = {"roller_profile": {"points": POINTS, "frame": "contact"}}
     assert "smooth" not in said(points, normal="hertz")
-    assert "slender" not in said(SLENDER, contact_model="fastsim", normal="halfspace")
     assert "slender" not in said(SLENDER, contact_model="sliding") + said(SLENDER, contact_model="kalker_table")
     assert "steep" not in said(SLENDER, contact_model="fastsim", bits=STEEP << 1)
     both = said(SLENDER, contact_model="fastsim", bits=STEEP)

@@ -125,7 +125,6 @@ _BUILT_IN = (
         "simplified theory of rolling contact (Kalker's FASTSIM)",
         rank=2,
         options=("slip_terms",),
-        normals=("hertz", "halfspace"),
         slip_terms=("profile", "curve"),
         friction_laws=True,
         ladder="fastsim",

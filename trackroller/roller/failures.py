@@ -88,7 +88,7 @@ def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -
             f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
             "give `smooth`, the standard deviation of the noise in mm, or 'auto'"
         )
-    if options.normal == "hertz" and _axis_ratio(case) > CLASSES[contact_model].most_slender:
+    if _axis_ratio(case) > CLASSES[contact_model].most_slender:
         hints.append(f"The patches are too slender for {contact_model}: contact_model: kalker goes further")
     return hints
 

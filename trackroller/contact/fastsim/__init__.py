@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from trackroller.contact.fastsim.patch import solve_patch, tractions
-from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution
+from trackroller.contact.fastsim.patch import FastsimSettings, FastsimSolution, solve_patch, tractions
 
 __all__ = ["FastsimSettings", "FastsimSolution", "solve_patch", "tractions"]

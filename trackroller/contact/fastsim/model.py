@@ -7,10 +7,8 @@ import dataclasses
 import numpy as np
 
 from trackroller.contact.common import Resultants, Works
-from trackroller.contact.fastsim.patch import solve_patch, tractions
-from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution
+from trackroller.contact.fastsim.patch import FastsimSettings, FastsimSolution, solve_patch, tractions
 from trackroller.contact.linear import LARGEST_RATIO
-from trackroller.contact.normal.models import GridFastsimModel
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Accuracy, Rollers
 from trackroller.contact.slip import Creepage
@@ -24,7 +22,6 @@ class FastsimModel(ContactModel):
     """
 
     declaration = DECLARED["fastsim"]
-    on_solved_patches = GridFastsimModel
     residual = declaration.converged_up_to
     most_slender = 0.99 * LARGEST_RATIO
 

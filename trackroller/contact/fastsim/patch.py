@@ -17,15 +17,15 @@ FaStrip).
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass, field
 from functools import partial
 from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse, SurfaceTractions
+from trackroller.contact.common import Elastic, Ellipse, Resultants, SurfaceTractions
 from trackroller.contact.fastsim.point import Strips, Totals, advance, enter, march, one_strip, write
-from trackroller.contact.fastsim.solution import FastsimSettings, FastsimSolution, extrapolated, surface
-from trackroller.contact.friction_laws import Knots
+from trackroller.contact.friction_laws import FrictionLaw, Knots, constant
 from trackroller.contact.linear import creepage_coefficients, linear_resultants, sliding_flexibility
 from trackroller.contact.slip import Creepage, Slip
 from trackroller.numerics.compiled import compiled
@@ -36,6 +36,50 @@ from trackroller.numerics.threads import share_rows
 SLIDING_FORCE = 2.5  # forces of the linear theory over mu F_N at which half of the change is done
 POLE_INSIDE = 0.9  # flexibility of sliding about the middle of the patch over that with the pole far away
 SUBSTEPS = 4  # steps between the points of a grid of tractions
+
+
+@dataclass(frozen=True)
+class FastsimSettings:
+    """Discretisation of the simplified theory.
+
+    Parameters
+    ----------
+    strips : int
+        Number of strips across an ellipse.
+    steps : int
+        Number of steps along a strip. A second pass with twice as many steps serves to extrapolate.
+    points : int
+        Points along each axis of the tractions.
+    law : FrictionLaw
+        Friction as a function of the slip speed.
+    profile_slip : bool
+        Use the rigid slip of the guide's profile, eq. (20), instead of its tangent xi + phi x.
+    """
+
+    strips: int = 32
+    steps: int = 48
+    points: int = 40
+    law: FrictionLaw = field(default_factory=constant)
+    profile_slip: bool = False
+
+
+@dataclass(frozen=True)
+class FastsimSolution:
+    """Solution of n patches by the simplified theory.
+
+    Attributes
+    ----------
+    resultants : Resultants
+        Forces [N] and spin moment [N mm] on the roller, (n,).
+    friction_energy_per_distance : ndarray, shape (n,)
+        Dissipation per distance travelled [N].
+    stick_fraction : ndarray, shape (n,)
+        Share of the adhesion area in the patch [1].
+    """
+
+    resultants: Resultants
+    friction_energy_per_distance: np.ndarray
+    stick_fraction: np.ndarray
 
 
 class Ellipses(NamedTuple):
@@ -204,8 +248,16 @@ def solve_patch(
     settings = settings or FastsimSettings()
     rule, law = np.polynomial.legendre.leggauss(settings.strips), settings.law.knots
     ellipses, strips = _problem(ellipse, creep, friction, elastic, travel_speed, rule[0])
-    area, kernel = np.pi * ellipses.a * ellipses.b, partial(_all_sums, ellipses, strips, rule, law)
-    return extrapolated(kernel, settings.steps, area, np.isfinite(area * ellipses.bound))
+    # the error is of first order in the length of a step
+    coarse, fine = (Totals(*(np.zeros(len(ellipses.a)) for _ in Totals._fields)) for _ in range(2))
+    for totals, steps in ((coarse, settings.steps), (fine, 2 * settings.steps)):
+        share_rows(partial(_all_sums, ellipses, strips, rule, law, steps, totals), len(ellipses.a), 4)
+    area = np.pi * ellipses.a * ellipses.b
+    known = np.isfinite(area * ellipses.bound)
+    best = Totals(*(np.where(known, 2.0 * f - c, np.nan) for c, f in zip(coarse, fine, strict=True)))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        stick = fine.adhesion / area
+    return FastsimSolution(Resultants(best.lateral, best.driving, best.moment), best.dissipation, stick)
 
 
 def tractions(
@@ -227,4 +279,6 @@ def tractions(
     ellipses, strips = _problem(ellipse, creep, friction, elastic, travel_speed, u)
     shear, moved = (np.zeros((len(strips.x), 2, points, points)) for _ in range(2))
     share_rows(partial(_all_fields, ellipses, strips, law, shear, moved), len(strips.x), 4)
-    return surface(*ellipse.grid(points), shear, moved)
+    x, y, pressure = ellipse.grid(points)
+    stick = (pressure > 0) & (moved == 0.0).all(axis=1)
+    return SurfaceTractions(x, y, pressure, shear[:, 0], shear[:, 1], moved[:, 0], moved[:, 1], stick)

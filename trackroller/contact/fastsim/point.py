@@ -1,7 +1,4 @@
-"""The simplified theory along one strip, step by step against the rolling direction; compiled.
-
-The strips of ellipses (`fastsim.patch`) and of solved patches (`fastsim.strips`) share these functions.
-"""
+"""The simplified theory along one strip, step by step against the rolling direction; compiled."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Contact models on solved patches: sliding, FASTSIM and Kalker's exact theory for any cross-sections.
+"""Contact models on solved patches: sliding and Kalker's exact theory for any cross-sections.
 
 The equilibrium passes Hertz's ellipses to these models, which use only their normal forces. The models solve the
 normal problem for each normal force and work on the `GridPatch` that results.
@@ -13,8 +13,6 @@ import numpy as np
 
 from trackroller.contact import kalker
 from trackroller.contact.common import Resultants, SurfaceTractions, Works
-from trackroller.contact.fastsim import FastsimSettings
-from trackroller.contact.fastsim import grid as fastsim_grid
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import sliding as normal_sliding
@@ -113,28 +111,6 @@ class GridSlidingModel(GridModel):
         """Return the tractions on the grid of elements."""
         grid, g = self.patch(patch, slip, rows), self.given
         return normal_sliding.tractions(grid, slip, friction, g.spin_model, g.law, g.travel_speed[rows])
-
-
-class GridFastsimModel(GridModel):
-    """Kalker's simplified theory, strip by strip over solved patches."""
-
-    declaration = DECLARED["fastsim"]
-
-    def __init__(self, given: Rollers, patches: Patches) -> None:
-        super().__init__(given, patches)
-        steps = 6 * patches.elements // 5
-        self.settings = FastsimSettings(steps=steps, law=given.law, profile_slip=given.profile_slip)
-
-    def _given(self, patch, slip, friction, rows) -> tuple:
-        elastic, travel = self.given.elastic.take(rows), self.given.travel_speed[rows]
-        return patch, self._drawn(slip, rows), friction, elastic, self.settings, travel
-
-    def _solved(self, patch, slip, friction, rows):
-        return fastsim_grid.solve_grid(*self._given(patch, slip, friction, rows))
-
-    def surface(self, patch, slip, friction, rows) -> SurfaceTractions:
-        """Return the tractions on the grid of elements."""
-        return fastsim_grid.tractions(*self._given(self.patch(patch, slip, rows), slip, friction, rows))
 
 
 class GridKalkerModel(GridModel):
