@@ -330,7 +330,7 @@ def test_note_of_a_grid_counts_the_cells_left_out_because_one_failed():
     result = analyse(results_of(solved({"name": "g", "factors": factors}, fake)))
     told = str(result["note"].sel(output="friction_power").item())
     assert told.startswith("16 of 20 cells used; rows left out: 1 ")
-    assert "; 3 further cells at the same levels are left out" in told
+    assert ", and 3 at the same levels, because" in told
 
 
 def test_morris_agrees_with_salib_and_uses_what_is_left():

@@ -329,7 +329,7 @@ class Audit:
                 expected = {"full slip": (frame["regime"] == 1).sum(), "lift-off": (frame["regime"] == 2).sum()}
                 expected |= {"outside the c": missed}
                 assert lost == {why: n for why, n in expected.items() if n}, row[-1]
-                more = re.findall(rf"{NUMBER} (?:unlimited|undefined|not positive|further cells)", row[-1])
+                more = re.findall(rf"{NUMBER} (?:unlimited|undefined|not positive|at the same levels)", row[-1])
                 assert used + sum(lost.values()) + sum(map(value, more)) == of, row[-1]
                 assert ("left out" in row[-1]) == (used < of)
 

@@ -13,6 +13,7 @@ import xarray as xr
 from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, sampled_study, view_of
 
+import trackroller as tr
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
@@ -55,6 +56,15 @@ def report(tmp_path_factory):
     grid_study(FACTORS).to_netcdf(folder / "study.nc")
     draw_all(view_of(folder / "study.nc"), folder / "figures")
     return write_report(view_of(folder / "study.nc"), folder / "figures", folder / "report.html")
+
+
+def test_a_long_cell_that_equals_the_one_above_says_so(tmp_path):
+    factors = {"friction_coefficient": {"values": [0, 0.02, 0.3]}, "motor_force": {"values": [0, -30]}}
+    study = {"name": "small", "contact_model": "sliding", "outputs": ["forces", "contact"], "factors": factors}
+    page = tr.run(study).report(tmp_path / "report.html").read_text(encoding="utf-8")
+    cells = re.findall(r'<td class="w">(.*?)</td>', page.split("<h3>What decides each output")[1].split("</table>")[0])
+    assert cells[0].startswith("3 of 6 cells used; rows left out: 2 full slip, and 1 at the same levels, because")
+    assert cells[1:] == ["as above"] * 4
 
 
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):

@@ -58,13 +58,12 @@ def note(column: Output, used: int, total: int, unit: str) -> str:
     """
     if constant(column.values):
         return "constant or never usable: no index can be given"
-    text = f"{used} of {total} {unit} used"
+    text = f"{used:,} of {total:,} {unit} used"
     if column.excluded:
-        text += "; rows left out: " + ", ".join(f"{n} {why}" for why, n in column.excluded.items())
+        text += "; rows left out: " + ", ".join(f"{n:,} {why}" for why, n in column.excluded.items())
         further = total - used - sum(column.excluded.values())
         if unit == "cells" and further > 0:
-            text += f"; {further} further cells at the same levels are left out, because indices of a grid need every "
-            text += "combination of levels"
+            text += f", and {further:,} at the same levels, because indices of a grid need every combination of levels"
     if used < RELIABLE * total:
         text += "; the indices describe the cases used, not the whole range of the factors"
     return text
@@ -136,7 +135,7 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
     """
     counts = {name: int((regime == i).sum()) for i, name in enumerate(REGIMES)}
     words = dict(zip(REGIMES, REGIME_LABELS, strict=True))
-    text = ", ".join(f"{n} {words[name]}" for name, n in counts.items() if n)
+    text = ", ".join(f"{n:,} {words[name]}" for name, n in counts.items() if n)
     left = [words[name] for name, n in counts.items() if n and name not in tuple(keep)]
     if left:
         text += f"; the indices leave out the rows with {' and '.join(left)}; "
@@ -145,7 +144,9 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
         text += "; no row left out for its regime"
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
     missed = 0 if allowed is None else int((kept & ~allowed).sum())
-    return text + (f"; {missed} further rows miss a constraint and are left out of the same indices" if missed else "")
+    if missed:
+        text += f"; {missed:,} further rows miss a constraint and are left out of the same indices"
+    return text
 
 
 def correlated_pairs(design: SampledDesign) -> list[tuple[str, str, float]]:
