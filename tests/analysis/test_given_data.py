@@ -10,6 +10,7 @@ from scipy.stats import norm
 
 from trackroller.analysis.delta import delta
 from trackroller.analysis.givendata import firsts
+from trackroller.analysis.pairs import pairs
 from trackroller.report.numbers import level_text, near
 from trackroller.study.design.levels import short
 
@@ -61,6 +62,34 @@ def test_first_order_index_of_ordered_rows_of_a_grid():
     y = ((grid - grid.mean(axis=0)) / grid.std(axis=0)) @ part
     found = firsts(y, grid, np.ones(3, dtype=bool))
     np.testing.assert_allclose(found["first"], part**2 / (part**2).sum(), atol=0.02)
+
+
+def test_interactions_of_the_ishigami_function_from_a_plain_sample():
+    u = np.random.default_rng(2).random((1024, 3))
+    found = pairs(ishigami(u), u, np.array([True] * 3))
+    assert found["fit_share"] > 0.95
+    share = found["interaction_share"]
+    assert share[0, 2] == pytest.approx(0.244, abs=0.03)
+    np.testing.assert_allclose(found["fit_alone"], [0.314, 0.442, 0.0], atol=0.04)
+    assert abs(share[0, 1]) < 0.02 and abs(share[1, 2]) < 0.02 and np.isnan(share[2, 0])
+    assert found["interaction_share_low"][0, 2] < 0.244 < found["interaction_share_high"][0, 2]
+
+
+def test_interaction_of_a_number_with_a_category():
+    rng = np.random.default_rng(3)
+    x, kind = rng.random((400, 2)), rng.integers(0, 3, 400)
+    y = x[:, 0] + np.array([0, 0.5, -0.3])[kind] + 2 * (x[:, 1] - 0.5) * np.array([1, -1, 0])[kind]
+    joint = 4 / 12 * 2 / 3
+    truth = joint / (1 / 12 + np.var([0, 0.5, -0.3]) + joint)
+    found = pairs(y, np.column_stack([x, kind]), np.array([True, True, False]))
+    assert found["interaction_share"][1, 2] == pytest.approx(truth, abs=0.06)
+
+
+def test_no_interaction_is_told_where_no_polynomial_predicts():
+    rng = np.random.default_rng(5)
+    u = rng.random((300, 2))
+    found = pairs(np.sin(90 * u[:, 0]) * np.sin(70 * u[:, 1]), u, np.array([True, True]))
+    assert np.isnan(found["interaction_share"]).all() and found["fit_share"] < 0.5
 
 
 def test_friction_laws_and_profiles_are_told_in_a_few_words():

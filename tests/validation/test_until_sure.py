@@ -4,6 +4,7 @@ import pytest
 
 from validation.benchmarks import until_sure as program
 
+
 MORRIS = pytest.param("morris", marks=pytest.mark.slow)  # 10 s
 
 

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 from scipy import stats
 
+from trackroller.analysis.pairs import held_out, orthonormal
+
 # degrees of the polynomials of each factor; the one with the smallest residuals at held-out rows counts
 DEGREES = (12, 8, 5, 3, 2, 1)
-ROWS_PER_TERM = 2.5
-MAX_KINDS = 8  # categories of a factor
 
 
 def probabilities(
@@ -90,49 +88,3 @@ def _unexplained(hits: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> np.
     missed = held_out(hits, table, [int((degrees <= limit).sum()) for limit in DEGREES])
     variances = [(residual**2).mean(axis=0) for residual in missed if residual is not None]
     return np.asarray(np.min([np.full(hits.shape[1], np.inf), *variances], axis=0))
-
-
-def held_out(y: np.ndarray, table: np.ndarray, widths: Sequence[int]) -> list[np.ndarray | None]:
-    """Return the residuals of linear fits at each row that was held out of the fit.
-
-    Parameters
-    ----------
-    y : shape (n,) or (n, m)
-    table : columns, shape (n, columns)
-    widths : each fit takes so many columns, from the first on
-
-    Returns
-    -------
-    For each width residuals of the shape of `y`; None if the rows are too few or the columns depend on each other.
-
-    Notes
-    -----
-    One QR decomposition serves every fit, because its first columns are that of the first columns of the table.
-    """
-    rows = len(y)
-    widest = max((width for width in widths if rows >= ROWS_PER_TERM * width), default=0)
-    basis, triangle = np.linalg.qr(table[:, :widest])
-    dependent = np.abs(np.diag(triangle)) < 1e-8 * rows**0.5
-    projected = basis.T @ y
-
-    def residual(width: int) -> np.ndarray | None:
-        if width > widest or dependent[:width].any():
-            return None
-        part = basis[:, :width]
-        lever = np.einsum("ij,ij->i", part, part).reshape(-1, *[1] * (y.ndim - 1))
-        return np.asarray((y - part @ projected[:width]) / np.maximum(1e-9, 1 - lever))
-
-    return [residual(width) for width in widths]
-
-
-def orthonormal(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
-    """Return functions of a factor with mean 0, mean square 1 and no correlation; None for too many categories."""
-    values, index = np.unique(x, return_inverse=True)
-    if ordered:
-        place = (np.cumsum(np.bincount(index)) - 0.5 * np.bincount(index)) / len(x)
-        raw = np.polynomial.legendre.legvander(2 * place[index] - 1, min(degree, len(values) - 1))
-    elif len(values) > MAX_KINDS:
-        return None
-    else:
-        raw = np.column_stack([np.ones(len(x)), *(index == i for i in range(1, len(values)))]).astype(float)
-    return np.asarray(np.linalg.qr(raw)[0][:, 1:] * len(x) ** 0.5)

@@ -186,11 +186,13 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     table = np.where(np.isfinite(table), table, table.T)
     if name != "interaction":
         table = np.where(np.isfinite(table), np.maximum(table, 0.0), table)  # estimates may be negative
-    own = {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
+    fitted = name == "interaction_share" and "main_share" not in part
+    own = "fit_alone" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
     np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
     table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
     names = [capital(str(n)) for n in part["factor_name"].values]
     label = f"size [{indices.effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
     figure = _heat(table, names, names, label, f"{title(sens, output)}: interactions")
     caption = "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
+    caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
     return figure, style.FigureInfo(f"interactions-{output}", caption, said.text)

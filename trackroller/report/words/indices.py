@@ -182,6 +182,8 @@ def interactions(sens: xr.Dataset, output: str) -> Sentence:
         return Sentence("no_interaction", f"No interaction of two factors on {what} is found.", values)
     text = f"The strongest interaction on {what}, {names[i]} with {names[j]}, makes {percent(value, low, high)} of the "
     text += "variance"
+    if "fit_share" in part:
+        text += f" (by a fitted polynomial that predicts {percent(float(part['fit_share']))} of the variance)"
     if "higher_share" in part:
         text += f"; interactions of three and more factors make {percent(float(part['higher_share']))}"
     return Sentence("interaction", text + ".", values)
