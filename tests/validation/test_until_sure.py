@@ -4,7 +4,6 @@ import pytest
 
 from validation.benchmarks import until_sure as program
 
-
 MORRIS = pytest.param("morris", marks=pytest.mark.slow)  # 10 s
 
 
