@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
@@ -11,17 +11,12 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.analysis.columns import CONTACT_RESULTS, input_columns
-from trackroller.analysis.lives import LIVES
 from trackroller.analysis.table import StudyView
-from trackroller.parameters import EXACTNESS, PARAMETERS
-from trackroller.roller.geometry import contact_geometry
+from trackroller.parameters import EXACTNESS
 from trackroller.study.outputs import flat
 
 MODEL = "contact_model"
-RESULTS = (
-    *("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress"),
-    *("roller_life_hours", "guide_life_hours", "life_cycles"),
-)
+RESULTS = ("regime", *CONTACT_RESULTS, "friction_energy_balance", "peak_stress")
 GOOD = 0.05  # error of a design below which its model is good enough [1]
 FORCES = ("normal_force", "lateral_force", "driving_force", "spin_moment", "semi_axis_lateral", "semi_axis_rolling")
 ENERGY = "friction_energy_per_distance"
@@ -38,9 +33,9 @@ def pairs(view: StudyView) -> xr.Dataset | None:
     -------
     Dataset over `contact_model` (the cheapest first, the reference last) and `design`. Cases whose inputs agree except
     for the model are one design. The data set holds the designs that the reference and at least one other model
-    solved. Variables: the results that are compared, NaN (regime -1) where a design lacks a model. Coordinates: all
-    inputs, `spin`, and `lean`, which is mu tan(alpha). Attributes: `reference`, `left` (number of cases without a
-    partner), `life` (words), `factors` (the other factors), `grid` (whether every combination exists) and `base`.
+    solved. Variables: the results that are compared, NaN (regime -1) where a design lacks a model, with `life`, the
+    life that the study shows. Coordinates: the inputs that vary, and the friction coefficient as a number. Attributes:
+    `reference`, `left` (number of cases without a partner) and `factors` (the other factors).
     """
     ds = view.data
     if MODEL not in ds.variables or "regime" not in ds:
@@ -56,20 +51,22 @@ def pairs(view: StudyView) -> xr.Dataset | None:
         values = flat(ds, name, tuple(dims)).astype(float)[rows]
         values[rows < 0] = -1.0 if name == "regime" else np.nan
         data[name] = ((MODEL, "design", *(d for d in ds[name].dims if d not in dims)), values)
-    coords = {name: ("design", values) for name, values in _inputs(table.iloc[rows[-1]], view).items()}
-    out = xr.Dataset(
-        data, coords={MODEL: models, **coords, **{n: ds[n].values for n in ("contact", "body") if n in ds}}
-    )
-    out.attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum()), "life": ""}
-    out.attrs |= {"factors": tuple(f for f in view.factors if f != MODEL), "grid": view.grid, "base": dict(view.base)}
-    return _with_life(out)
+    if view.life is not None:
+        data["life"] = (MODEL, "design"), np.where(rows < 0, np.nan, view.column(view.life[0])[rows])
+    inputs = table.drop(columns=MODEL).iloc[rows[-1]]
+    given = inputs.get("friction_coefficient_value", inputs.get("friction_coefficient"))  # a word has its number beside
+    inputs["friction_coefficient"] = view.base["friction_coefficient"] if given is None else pd.to_numeric(given)
+    coords = {str(name): ("design", inputs[name].to_numpy()) for name in inputs}
+    coords |= {name: (name, ds[name].values) for name in ("contact", "body") if name in ds}
+    attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum())}
+    attrs |= {"factors": tuple(f for f in view.factors if f != MODEL)}
+    return xr.Dataset(data, coords | {MODEL: models}, attrs)
 
 
 def designs(paired: xr.Dataset) -> StudyView:
     """Return the designs of a comparison as a table with their inputs, without the contact model."""
     table = pd.DataFrame({str(n): v.values for n, v in paired.coords.items() if v.dims == ("design",)})
-    attrs = paired.attrs
-    return StudyView(table, attrs["factors"], attrs["base"], attrs["grid"], attrs)
+    return StudyView(table, paired.attrs["factors"], {}, False, paired.attrs)
 
 
 def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
@@ -84,55 +81,6 @@ def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
     rows = first.unstack(fill_value=-1).reindex(models).to_numpy()
     rows = rows[:, (rows[-1] >= 0) & (rows[:-1] >= 0).any(axis=0)]
     return rows[:, np.argsort(rows[-1], kind="stable")]
-
-
-def _inputs(table: pd.DataFrame, view: StudyView) -> dict[str, np.ndarray]:
-    """Return every input of the designs, those that are the same in all cases included, with spin and lean."""
-    inputs = {str(n): table[n].to_numpy() for n in table if n != MODEL}
-    for name in PARAMETERS:
-        value = view.base.get(name)
-        if name not in inputs:
-            inputs[name] = np.full(len(table), value if isinstance(value, (int, float)) else np.nan, dtype=float)
-    given = inputs.get("friction_coefficient_value", inputs["friction_coefficient"])
-    friction = pd.to_numeric(given, errors="coerce")  # friction given as a word has its numbers beside it
-    lean = friction * np.tan(np.deg2rad(inputs["contact_angle"]))
-    return inputs | {"friction_coefficient": friction, "spin": spin(inputs), "lean": lean}
-
-
-def _with_life(ds: xr.Dataset) -> xr.Dataset:
-    """Add the variable `life`: the first life that has numbers."""
-    for name, words, unit in (*LIVES[:2], ("life_cycles", "life", "overrollings")):
-        if name in ds and bool((ds[name] > 0).any()):
-            life = ds[name].min([d for d in ("contact", "body") if d in ds[name].dims])
-            ds["life"] = life.assign_attrs(long_name=words, units=unit)
-            ds.attrs["life"] = words
-            break
-    return ds
-
-
-def spin(inputs: Mapping[str, np.ndarray]) -> np.ndarray:
-    """Return the dimensionless spin of designs, phi rho with phi = sin(alpha)/r_A and 4/rho = k_x + k_y.
-
-    Parameters
-    ----------
-    inputs : mapping of str to numpy.ndarray
-        Columns of `geometry.contact_geometry`, shape (n,).
-
-    Returns
-    -------
-    numpy.ndarray
-        phi rho [1], shape (n,).
-
-    Notes
-    -----
-    phi [1/mm] is the spin creepage and rho [mm] is the radius of curvature of Kalker (1990), "Three-Dimensional Elastic
-    Bodies in Rolling Contact". Their product over the friction coefficient says how close the patch is to full sliding.
-    It does not depend on load and stiffness.
-    """
-    with np.errstate(divide="ignore", invalid="ignore"):
-        geometry = contact_geometry(inputs)
-        curvature = geometry.curvature_lateral + geometry.curvature_rolling
-        return np.asarray(np.sin(geometry.contact_angle) / geometry.rolling_radius * 4.0 / curvature)
 
 
 @dataclass(frozen=True)

@@ -29,7 +29,7 @@ def compare(study: Mapping[str, Any], out: Path) -> dict[str, Any]:
 
 
 def model_errors(solved: StudyResults) -> xr.Dataset:
-    """Return the errors of each cheaper model, with the inputs of the designs and their `spin` and `lean`."""
+    """Return the errors of each cheaper model, with the inputs of the designs that vary."""
     paired = pairs(solved.view)
     if paired is None:
         raise ValueError("the study must compare contact models")

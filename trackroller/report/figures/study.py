@@ -13,7 +13,7 @@ from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
-from trackroller.report.figures.comparison import drawers
+from trackroller.report.figures.comparison import model_errors
 from trackroller.report.figures.designs import lives_by_design
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.growth import intervals
@@ -32,7 +32,10 @@ from trackroller.report.numbers import lives_in_years
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
 
 Draw = Callable[[], style.Drawn]
-OF_CASES = (lives_by_design, by_factor, life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
+OF_CASES = (
+    *(model_errors, lives_by_design, by_factor, life_map, stress_against_fit),
+    *(sn_diagram, forces_against_axial, regime_map),
+)
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 
@@ -67,8 +70,7 @@ def _is_about_friction(info: style.FigureInfo) -> bool:
 
 
 def _jobs(view: StudyView) -> Iterator[Draw]:
-    """Yield the drawings of the cases: contact models side by side, the study's own figures, the Pareto front."""
-    yield from drawers(view)
+    """Yield the drawings of the cases, and of the Pareto front."""
     yield from (partial(draw, view) for draw in OF_CASES)
     if (front := study_pareto(view)) is not None:
         yield partial(pareto_front, front, view)

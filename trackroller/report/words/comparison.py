@@ -21,7 +21,7 @@ from trackroller.analysis.contact_models import (
 )
 from trackroller.analysis.groups import DRIVE, Groups, drives, groups
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import capital, listing, long_name, percent
+from trackroller.report.numbers import listing, long_name, percent
 from trackroller.report.tables.table import Table
 from trackroller.report.words.levels import group_texts, span
 
@@ -80,14 +80,22 @@ def details(paired: xr.Dataset) -> list[str]:
     view = designs(paired)
     if not paired.sizes["design"] or FRICTION not in view.factors:
         return []
-    deviations, drive, along = errors(paired), drives(view), groups(view, FRICTION)
+    deviations, along = errors(paired), groups(view, FRICTION)
     said = []
     for model in map(str, deviations["contact_model"].values):
         one = deviations.sel(contact_model=model)
-        for k, text in enumerate(group_texts(drive) if compared(one) >= FEWEST else ()):
-            head = f"{NAMES[model]}{f', {text}' if DRIVE in view.factors else ''}"
-            said.append(_sentence(one.where(xr.DataArray(drive.index == k, dims="design")), along, head))
+        for text, rows in by_drive(view) if compared(one) >= FEWEST else ():
+            head = f"{NAMES[model]}{f', {text}' if text else ''}"
+            said.append(_sentence(one.where(xr.DataArray(rows, dims="design")), along, head))
     return said
+
+
+def by_drive(view: StudyView) -> list[tuple[str, np.ndarray]]:
+    """Return each drive of a study in words with a mask of its cases; one empty text if the drive is no factor."""
+    if DRIVE not in view.factors:
+        return [("", np.ones(len(view.table), dtype=bool))]
+    drive = drives(view)
+    return [(text, drive.index == k) for k, text in enumerate(group_texts(drive))]
 
 
 def report_section(view: StudyView) -> dict[str, Any]:
@@ -171,15 +179,3 @@ def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
     """Return the first and last index of every run of True."""
     edge = np.flatnonzero(np.diff(np.concatenate([[False], keeps, [False]]).astype(int)))
     return [(int(a), int(b) - 1) for a, b in edge.reshape(-1, 2)]
-
-
-def gap(deviations: xr.Dataset, name: str) -> str:
-    """Say by how much each cheaper model errs in one quantity; '' if it is not known."""
-    said = []
-    for model in map(str, deviations["contact_model"].values):
-        e = known(deviations[name].sel(contact_model=model)) if name in deviations else np.empty(0)
-        if e.size:
-            middle, _, most = spread(e)
-            said.append(f"{model} is off by {percent(middle)} in the median and {percent(most)} at most")
-    words = next((q.words.split(" (")[0] for q in measured(deviations) if q.name == name), name)
-    return f"{capital(words)}: {', '.join(said)}." if said else ""
