@@ -227,11 +227,10 @@ def _user_tractions() -> Arrays:
     found: Arrays = {}
     for nu in (0.0, 0.3, 0.5):
         found[f"user_tractions/grid_{nu}"] = _thin(tr.stress_on_grid(*given, [0.0, 0.1, 0.6], nu))
-        for kind in ("bilinear", "constant"):
-            stress = tr.stress_from_tractions(*given, points, nu, kind)
-            found[f"user_tractions/{kind}_{nu}"] = _thin(stress)
-            for function in (tr.von_mises, tr.principal_stresses, tr.max_shear):
-                found[f"user_tractions/{function.__name__}_{kind}_{nu}"] = _thin(function(stress))
+        stress = tr.stress_from_tractions(*given, points, nu)
+        found[f"user_tractions/bilinear_{nu}"] = _thin(stress)
+        for function in (tr.von_mises, tr.principal_stresses, tr.max_shear):
+            found[f"user_tractions/{function.__name__}_bilinear_{nu}"] = _thin(function(stress))
     return found
 
 

@@ -14,7 +14,6 @@ FOR_LIMITS = 1_835  # what the limits of the room `damage`, with what declares a
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {
     "trackroller/halfspace/kernels.py:point_kernel": "six stresses below a point load",
-    "trackroller/halfspace/kernels.py:uniform_corner": "closed form of the corner of a uniform cell",
     "trackroller/halfspace/kernels.py:bilinear_corner": "closed form of the corner of a bilinear cell",
 }
 

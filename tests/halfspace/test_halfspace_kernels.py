@@ -1,15 +1,16 @@
 """The derived kernels: same text again, same numbers as numerical differentiation, equilibrium, exact rectangles."""
 
 import ast
+import itertools
 from pathlib import Path
 
 import mpmath as mp
 import numpy as np
 import pytest
-from scipy.integrate import dblquad
 
 from trackroller.halfspace import kernels
 from validation.derivations import kernel_writer, potentials
+from validation.exact import stresses as reference
 
 COMPONENTS = potentials.COMPONENTS
 POINTS = [(0.7, -0.4, 0.5), (-0.3, 0.2, 1.5), (1e-3, 2e-3, 0.8), (0.9, 0.6, 0.02), (-0.5, -0.8, 0.3)]
@@ -120,36 +121,32 @@ def _divergence(function, point, scale):
     return sum(gradient[axis][..., [rows[i][axis] for i in range(3)]] for axis in range(3)), gradient
 
 
-def test_point_kernel_and_uniform_corner_are_in_equilibrium():
+def test_point_kernel_is_in_equilibrium():
     """div sigma = 0 for A and for B alone, for each load."""
     for point in POINTS:
-        for function in (kernels.point_kernel, kernels.uniform_corner):
-            scale = min(np.linalg.norm(point), 1.0) * point[2]
-            div, gradient = _divergence(function, point, scale)
-            assert np.abs(div).max() < 1e-8 * np.abs(gradient).max()
+        scale = min(np.linalg.norm(point), 1.0) * point[2]
+        div, gradient = _divergence(kernels.point_kernel, point, scale)
+        assert np.abs(div).max() < 1e-8 * np.abs(gradient).max()
 
 
-@pytest.mark.parametrize("point", [(0.1, 0.05, 0.3), (0.6, -0.2, 0.15), (-0.9, 0.8, 1.0)])
-def test_uniform_rectangle_is_the_integral_of_point_kernels(point):
-    """Corner sums of a uniformly loaded rectangle against adaptive quadrature (Kalker 1990)."""
-    nu, (x1, x2, y1, y2) = 0.3, (-0.5, 0.4, -0.3, 0.6)
-    x, y, z = point
-    corner = np.zeros((2, 3, 6))
-    for xi, eta, sign in ((x1, y1, 1), (x2, y1, -1), (x1, y2, -1), (x2, y2, 1)):
-        corner += sign * np.array(kernels.uniform_corner(x - xi, y - eta, z)).reshape(2, 3, 6)
-    for load, component in ((0, 0), (0, 3), (0, 5), (1, 1), (1, 4), (2, 0), (2, 2), (2, 3)):
-        value, _ = dblquad(
-            lambda eta, xi, i=6 * load + component: (lambda k: k[i] + nu * k[18 + i])(
-                kernels.point_kernel(x - xi, y - eta, z)
-            ),
-            x1,
-            x2,
-            y1,
-            y2,
-            epsabs=1e-9,
-            epsrel=1e-8,
-        )
-        assert corner[0, load, component] + nu * corner[1, load, component] == pytest.approx(value, abs=1e-8)
+def rectangle(point, size, step=1e-3):
+    """Return the stresses (2, 3, 6) below a uniform rectangle about the origin: d2/dxdy of the bilinear corner."""
+    out = np.zeros(36)
+    for sx, sy in itertools.product((-1, 1), repeat=2):  # corners
+        for i, j in itertools.product((-1, 1), repeat=2):
+            x, y = point[0] + sx * size[0] / 2 + i * step, point[1] + sy * size[1] / 2 + j * step
+            out += sx * sy * i * j * np.array(kernels.bilinear_corner(x, y, point[2])) / (4 * step**2)
+    return out.reshape(2, 3, 6)
+
+
+def test_love_rectangle_below_its_corner_and_at_its_middle():
+    """The second derivative of the bilinear corner function serves Love's rectangle."""
+    nu = 0.3
+    for z in (0.1, 1.0, 5.0):
+        found = rectangle((1.0, 0.5, z), (2.0, 1.0))[0, 2, 2]
+        assert 3.0 * found == pytest.approx(reference.rectangle_corner_sigma_z(z, 2.0, 1.0, 3.0), rel=1e-4)
+    pressed, by_nu = rectangle((0.0, 0.0, 0.0), (2.0, 1.0))[:, 2]
+    assert 3.0 * (pressed + nu * by_nu) == pytest.approx(reference.rectangle_centre(2.0, 1.0, 3.0, nu), abs=1e-4)
 
 
 def test_bilinear_corner_is_the_integral_of_a_hat():
@@ -190,9 +187,8 @@ def test_kernels_are_finite_everywhere_down_to_the_surface():
                 assert np.all(np.isfinite(values)), (name, point)
 
 
-@pytest.mark.parametrize("name", ["uniform_corner", "bilinear_corner"])
-def test_surface_is_the_right_limit(name):
-    """Corner functions at z = 1e-9 go over into those at z = 0, off the edges."""
-    function = getattr(kernels, name)
+def test_surface_is_the_right_limit():
+    """The corner function at z = 1e-9 goes over into that at z = 0, off the edges."""
+    function = kernels.bilinear_corner
     for x, y in ((0.5, 0.8), (-0.4, 0.3), (1.5, -0.2), (-0.1, -0.9)):
         assert np.allclose(function(x, y, 1e-9), function(x, y, 0.0), atol=1e-7)

@@ -71,18 +71,6 @@ def test_rolling_shear_is_lateral_shear_turned_by_a_right_angle():
     assert np.allclose(along_y, turned[[1, 0, 2, 3, 5, 4]], atol=1e-13)
 
 
-def test_love_rectangle_below_its_corner_and_on_the_surface():
-    """One uniform cell is Love's rectangle, exactly."""
-    x, y = np.array([0.0, 2.0]), np.array([0.0, 1.0])
-    p = np.array([[3.0, 0.0], [0.0, 0.0]])  # the cell [-1, 1] x [-0.5, 0.5]
-    z = np.array([1e-9, 0.1, 1.0, 5.0])
-    corner = np.stack([1 + 0 * z, 0.5 + 0 * z, z], -1)
-    found = stress.stress_from_tractions(x, y, p, 0, 0, corner, NU, interpolation="constant")
-    assert np.allclose(found[:, 2], reference.rectangle_corner_sigma_z(z, 2.0, 1.0, 3.0), atol=1e-12)
-    centre = stress.stress_from_tractions(x, y, p, 0, 0, [0, 0, 0], NU, interpolation="constant")
-    assert np.allclose(centre, reference.rectangle_centre(2.0, 1.0, 3.0, NU), atol=1e-12)
-
-
 def test_field_inside_against_independent_quadrature():
     """All six components under a varying traction against a quadrature that shares only the point kernel."""
 
@@ -206,7 +194,6 @@ def test_equivalent_principal_and_shear_stresses():
         {"points": [0.0, 0.0, -1e-3]},
         {"points": [0.0, 0.0]},
         {"poisson_ratio": 0.7},
-        {"interpolation": "cubic"},
         {"shear_lateral": np.full((3, 3), np.nan)},
     ],
 )

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from trackroller.halfspace.kernels import bilinear_corner, point_kernel, uniform_corner
+from trackroller.halfspace.kernels import bilinear_corner, point_kernel
 from trackroller.numerics.compiled import compiled, woven
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ FAR = 100.0  # grid spacings from the load where corner sums and point forces ag
 PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU = range(4)
 # Places in the 36 numbers of a kernel: six components for each load, first without and then with the factor nu.
 LOAD_X, LOAD_Y, LOAD_Z, NU = 0, 6, 12, 18
-POINT_FORCES, UNIFORM, BILINEAR = range(3)
+POINT_FORCES, BILINEAR = range(2)
 
 
 class Loads(NamedTuple):
@@ -80,7 +80,7 @@ def _kept(x: Array, y: Array, weights: Array, kind: int) -> Loads:
     return Loads(np.stack([xx[used], yy[used]], axis=-1), np.ascontiguousarray(weights[used]), kind)
 
 
-def corner_loads(x: Array, y: Array, tractions: Array, bilinear: bool = True) -> CornerLoads:
+def corner_loads(x: Array, y: Array, tractions: Array) -> CornerLoads:
     """Return the corner loads and point forces of tractions on a regular grid.
 
     Parameters
@@ -88,28 +88,19 @@ def corner_loads(x: Array, y: Array, tractions: Array, bilinear: bool = True) ->
     x, y : numpy.ndarray, shape (nx,) and (ny,)
         Node coordinates [mm].
     tractions : numpy.ndarray, shape (ny, nx, 3)
-        q_x, q_y, p at the nodes [MPa].
-    bilinear : bool
-        True for bilinear interpolation between the nodes, False for uniform cells around them.
+        q_x, q_y, p at the nodes [MPa], bilinear between them.
     """
     hx, hy = (x[-1] - x[0]) / (x.size - 1), (y[-1] - y[0]) / (y.size - 1)
     length = float(max(hx, hy))
     gx, gy = hx / length, hy / length
-    order = 2 if bilinear else 1
-    near = _difference(_difference(tractions, 0, order), 1, order)
-    if bilinear:
-        near = near / (gx * gy)
-    # second moment of a hat of unit area is h^2/6, of a uniform cell h^2/12
-    moment = 1.0 / 6.0 if bilinear else 1.0 / 12.0
+    near = _difference(_difference(tractions, 0, 2), 1, 2) / (gx * gy)
+    moment = 1.0 / 6.0  # second moment of a hat of unit area over h^2
     far = _moment_corrected(_moment_corrected(tractions, 0, moment), 1, moment) * gx * gy
-    half = 1.0 if bilinear else 0.5
-    at = [g * (np.arange(n + order) - half) for g, n in ((gx, x.size), (gy, y.size))]
-    outer = [g * (np.arange(n + 2) - 1.0) for g, n in ((gx, x.size), (gy, y.size))]
-    x0, y0 = x[0] / length, y[0] / length
-    corners = _kept(x0 + at[0], y0 + at[1], near, BILINEAR if bilinear else UNIFORM)
+    across, along = (v[0] / length + g * (np.arange(v.size + 2) - 1.0) for g, v in ((gx, x), (gy, y)))
+    corners = _kept(across, along, near, BILINEAR)
     low, high = (corners.places.min(0), corners.places.max(0)) if corners.places.size else (np.zeros(2), np.zeros(2))
     box = Box(*(float(v) for v in (low[0], high[0], low[1], high[1])))
-    return CornerLoads(length, corners, _kept(x0 + outer[0], y0 + outer[1], far, POINT_FORCES), box, FAR)
+    return CornerLoads(length, corners, _kept(across, along, far, POINT_FORCES), box, FAR)
 
 
 @woven
@@ -129,8 +120,6 @@ def _sum(loads, x, y, z, out):  # pragma: no cover (compiled)
         dx, dy = x - loads.places[j, 0], y - loads.places[j, 1]
         if loads.kind == BILINEAR:
             k = bilinear_corner(dx, dy, z)
-        elif loads.kind == UNIFORM:
-            k = uniform_corner(dx, dy, z)
         else:
             k = point_kernel(dx, dy, z)
         add_load(k, loads.weights[j, 0], loads.weights[j, 1], loads.weights[j, 2], out)

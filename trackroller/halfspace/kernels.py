@@ -87,57 +87,6 @@ def point_kernel(x, y, z):
 
 
 @compiled
-def uniform_corner(x, y, z):
-    """Return the corner function of uniform tractions: d2/dxdy gives `point_kernel` [1]."""
-    x2, y2, z2 = x * x, y * y, z * z
-    R = sqrt(x2 + y2 + z2)
-    iR = 1.0 / R if R > 0.0 else 0.0
-    S = R + z
-    iS = 1.0 / S if S > 0.0 else 0.0
-    P = x2 + z2
-    Q = y2 + z2
-    iP = 1.0 / P if P > 0.0 else 0.0
-    iQ = 1.0 / Q if Q > 0.0 else 0.0
-    Lx = asinh(x / max(sqrt(Q), FLOOR))
-    Ly = asinh(y / max(sqrt(P), FLOOR))
-    Lz = log(max(S, FLOOR))
-    t = x * y * (x2 + y2) * iS
-    Ax = atan2(t, x2 * R + y2 * z)
-    Ay = atan2(t, y2 * R + x2 * z)
-    t0 = iR * y
-    t1 = iS * y
-    t2 = -t1
-    t3 = z**2
-    t4 = iP * t0
-    t5 = t3 * t4
-    t6 = 0.31830988618379067
-    t7 = 0.5 * t6
-    t8 = t7 * (iR - iS)
-    t9 = t5 * t7
-    t10 = iS * x
-    t11 = iR * x
-    t12 = iR * z
-    t13 = -t12 * t7
-    t14 = x * z
-    t15 = t14 * t4
-    t16 = Ax - t15
-    t17 = -t10
-    t18 = iQ * t11 * t3
-    t19 = t18 * t7
-    t20 = iQ * t0 * t14
-    t21 = Ay - t20
-    t22 = t1 * t6
-    t23 = t10 * t6
-    load_x = t7 * (2.0 * Ly + t0 + t2 - t5), -t8 * y, t9, t7 * (Lx + t10 - t11), t13, -t7 * (Ay + t16)
-    load_y = -t8 * x, t7 * (2.0 * Lx + t11 + t17 - t18), t19, t7 * (Ly - t0 + t1), -t7 * (Ax + t21), t13
-    load_z = -t16 * t7, -t21 * t7, -t7 * (Ax + Ay + t15 + t20), -t7 * (Lz + t12), t19, t9
-    nu_x = t22, t6 * (Ly + t2), 0.0, -t23, 0.0, 0.0
-    nu_y = t6 * (Lx + t17), t23, 0.0, -t22, 0.0, 0.0
-    nu_z = -Ay * t6, -Ax * t6, 0.0, Lz * t6, 0.0, 0.0
-    return load_x + load_y + load_z + nu_x + nu_y + nu_z
-
-
-@compiled
 def bilinear_corner(x, y, z):
     """Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2]."""
     x2, y2, z2 = x * x, y * y, z * z

@@ -20,7 +20,6 @@ from trackroller.numerics.numbers import number_in, read_array
 from trackroller.numerics.threads import share_rows
 
 Array = NDArray[np.float64]
-INTERPOLATIONS = ("bilinear", "constant")
 FRICTION_SIGNS = (1.0, -1.0)  # of the shear on roller and guide, which is opposite on the two bodies
 _CHUNK = 16384  # points in a piece of work; this bounds the memory to a few MB for each thread
 
@@ -33,12 +32,12 @@ def stress_from_tractions(
     shear_rolling: ArrayLike,
     points: ArrayLike,
     poisson_ratio: float = 0.3,
-    interpolation: str = "bilinear",
 ) -> Array:
     """Compute stresses at any points under tractions sampled on a regular grid.
 
-    Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5)) for tractions interpolated between the
-    nodes, including z = 0 and the edge of the patch.
+    Exact half-space solution (Boussinesq-Cerruti potentials, eqs. (1)-(5)) for tractions that are bilinear between the
+    nodes and fall to zero within one spacing outside the grid, including z = 0 and the edge of the patch. All stresses
+    are continuous and finite.
 
     Parameters
     ----------
@@ -52,10 +51,6 @@ def stress_from_tractions(
         Coordinates x, y, z with z >= 0 [mm].
     poisson_ratio : float
         Poisson's ratio of the body, 0 to 0.5 [1].
-    interpolation : str
-        "bilinear" between nodes, falling to zero within one spacing outside the grid: all stresses are continuous and
-        finite. "constant" in cells centred on the nodes: on the very edge of a cell the in-plane stresses grow without
-        bound, and the logarithm is cut off at 1e-10 spacings.
 
     Returns
     -------
@@ -65,7 +60,7 @@ def stress_from_tractions(
     Raises
     ------
     InputError
-        If axes are uneven, shapes do not match, a value is NaN, z < 0, or the interpolation is unknown.
+        If axes are uneven, shapes do not match, a value is NaN, or z < 0.
 
     Notes
     -----
@@ -91,9 +86,7 @@ def stress_from_tractions(
         raise InputError("points", at if at.shape[-1:] == (3,) else at.shape, "finite points of shape (..., 3)")
     check_depth("points", at[..., 2])
     poisson_ratio = number_in(poisson_ratio, "poisson_ratio", "0 <= poisson_ratio <= 0.5", 0.0, 0.5)
-    if not isinstance(interpolation, str) or interpolation not in INTERPOLATIONS:
-        raise InputError("interpolation", interpolation, "one of " + ", ".join(INTERPOLATIONS))
-    loads = influence.corner_loads(xa, ya, q, interpolation == "bilinear")
+    loads = influence.corner_loads(xa, ya, q)
     flat = np.ascontiguousarray(at.reshape(-1, 3))
     out = np.empty((flat.shape[0], 6))
 
@@ -140,7 +133,7 @@ def stress_on_grid(
 
     Notes
     -----
-    The field is that of `stress_from_tractions` with bilinear interpolation. It is a discrete convolution of the
+    The field is that of `stress_from_tractions` . It is a discrete convolution of the
     tractions with the influence of one node's hat load; zero padding prevents periodic images. The computation needs
     about 3 kB of memory per node of one plane besides the result. Rounding errors grow with (patch / spacing)^2: 1e-11
     of the tractions at 200 nodes.

@@ -33,8 +33,6 @@ _COMMON = """    x2, y2, z2 = x * x, y * y, z * z
 """
 _CORNER = """    P = x2 + z2
     Q = y2 + z2
-    iP = 1.0 / P if P > 0.0 else 0.0
-    iQ = 1.0 / Q if Q > 0.0 else 0.0
     Lx = asinh(x / max(sqrt(Q), FLOOR))
     Ly = asinh(y / max(sqrt(P), FLOOR))
     Lz = log(max(S, FLOOR))
@@ -45,7 +43,6 @@ _CORNER = """    P = x2 + z2
 _ROWS = ("load_x", "load_y", "load_z", "nu_x", "nu_y", "nu_z")  # six components for each load, A and then B
 _TITLES = {
     "point_kernel": "Return the stresses at (x, y, z) due to unit forces at the origin [1/length^2].",
-    "uniform_corner": "Return the corner function of uniform tractions: d2/dxdy gives `point_kernel` [1].",
     "bilinear_corner": "Return the corner function of bilinear tractions: d4/dx2dy2 gives `point_kernel` [length^2].",
 }
 

@@ -14,10 +14,9 @@ and Hooke's law, eq. (4), gives 2 pi sigma = sym grad (4 pi G u) + 2 nu d2psi_1/
 known to be div (4 pi G u) = 2 (1 - 2 nu) d2psi_1/dz2. `check_dilatation` proves this relation, so that nu = 0.5 is
 regular. E cancels, and every component is A + nu B.
 
-Uniform and bilinear loads follow from the antiderivatives of Omega. `double_antiderivative` finds
-W with d4W/dx2dy2 = Omega, so that d2W/dxdy serves rectangles with uniform traction (Love 1929) and W itself
-tractions interpolated bilinearly: their stresses are sums over corners of one function, weighted with first or
-second differences of the nodal tractions. All functions used are smooth for z > 0 and have their right limits at z = 0.
+Bilinear loads follow from the antiderivative of Omega. `double_antiderivative` finds W with d4W/dx2dy2 = Omega for
+tractions interpolated bilinearly: their stresses are sums over corners of one function, weighted with second
+differences of the nodal tractions. All functions used are smooth for z > 0 and have their right limits at z = 0.
 
 The algebra runs in a polynomial ring over the rationals in x, y, z, R, 1/R, 1/(R+z), 1/(x^2+z^2), 1/(y^2+z^2) and
 
@@ -39,7 +38,7 @@ from sympy.polys.rings import ring
 
 COMPONENTS = ("xx", "yy", "zz", "xy", "yz", "xz")
 LOADS = ("x", "y", "z")
-KERNELS = ("point_kernel", "uniform_corner", "bilinear_corner")
+KERNELS = {"point_kernel": 0, "bilinear_corner": 2}  # differences of each function over the corners of a load
 
 _RING, x, y, z, R, iR, iS, iP, iQ, Lx, Ly, Lz, Ax, Ay = ring("x y z R iR iS iP iQ Lx Ly Lz Ax Ay", QQ)
 _X, _Y, _Z, _R, _IR, _IS, _IP, _IQ = range(8)
@@ -245,9 +244,8 @@ def _without_polynomials(f: Element, differences: int) -> Element:
 @cache
 def kernel_elements(name: str) -> tuple[Element, ...]:
     """Return the 36 elements of a kernel: A of the 18 (load, component) pairs, load slowest, then B."""
-    w = double_antiderivative()
-    potential = {"point_kernel": omega(), "uniform_corner": derivative(w, "xy"), "bilinear_corner": w}[name]
+    potential = omega() if name == "point_kernel" else double_antiderivative()
     split = [stresses(potential, load) for load in LOADS]
     found = [f for part in (0, 1) for one in split for f in one[part]]
-    differences = KERNELS.index(name)
+    differences = KERNELS[name]
     return tuple(_without_polynomials(f, differences) if differences else f for f in found)
