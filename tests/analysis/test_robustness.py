@@ -8,7 +8,6 @@ from synthetic_results import results_of
 from trackroller.analysis.robustness import b10, robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.report.words.design_points import best_point
 from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {
@@ -55,16 +54,6 @@ def test_percentiles_b10_and_probabilities_match_the_closed_forms(tmp_path):
     assert (out["probability_low"] <= out["probability"]).all()
     # 10 % slip count as life 0 in the safe figure, so that it falls to the shortest lives
     assert (life["b10_safe"] < 0.4 * life["b10"]).all()
-
-
-def test_sentence_names_the_best_design_point():
-    """The point with ten times the life is named with its B10 and its slip."""
-    ds = solved(lognormal)
-    text = best_point(robustness(results_of(ds), {}), "roller_life_hours").text
-    assert text.startswith(
-        "Best B10 of the life of the roller: at mean travel speed 60 m/min nine of ten rolling cases reach"
-    )
-    assert "full slip there in 10 %" in text
 
 
 def test_unlimited_lives_are_ranked_and_not_dropped():

@@ -8,7 +8,6 @@ from synthetic_results import results_of
 from trackroller.analysis.probability import bounds, probabilities
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.report.words.design_points import best_point
 from trackroller.study.design.grown_lhs import grown_lhs
 from trackroller.study.file.load import parse_study
 
@@ -89,8 +88,6 @@ def test_cases_that_miss_a_constraint_miss_the_target():
     out = analyse(results_of(solved(POINTS | {"constraints": ["friction_coefficient < 0.2"]})))
     power = out["target_probability"].sel(target=out["target"] == "friction_power").values
     np.testing.assert_allclose(power, 0.5, atol=0.005)
-    said = best_point(out, "roller_life_hours")
-    assert "nine of ten rolling cases that meet the constraints reach" in said.text and "there is no B10" in said.text
     assert (out["b10_safe"].sel(output="roller_life_hours") == 0).all()  # half of the cases count as life 0
 
 

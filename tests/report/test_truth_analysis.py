@@ -13,8 +13,8 @@ from synthetic_results import results_of, view_of
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.analysis.sensitivity import analyse
 from trackroller.report.numbers import level_text
+from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.words import indices
-from trackroller.report.words.design_points import best_point
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.pareto import pareto_sentence
@@ -267,7 +267,7 @@ def test_every_sentence_on_a_pareto_set_is_true():
         assert tuples[:4] == pytest.approx(exact, rel=0.006)
 
 
-def test_every_sentence_on_design_points_is_true():
+def test_every_row_on_design_points_is_true():
     rng = np.random.default_rng(4)
     for _ in range(60):
         points, inner = int(rng.integers(1, 6)), 40
@@ -284,12 +284,15 @@ def test_every_sentence_on_design_points_is_true():
                 "b10_low": (dims, 0.9 * b10[None]),
                 "b10_high": (dims, 1.1 * b10[None]),
                 "b10_safe": (dims, safe[None]),
+                "mean": (dims, b10[None]),
                 "probability": (("regime", "point"), shares),
-                "percentile_value": ((*dims, "percentile"), b10[None, :, None]),
+                "probability_low": (("regime", "point"), np.maximum(shares - 0.1, 0.0)),
+                "probability_high": (("regime", "point"), np.minimum(shares + 0.1, 1.0)),
+                "percentile_value": ((*dims, "percentile"), np.repeat(b10[None, :, None], 4, axis=2)),
                 "beyond_data": (dims, beyond[None]),
             },
             coords={
-                "percentile": [10.0],
+                "percentile": [5.0, 10.0, 50.0, 95.0],
                 "output": np.array(["roller_life_hours"], dtype=object),
                 "output_name": ("output", np.array(["life of the roller"], dtype=object)),
                 "output_units": ("output", np.array(["h"], dtype=object)),
@@ -298,16 +301,17 @@ def test_every_sentence_on_design_points_is_true():
             },
             attrs={"outer_factors": "velocity"},
         )
-        said = best_point(table, "roller_life_hours")
-        best = said.values["point"]
+        told = robust_tables(table, None)[0]
+        best = int(re.search(r"speed (\d+) m/min", told.rows[0][0])[1]) - 10
         assert safe[best] == safe.max() and b10[best] == b10[safe == safe.max()].max()
-        assert f"at mean travel speed {10 + best} m/min" in said.text
-        told = float(re.search(r"reach ([\d,.]+) h", said.text)[1].replace(",", ""))
-        assert ("h (beyond the S-N data) (95 %" in said.text) == bool(b10[best] >= beyond[best])
-        assert told == pytest.approx(b10[best], rel=0.006)
-        slip = float(re.search(r"full slip there in ([\d.]+) %", said.text)[1])
-        assert slip == pytest.approx(100 * shares[1, best], abs=0.51)
-        assert ("there is no B10" in said.text) == (shares[0, best] < 1 and safe[best] == 0)
+        assert len(told.rows) == points
+        for row in told.rows:
+            point = int(re.search(r"speed (\d+) m/min", row[0])[1]) - 10
+            assert (float(row[1]), float(row[3])) == (b10[point], safe[point])
+            assert row[1].beyond == bool(b10[point] >= beyond[point])
+            for head, text in zip(told.heads[4:], row[4:], strict=True):
+                regime = ("Full slip", "Lift-off", "Failed").index(head.removesuffix(" (95 % interval)")) + 1
+                assert float(text.split(" %")[0]) == pytest.approx(100 * shares[regime, point], abs=0.51)
 
 
 def test_sentences_name_the_factors_that_are_correlated_in_the_rows():

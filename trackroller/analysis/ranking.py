@@ -53,6 +53,17 @@ def main_lives(sens: xr.Dataset) -> list[str]:
     return lives if sens.attrs.get("outputs_named") else first
 
 
+def best_points(part: xr.Dataset) -> np.ndarray:
+    """Return the numbers of the design points, the best B10 first; the one with other cases as life 0 decides.
+
+    Parameters
+    ----------
+    part : analysis of an inner/outer design for one life
+    """
+    safe, b10s = (np.nan_to_num(part[name].values, nan=-1.0) for name in ("b10_safe", "b10"))
+    return np.lexsort((-b10s, -safe))
+
+
 def headline(sens: xr.Dataset) -> str:
     """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
     index = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")

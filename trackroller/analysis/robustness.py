@@ -89,7 +89,6 @@ def robustness(
         out[f"probability{end}"] = (("regime", "point"), value.reshape(len(REGIMES), -1), attrs)
     largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
     out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
-    out.attrs["constrained"] = int(results.allowed is not None)
     out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
     return out
 

@@ -14,7 +14,7 @@ from trackroller import parameters
 from trackroller.analysis.judging import OPTIMUM
 from trackroller.analysis.looks import UNTIL
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.ranking import headline, main_lives, robust_design
+from trackroller.analysis.ranking import headline, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
 from trackroller.parameters.example import not_given_text
@@ -43,7 +43,6 @@ from trackroller.report.tables.table import Table, cell
 from trackroller.report.tables.targets import target_tables
 from trackroller.report.words.accuracy import friction_error
 from trackroller.report.words.comparison import report_section
-from trackroller.report.words.design_points import best_point
 from trackroller.report.words.designs import size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.limits import limit_sentences
@@ -144,7 +143,6 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     why: list[Table | None] = []
     if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
-        said += [best_point(sens, name).text for name in main_lives(sens)]
     elif sens is not None:
         why = [index_table(sens, error), *part_tables(sens)]
         index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)

@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.ranking import estimate, main_lives
+from trackroller.analysis.ranking import best_points, estimate, main_lives
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.report.numbers import capital, chance, head_unit, listing, rounded
+from trackroller.report.numbers import Life, capital, chance, head_unit, listing, rounded
 from trackroller.report.tables.table import Table
 from trackroller.report.tables.targets import MAX_POINTS
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
-from trackroller.report.words.design_points import life_at, point_words
 from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.targets import point_words
 
 OTHERS = dict(zip(REGIMES[1:], REGIME_LABELS[1:], strict=True))  # regimes in which the roller does not roll, in words
 
@@ -34,8 +34,7 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table]:
     Percentiles have a table of their own where B10 holds the scatter of the material, because they do not hold it.
     """
     part, scatter = table.sel(output=output), float(table.attrs.get("log_life_scatter", 0.0))
-    safe = np.nan_to_num(part["b10_safe"].values)
-    points = np.lexsort((-np.nan_to_num(part["b10"].values), -safe))[:MAX_POINTS]
+    points = best_points(part)[:MAX_POINTS]
     seen = [r for r in OTHERS if float(table["probability"].sel(regime=r).max()) > 0]
     heads = ["Design point", "B10", "B10, 95 % interval", "B10, other cases as life 0"]
     heads += [f"{capital(OTHERS[r])} (95 % interval)" for r in seen]
@@ -75,3 +74,15 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
     note = "Rolling cases; scatter of the study's factors alone, without that of the material."
     note += f" {error.text}" if error and output in FRICTION_OUTPUTS else ""
     return Table(f"percentiles_{output}", f"{name} [{unit}]: mean and percentiles", heads, rows, note)
+
+
+def life_at(part: xr.Dataset, point: int, value: float) -> Life:
+    """Return a life of a design point, marked if lives beyond the S-N data enter it.
+
+    With the material's own scatter B10 lies below the lives that it rests on: then the life that nine of ten conditions
+    reach decides.
+    """
+    least = float(part["percentile_value"].sel(percentile=10.0)[point]) if value > 0 else 0.0
+    value = float(value)
+    rests = max(value, least) if value == float(part["b10"][point]) else value
+    return Life(value, bool(rests >= float(part["beyond_data"][point])))

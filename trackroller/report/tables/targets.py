@@ -9,8 +9,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import capital, count
 from trackroller.report.tables.table import Table
-from trackroller.report.words.design_points import point_words
-from trackroller.report.words.targets import WHOLE, _cell, _level_words, target, target_words
+from trackroller.report.words.targets import WHOLE, _cell, _level_words, point_words, target, target_words
 from trackroller.study.design.levels import in_words
 
 MAX_POINTS = 24  # rows of the table of design points

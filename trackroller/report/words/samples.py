@@ -8,10 +8,9 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.convergence import HALF_WIDTH
-from trackroller.analysis.ranking import estimate
+from trackroller.analysis.ranking import best_points, estimate
 from trackroller.parameters import REGIMES
 from trackroller.report.numbers import rounded
-from trackroller.report.words.design_points import best_point
 from trackroller.report.words.indices import of_output
 from trackroller.report.words.sentence import Sentence
 from trackroller.report.words.targets import target_words
@@ -71,9 +70,9 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
     """Judge B10 of each life at its best design point, and the probability of each target at all design points."""
     widths = []
     for output in (str(n) for n in sens["output"].values if "life" in str(n)):
-        best = best_point(sens, output).values.get("point")
-        part = sens.sel(output=output).isel(point=best) if best is not None else sens
-        if best is None or not 0 < float(part["b10"]) < np.inf or not np.isfinite(float(part["b10_high"])):
+        part = sens.sel(output=output)
+        part = part.isel(point=best_points(part)[0])
+        if not 0 < float(part["b10"]) < np.inf or not np.isfinite(float(part["b10_high"])):
             continue
         half = float(np.ptp(estimate(part, "b10")[1:])) / 2 / float(part["b10"])
         widths.append((half, HALF_B10, f"B10 of the {part['output_name'].item()} at the best design point"))

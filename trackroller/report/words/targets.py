@@ -8,7 +8,6 @@ import xarray as xr
 from trackroller.analysis.ranking import estimate
 from trackroller.analysis.targets import most_apart
 from trackroller.report.numbers import capital, chance, count, level_text, long_name, number, quantity, setting
-from trackroller.report.words.design_points import point_words
 from trackroller.report.words.sentence import Sentence
 
 SAME = 1e-6  # probabilities that differ by less are called the same
@@ -77,3 +76,11 @@ def _level_words(part: xr.Dataset, level: int) -> str:
     if text or low == high:
         return setting(name, text or low)
     return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
+
+
+def point_words(table: xr.Dataset, point: int) -> str:
+    """Name a design point: 'profile ratio 1.1, contact angle 30°'."""
+    names = [n for n in str(table.attrs.get("outer_factors", "")).split(", ") if n]
+    values = [table[name].values[point] for name in names]
+    said = [setting(n, v if isinstance(v, str) else float(v)) for n, v in zip(names, values, strict=True)]
+    return ", ".join(said) or "the one design point"
