@@ -9,7 +9,6 @@ from synthetic_results import results_of
 
 from trackroller.analysis import convergence, indices
 from trackroller.analysis.givendata import first_order, given_data, prcc
-from trackroller.analysis.pawn import pawn
 from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
@@ -200,7 +199,7 @@ def test_table_of_own_cases_is_analysed_from_given_data(tmp_path):
     part = result.sel(output="friction_power")
     assert float(part["first"].sel(factor="velocity")) == pytest.approx(share, abs=0.08)
     assert float(part["first"].sel(factor="material_pair")) == pytest.approx(1 - share, abs=0.08)
-    assert float(part["pawn"].sel(factor="axial_force")) < 1.3 * float(part["pawn_noise"].sel(factor="axial_force"))
+    assert float(part["delta"].sel(factor="axial_force")) < 1.3 * float(part["delta_noise"].sel(factor="axial_force"))
 
 
 def categorical(x, c):
@@ -348,22 +347,6 @@ def test_morris_agrees_with_salib_and_uses_what_is_left():
         np.testing.assert_allclose(found[name], theirs[name], atol=1e-9)
     y[1] = np.nan
     assert indices.morris(y, design.unit, none)["effects_used"].sum() == 150 - 2
-
-
-def test_pawn_agrees_with_salib_and_an_inert_factor_stays_in_the_noise():
-    """Median KS distance as in SALib (bin edges may differ by a row); x5 does nothing and is below the noise."""
-    from SALib.analyze import pawn as oracle
-
-    spec = {**X3, "x4": {"uniform": [0, 1]}}
-    design = sample(spec, "lhs", 800, 1)
-    table = np.stack(list(design.columns.values()), axis=1)
-    y = ishigami(*table.T[:3])
-    found = given_data(y, design.unit, np.ones(4, dtype=bool))
-    theirs = oracle.analyze({"num_vars": 4, "names": list(spec), "bounds": [[0, 1]] * 4}, table, y)["median"]
-    np.testing.assert_allclose(found["pawn"], theirs, atol=0.01)
-    assert found["pawn"][3] < found["pawn_noise"][3] < found["pawn"][:2].min()
-    group = np.repeat([0, 1], 100)
-    assert pawn(group.astype(float), group)[0] == pytest.approx(0.5)  # ties are compared after the last of them
 
 
 def test_partial_rank_correlation_sees_through_other_factors():

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from SALib.analyze import rbd_fast
 
-from trackroller.analysis import pawn
 from trackroller.analysis.givendata import firsts
 from trackroller.analysis.pairs import GROUPS, held_out, pairs
 from validation.benchmarks.known_indices import functions, random_rows
@@ -45,27 +44,6 @@ def test_interval_of_an_interaction_equals_a_jackknife_of_twenty_fits():
     half = 1.959964 * np.sqrt((GROUPS - 1) / GROUPS * ((left - left.mean()) ** 2).sum())
     assert found["interaction_share"][0, 1] == pytest.approx(share(part >= 0), rel=1e-9)
     assert found["interaction_share_high"][0, 1] == pytest.approx(share(part >= 0) + half, rel=1e-9)
-
-
-@pytest.mark.parametrize("digits", [1, 12])
-def test_pawn_is_the_median_distance_of_the_distribution_functions(digits):
-    """By their values at every output, also with many equal outputs, repeated rows and an empty group."""
-    rng = np.random.default_rng(4)
-    y, group = np.sort(np.round(rng.normal(size=200), digits)), rng.integers(0, 5, 200)
-    for times in (np.ones(200, int), rng.integers(0, 3, 200), rng.integers(0, 3, 200) * (group != 2)):
-        values, kinds = np.repeat(y, times), np.repeat(group, times)
-        at = y[:, None] >= values  # shape (place, row)
-        own = [at[:, kinds == g].mean(axis=1) for g in np.unique(kinds)]
-        expected = np.median([np.abs(one - at.mean(axis=1)).max() for one in own])
-        assert pawn._distance(values, kinds) == pytest.approx(expected, rel=1e-12)
-
-
-def test_noise_of_a_long_sample_is_that_of_its_permutations():
-    rng = np.random.default_rng(6)
-    y, x = rng.random((2, 20_000))
-    group = pawn.bins(x)
-    drawn = [pawn.pawn(y, rng.permutation(group), noise=False)[0] for _ in range(60)]
-    assert pawn.pawn(y, group)[1] == pytest.approx(np.percentile(drawn, 95), rel=0.15)
 
 
 @pytest.mark.parametrize("name", ["Ishigami", "g-function"])

@@ -47,15 +47,13 @@ def test_delta_has_smaller_errors_than_salib(correlation):
     assert found["ours"]["rmse"] < 0.5 * found["SALib delta"]["rmse"] and found["ours"]["coverage"] > 0.8
 
 
-def test_interactions_and_pawn_have_smaller_errors_than_salib():
+def test_interactions_have_smaller_errors_than_salib():
     found = measured("pairs", "interactions, Ishigami, 400 rows", 3)
     assert found["ours"]["rmse"] < found["SALib hdmr"]["rmse"]
-    found = measured("pawn", "PAWN", 3)
-    assert found["ours"]["rmse"] < 0.03 and found["SALib pawn"]["rmse"] > 0.1
 
 
 def test_the_program_compares_each_estimator_and_design():
-    found = tool.measure(seeds=4, only=("pawn",))
-    assert set(found["estimators"]["PAWN of three categories, 1000 rows"]) == {"ours", "SALib pawn"}
+    found = tool.measure(seeds=4, only=("pairs",))
+    assert set(found["estimators"]["interactions, Ishigami, 400 rows"]) == {"ours", "SALib hdmr"}
     assert found["designs"]["box_behnken"] == {"the same rows": [3, 4, 5], "pyDOE has more rows": [6, 7]}
     assert found["designs"]["plackett_burman"]["pyDOE fails"][:5] == [24, 25, 26, 27, 32]

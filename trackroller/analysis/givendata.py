@@ -1,6 +1,6 @@
 """Sensitivity measures from given data: valid for any sample of independent factors, also where cases failed.
 
-First-order shares of variance, delta and PAWN with the level that chance alone reaches, partial rank correlations.
+First-order shares of variance, delta with the level that chance alone reaches, partial rank correlations.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from scipy.stats import rankdata
 
 from trackroller.analysis.delta import delta
 from trackroller.analysis.indices import Estimates, Z, constant
-from trackroller.analysis.pawn import bins, pawn, pawn_interval, thinned
 
 MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
@@ -22,7 +21,6 @@ FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_RO
 MEASURES = {
     "first": ("first", "first_low", "first_high"),
     "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
-    "pawn": ("pawn", "pawn_low", "pawn_high", "pawn_noise"),
     "prcc": ("prcc", "prcc_low", "prcc_high"),
 }
 
@@ -33,7 +31,6 @@ def given_data(
     ordered: np.ndarray,
     seed: int = 0,
     measures: Iterable[str] = tuple(MEASURES),
-    resamples: int = 300,
 ) -> Estimates:
     """Estimate the given-data measures of one output.
 
@@ -44,12 +41,11 @@ def given_data(
     ordered : for which factors more and less mean something, shape (k,); the others have no rank correlation
     seed : of all random numbers
     measures : of `MEASURES`
-    resamples : bootstrap resamples of PAWN
 
     Returns
     -------
-    first (share of variance Var(E[y|x]) / V), delta, pawn and prcc, each with _low and _high, shape (k,); delta_noise
-    and pawn_noise, the value below which an inert factor stays in 95 % of cases; rows_used, shape (). NaN for a
+    first (share of variance Var(E[y|x]) / V), delta and prcc, each with _low and _high, shape (k,); delta_noise, the
+    value below which an inert factor stays in 95 % of cases; rows_used, shape (). NaN for a
     factor that does not vary, and everywhere if fewer than 30 rows are usable.
 
     Notes
@@ -71,10 +67,6 @@ def given_data(
         if "delta" in measures:
             for name, value in zip(MEASURES["delta"], delta(y, unit[:, j], bool(ordered[j]), seed), strict=True):
                 out[name][j] = value
-        if "pawn" in measures:
-            group = bins(unit[:, j], bool(ordered[j]))
-            out["pawn"][j], out["pawn_noise"][j] = pawn(y, group, seed)
-            out["pawn_low"][j], out["pawn_high"][j] = pawn_interval(y, group, out["pawn"][j], seed, resamples)
     return out
 
 
@@ -113,7 +105,8 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     if len(y) < MIN_ROWS or constant(y):
         return out
     unlike = int((y != np.median(y)).sum())  # few if the output is 1 where a rare event occurs
-    some = thinned(len(y), max(FAST_ROWS, RARE_ROWS * len(y) // max(1, unlike)))
+    most = max(FAST_ROWS, RARE_ROWS * len(y) // max(1, unlike))
+    some = np.linspace(0, len(y) - 1, min(len(y), most)).astype(int)
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
         x = unit[:, j]
         values, group = np.unique(x, return_inverse=True)

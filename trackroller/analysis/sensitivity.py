@@ -80,7 +80,7 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     own[:, [0, -1]] = block[:, [0, -1]]
     # a design of groups gives single factors no index, so their first-order index comes from given data
     measures = tuple(dict.fromkeys(("first", *how.measures) if groups else how.measures))
-    given = given_data(own.ravel(), design.places, design.ordered, how.seed, measures, how.resamples)
+    given = given_data(own.ravel(), design.places, design.ordered, how.seed, measures)
     if groups:
         return Estimated(given, int(np.isfinite(block).all(axis=1).sum()), blocks)
     out = sobol(y, count, second, how.seed, how.resamples)
@@ -110,7 +110,7 @@ def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
 
 def _grid(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     out = indices.grid_shares(y.reshape(design.meta["shape"]))
-    out |= given_data(y, design.unit, design.ordered, how.seed, how.measures, how.resamples)
+    out |= given_data(y, design.unit, design.ordered, how.seed, how.measures)
     return Estimated(out, int(out.pop("cells_used")), int(out.pop("cells")))
 
 
@@ -122,7 +122,7 @@ def _coded(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
 def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     ordered, places = design.ordered, design.places
     measures = tuple(dict.fromkeys(("first", *how.measures)))  # `first` ranks the factors
-    out = given_data(y, places, ordered, how.seed, measures, how.resamples)
+    out = given_data(y, places, ordered, how.seed, measures)
     if len(design.factors) > 1 and not correlated_pairs(design):
         out |= pairs(y, places, ordered, how.seed)
     at = convergence.sizes(len(y), smallest=64)
@@ -170,7 +170,7 @@ def analyse(results: StudyResults) -> xr.Dataset:
     xarray.Dataset
         Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star, sigma
         (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
-        surfaces); first, delta, pawn, prcc (given data). A random sample also has interaction_share by a polynomial
+        surfaces); first, delta, prcc (given data). A random sample also has interaction_share by a polynomial
         that predicts `fit_share` of the variance. The keys `groups` and `conditional_on` add the variables of
         `trackroller.analysis.parts.parts_of`. Indices have _low, _high and their course with the sample size. For
         each output: used_share, reliable, take_times, and `note`, which states the rows left out and why;

@@ -1,6 +1,6 @@
 """Compare the sensitivity estimators with SALib, and the designs with pyDOE, where the truth is known.
 
-    python -m validation.benchmarks.index_estimators [--seeds N] [--only sobol first delta pairs pawn]
+    python -m validation.benchmarks.index_estimators [--seeds N] [--only sobol first delta pairs]
 
 Each estimator runs on samples of many seeds. For each function and estimator it states the largest bias and root mean
 square error over the factors, the smallest and mean coverage of the 95 % intervals, the mean half width and the time of
@@ -19,13 +19,11 @@ import numpy as np
 import pydoe
 from SALib.analyze import delta as salib_delta
 from SALib.analyze import hdmr, rbd_fast
-from SALib.analyze import pawn as salib_pawn
 from SALib.analyze import sobol as salib_sobol
 
 from trackroller.analysis import givendata
 from trackroller.analysis.delta import delta
 from trackroller.analysis.pairs import pairs
-from trackroller.analysis.pawn import pawn, pawn_interval
 from trackroller.analysis.sobol import sobol
 from trackroller.study.design import arrays
 from validation.benchmarks.command import run
@@ -129,25 +127,11 @@ def their_pairs(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
     return _symmetric(found["S"][3:6], found["S_conf"][3:6])
 
 
-def our_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
-    """Return PAWN of the last factor, a category."""
-    kind = unit[:, -1].astype(int)
-    value = pawn(y, kind, noise=False)[0]
-    low, high = pawn_interval(y, kind, value, seed)
-    return np.array([value]), np.array([low]), np.array([high])
-
-
-def their_pawn(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
-    """Return SALib's PAWN of the last factor; it has no interval."""
-    return _symmetric(salib_pawn.analyze(problem(1), unit[:, -1:], y)["median"], np.array([np.nan]))
-
-
 ESTIMATORS: dict[str, dict[str, Estimator]] = {
     "sobol": {"ours": our_sobol, "SALib sobol": their_sobol},
     "first": {"ours": our_first, "SALib rbd_fast": their_first},
     "delta": {"ours": our_delta, "SALib delta": their_delta},
     "pairs": {"ours": our_pairs, "SALib hdmr": their_pairs},
-    "pawn": {"ours": our_pawn, "SALib pawn": their_pawn},
 }
 
 
@@ -170,7 +154,6 @@ def cases() -> Iterator[tuple[str, str, Callable[[int], Data], np.ndarray]]:
     for size in (400, 1024):
         truth = np.array([0.0, f.total[2], 0.0])
         yield "pairs", f"interactions, Ishigami, {size} rows", partial(random_rows, f, size), truth
-    yield "pawn", "PAWN of three categories, 1000 rows", partial(category_rows, 1000), np.array([1 / 3])
 
 
 def designs() -> dict[str, dict[str, list[int]]]:

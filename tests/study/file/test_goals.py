@@ -14,7 +14,6 @@ from synthetic_results import results_of, view_of
 from trackroller.analysis.delta import delta
 from trackroller.analysis.givendata import given_data
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.pawn import bins, pawn, pawn_interval
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.sensitivity import analyse
 from trackroller.damage.sn_curve import SNCurve
@@ -189,7 +188,7 @@ def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
     ds.to_netcdf(tmp_path / "study.nc")
     sens = analyse(results_of(tmp_path / "study.nc"))
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
-    assert "delta" in sens and "pawn" not in sens and "first" in sens
+    assert "delta" in sens and "prcc" not in sens and "first" in sens
     told = contents(view_of(ds, sens))["tables"]["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
@@ -266,29 +265,17 @@ def test_delta_agrees_with_salib_knows_categories_and_keeps_the_inert_in_the_noi
     assert exact == pytest.approx(4 / 9, abs=0.02) and low <= 4 / 9 <= high
 
 
-def test_pawn_interval_is_as_wide_as_the_index_scatters_from_sample_to_sample():
-    found = []
-    for seed in range(20):
-        x = np.random.default_rng(100 + seed).random(600)
-        y, group = x + np.random.default_rng(seed).normal(0, 0.3, 600), bins(x)
-        value = pawn(y, group, noise=False)[0]
-        found.append((value, *pawn_interval(y, group, value, resamples=100)))
-    mean = np.mean([value for value, _, _ in found])
-    assert sum(low <= mean <= high for _, low, high in found) >= 17
-
-
 def test_every_measure_has_an_interval_and_only_the_wanted_are_there():
     x = np.random.default_rng(3).random((300, 2))
-    found = given_data(x[:, 0], x, np.array([True, True]), measures=("delta", "pawn"), resamples=50)
+    found = given_data(x[:, 0], x, np.array([True, True]), measures=("delta", "prcc"))
     assert set(found) == {
         "delta",
         "delta_low",
         "delta_high",
         "delta_noise",
-        "pawn",
-        "pawn_low",
-        "pawn_high",
-        "pawn_noise",
+        "prcc",
+        "prcc_low",
+        "prcc_high",
         "rows_used",
     }
     assert found["delta"][0] > 0.6 > found["delta_noise"][0]

@@ -14,7 +14,7 @@ from trackroller.report.words.indices import HALF, category, index_text, of_outp
 from trackroller.report.words.sentence import Sentence
 
 # the measures of a factor, in the order of the table of all measures
-MEASURES = "S1 ST main_share mu_star sigma effect curvature first fit_alone delta pawn prcc".split()
+MEASURES = "S1 ST main_share mu_star sigma effect curvature first fit_alone delta prcc".split()
 
 
 def index_table(sens: xr.Dataset, error: Sentence | None) -> Table:

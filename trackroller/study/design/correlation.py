@@ -18,7 +18,7 @@ KEY = "rank_correlations"
 DESIGNS = ("lhs", "sobol", "inner_outer")
 SMALLEST = 1e-6  # eigenvalue of the correlation matrix below which it does not count as positive definite
 Entry = tuple[str, str, float]
-TAKE = "Take design lhs: first, delta and PAWN allow correlation."
+TAKE = "Take design lhs: first and delta allow correlation."
 REFUSALS = {
     "saltelli": f"Sobol indices need independent factors. {TAKE}",
     "morris": f"Elementary effects change one factor at a time. {TAKE}",

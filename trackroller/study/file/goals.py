@@ -33,7 +33,7 @@ from trackroller.study.design.entries import choice
 from trackroller.study.design.factors import Factor
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
-MEASURES = ("first", "delta", "pawn", "prcc")
+MEASURES = ("first", "delta", "prcc")
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
 DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
