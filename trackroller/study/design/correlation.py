@@ -100,9 +100,7 @@ def copula(entries: Sequence[Entry], factors: Mapping[str, Factor]) -> np.ndarra
         i, j = names.index(one), names.index(other)
         rho[i, j] = rho[j, i] = value
     if not _is_definite(rho):
-        raise InputError(
-            KEY, [list(e) for e in entries], "rank correlations that can hold together", _remedy(entries, rho, names)
-        )
+        raise InputError(KEY, [list(e) for e in entries], "rank correlations that can hold together", _remedy(rho))
     return np.linalg.cholesky(normal_correlation(rho))
 
 
@@ -115,25 +113,11 @@ def _is_definite(rho: np.ndarray) -> bool:
     return bool(np.linalg.eigvalsh(normal_correlation(rho))[0] > SMALLEST)
 
 
-def _remedy(entries: Sequence[Entry], rho: np.ndarray, names: list[str]) -> str:
-    """Say what makes the matrix positive definite: the nearest change of one entry, or a common factor."""
-    best: tuple[float, str] = (np.inf, "")
-    for one, other, value in entries:
-        i, j = names.index(one), names.index(other)
-        tried = np.round(np.arange(-0.99, 1.0, 0.01), 2)
-        good = []
-        for new in tried:
-            changed = rho.copy()
-            changed[i, j] = changed[j, i] = new
-            if _is_definite(changed):
-                good.append(float(new))
-        if good:
-            apart = min(abs(v - value) for v in good)
-            best = min(best, (apart, f"Give [{one}, {other}] a value from {good[0]:g} to {good[-1]:g}"))
+def _remedy(rho: np.ndarray) -> str:
+    """Say by which factor all correlations must shrink until the matrix is positive definite."""
     shares = np.round(np.arange(0.99, -0.01, -0.01), 2)
     share = next(s for s in shares if _is_definite(np.where(rho < 1, s * rho, 1.0)))
-    every = f"multiply all values by {share:g} or less."
-    return f"{best[1]}, or {every}" if best[1] else f"M{every[1:]}"
+    return f"Multiply all values by {share:g} or less."
 
 
 def correlate(unit: np.ndarray, root: np.ndarray | None, strata: bool) -> np.ndarray:
