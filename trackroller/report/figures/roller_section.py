@@ -4,18 +4,16 @@ from __future__ import annotations
 
 import json
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.contact.drawn_profiles import cross_section
 from trackroller.errors import ShapeError
 from trackroller.report import html
 from trackroller.report.numbers import rounded
 from trackroller.roller.record import inputs_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SIZE = np.array([340.0, 330.0])  # width and height of the drawing [px]
 LONGEST = 62.0  # the largest force [px]

@@ -6,18 +6,16 @@ import tempfile
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet_facts import collect
 from trackroller.report.words.wear import run_in
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress")  # figures of the sheet, as far as drawn
 FULL = 150.0  # percent of a limit at the right end of a bar

@@ -5,11 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.analysis.columns import at_surface
+from trackroller.materials import Material
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OPTIONS, REGIMES
 from trackroller.parameters.example import not_given_text
 from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
@@ -33,7 +35,7 @@ from trackroller.report.words.assumptions import (
     strength_sentences,
 )
 from trackroller.roller.dataset import VARIABLES, shown
-from trackroller.roller.limits import limits
+from trackroller.roller.limits import Limits, limits
 from trackroller.roller.record import (
     case_of_result,
     doubts_of,
@@ -45,13 +47,6 @@ from trackroller.roller.record import (
 )
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from trackroller.materials import Material
-    from trackroller.roller.limits import Limits
-
 
 ROUNDING = 1e-9  # N, mm, MPa, 1: results below are rounding errors of a zero, as the drive torque of a free roller
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
@@ -18,9 +19,6 @@ from trackroller.report.words.spectrum import sentences
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 @lives_in_years

@@ -7,9 +7,9 @@ import math
 import shlex
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS
@@ -35,9 +35,6 @@ from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import UNITS, _life, known_damage, sentences
 from trackroller.roller.record import NOT_GIVEN, doubts_of
 from trackroller.study.spectrum.file import LOAD_FIELDS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 
 def life_rows(ds: xr.Dataset, body: str) -> list[Row]:

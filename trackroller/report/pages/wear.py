@@ -5,9 +5,9 @@ from __future__ import annotations
 import shlex
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters import BODIES, OPTIONS
 from trackroller.report import html
@@ -20,9 +20,6 @@ from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.wear import deeper_contact, sentences
 from trackroller.roller.record import inputs_of, materials_of
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 MOST = 12  # rows of the table
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes

@@ -5,23 +5,20 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS, heat
 from trackroller.damage.limit import SN_SCATTER
+from trackroller.materials import Material
 from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
 from trackroller.report.tables.lives import overrollings
 from trackroller.roller import temperature
 from trackroller.roller.dataset import NOTES
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from trackroller.materials import Material
-    from trackroller.roller.limits import Limits
+from trackroller.roller.limits import Limits
 
 YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface
 BOTH = "roller and guide"

@@ -4,22 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.analysis.lives import past_data
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
+from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import hour_unit, lasting, number, rounded
 from trackroller.report.tables.inputs import Row
 from trackroller.roller.geometry import rolling_radius
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from trackroller.materials import Material
 
 UNKNOWN = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}
 

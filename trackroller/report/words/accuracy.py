@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
@@ -14,9 +14,6 @@ from trackroller.report.numbers import capital, count, level_text, listing, numb
 from trackroller.report.words.sentence import Sentence
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 SLIDING_WEAR = "Full sliding errs in friction energy, and so in wear, by 41 % in the median of 92 designs."

@@ -3,18 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any
+from typing import Any
+
+import xarray as xr
 
 from trackroller.damage import LIMITS
+from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
 from trackroller.report.numbers import capital, listing, number, plain, unit_text
 from trackroller.report.tables.inputs import friction_source
 from trackroller.roller.record import friction_records
-
-if TYPE_CHECKING:
-    import xarray as xr
-
-    from trackroller.materials import Material
 
 ALWAYS = (
     "Dry contact: no lubricant and no dirt.",

@@ -3,18 +3,15 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
 
 import numpy as np
+import xarray as xr
 
 from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, REGIME_LABELS
 from trackroller.report.numbers import BEYOND, chance, life, life_unit, listing, rounded
 from trackroller.report.words.sentence import Sentence
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))
 

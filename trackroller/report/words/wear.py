@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters import BODIES
 from trackroller.report.numbers import rounded
 from trackroller.report.words.sentence import Sentence
 from trackroller.roller.wearing import ENDS
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 NOISE = 0.05  # jump of the pressure between neighbouring states that is told; a smooth peak stays far below
 
