@@ -38,12 +38,23 @@ NORMAL = {
     "friction_coefficient": {"normal": [0.2, 0.01]},
     "motor_force": {"values": [0, -9]},
 }
+UNEQUAL = {  # friction 1.5 lifts the force above 0 for sure, friction 0.2 in half of the cases
+    **STUDY,
+    "factors": {
+        "friction_coefficient": {"values": [0.2, 1.5]},
+        "motor_force": {"values": [0, -9]},
+        "axial_force": {"normal": [30, 3]},
+    },
+    "design": "inner_outer",
+    "analysis": {"target": {"normal_force_1": {"min": 0.0}}},
+    "until": {"half_width": 0.02, "of": ["probability(normal_force_1)"]},
+}
 ASKED = {
     "sobol": "first-order indices",
     "lhs": "first-order indices",
     "saltelli": "first-order and total indices",
     "morris": "effects mu*, as shares of the output's range,",
-    "inner_outer": "the quantity of each design point",
+    "inner_outer": "log10 B10 or a probability at each design point",
 }
 DESIGNS = ["sobol", "lhs", "saltelli", "morris", "inner_outer"]
 
@@ -58,6 +69,18 @@ def study_of(design="sobol", **until):
 
 def grow(study, place, **how):
     return tr.open_study(grow_study(study, place, **({"solver": fake_solver.solve} | how)).folder.root)
+
+
+def killed(study, place, monkeypatch, after):
+    """Kill a run of a study after each of these numbers of solved cases."""
+    for kill in after:
+        monkeypatch.setenv("FAKE_KILL", str(kill))
+        child = os.fork()
+        if child == 0:
+            grow(study, place)
+            os._exit(0)
+        assert os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGKILL
+    monkeypatch.delenv("FAKE_KILL")
 
 
 @pytest.mark.parametrize("design", DESIGNS)
@@ -97,6 +120,44 @@ def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
         assert np.nanmax(half) / scale <= max(widths[-1].values()) + 1e-12
 
 
+def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
+    study = load_study(UNEQUAL)
+    whole = grow(study, tmp_path / "whole")
+    design, found = whole.design, looks_of(whole)
+    sizes = [rows.stop - rows.start for rows in design.points]
+    assert sizes[:2] == [sizes[0]] * 2 and sizes[2:] == [256, 256] and sizes[0] == 512
+    assert found["looks"][-1]["unsure"] == [] and found["looks"][1]["unsure"] == [0, 1]
+    assert [look["cases"] for look in found["looks"][:3]] == [512, 1024, 1536]
+    inner = [design.columns["axial_force"][rows] for rows in design.points]
+    assert all(np.array_equal(inner[0][: len(own)], own) for own in inner)
+    part = whole.indices().sel(target="normal_force_1")
+    hits = whole.data["normal_force"].sel(contact=1).values >= 0
+    shares = [hits[rows].mean() for rows in design.points]
+    assert part["target_probability"].values == pytest.approx(shares) and part["point_samples"].values.tolist() == sizes
+    level = (part["level_factor"] == "motor_force") & (part["level_low"] == 0.0)
+    points = [0, 2]  # motor force 0 at both frictions
+    for end in ("", "_low", "_high"):
+        wanted = part[f"target_probability{end}"].values[points].mean()
+        assert float(part[f"level_probability{end}"][level].item()) == pytest.approx(wanted)
+    page = whole.report(tmp_path / "report.html").read_text(encoding="utf-8")
+    assert f"The design points have 256 to {sizes[0]:,} samples" in page and f"up to {sizes[0]:,} samples" in page
+    monkeypatch.setenv("FAKE_SOLVED", str(tmp_path / "solved.txt"))
+    killed(study, tmp_path / "parts", monkeypatch, (600, 1300))
+    parts = grow(study, tmp_path / "parts")
+    assert parts.data.drop_attrs().identical(whole.data.drop_attrs()) and looks_of(parts) == found
+    assert status_of(study, tmp_path / "parts").total == design.size == sum(sizes)
+
+
+def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
+    def outside(cases, **how):
+        ds = fake_solver.solve(cases, **how)
+        return ds.assign(converged=0 * ds["converged"])
+
+    for study in (study_of(), study_of("saltelli"), load_study(UNEQUAL)):
+        found = looks_of(grow(study, tmp_path / study.config.design, solver=outside))
+        assert "so nothing is left to decide" in found["stopped"] and len(found["looks"]) == 1
+
+
 def test_every_solved_case_is_used_again(tmp_path, monkeypatch):
     solved = tmp_path / "solved.txt"
     monkeypatch.setenv("FAKE_SOLVED", str(solved))
@@ -133,14 +194,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(design, tmp_path, monkeypatch):
     study = study_of(design, half_width=1e-6, at_most=1100)
     whole = grow(study, tmp_path / "whole")
     monkeypatch.setenv("FAKE_SOLVED", str(tmp_path / "solved.txt"))
-    for kill in (100, 300, 700):
-        monkeypatch.setenv("FAKE_KILL", str(kill))
-        child = os.fork()
-        if child == 0:
-            grow(study, tmp_path / "parts")
-            os._exit(0)
-        assert os.WTERMSIG(os.waitpid(child, 0)[1]) == signal.SIGKILL
-    monkeypatch.delenv("FAKE_KILL")
+    killed(study, tmp_path / "parts", monkeypatch, (100, 300, 700))
     parts = grow(study, tmp_path / "parts")
     assert parts.data.drop_attrs().identical(whole.data.drop_attrs()) and looks_of(parts) == looks_of(whole)
     assert status_of(study, tmp_path / "parts").total == whole.data.sizes["case"]
@@ -170,6 +224,7 @@ def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "replicates": 4}}, "until.replicates = 4"),
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "hours": -1}}, "until.hours = -1"),
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "at_most": 100}}, "at least the 128 cases"),
+        ({**UNEQUAL, "point_samples": [128, 128]}, "point_samples = .*4 whole numbers from 1 to samples"),
         ({"samples": 100}, "samples = 100 .*16 replicates times a power of two.*Write samples: 128"),
         ({"design": "grid", "factors": {"axial_force": {"values": [1, 2]}}}, "design = 'grid'.*remove until"),
         ({"design": "inner_outer", "factors": NORMAL}, "a life, whose log10 B10 counts"),

@@ -1,6 +1,7 @@
 """Let the sample of a study grow by doublings until its intervals are narrow, the key `until`.
 
-A step solves all cases of the sample, looks at the intervals, and doubles every replicate. Each step is a design of the
+A step solves all cases of the sample, looks at the intervals, and doubles every replicate; an inner/outer design grows
+at the design points whose intervals are too wide. Each step is a design of the
 study whose cases go through plan and chunks. A run that was stopped therefore repeats its looks from the stored cases.
 """
 
@@ -61,10 +62,13 @@ class Growing:
             place = self.found.find(cases.fingerprints)
             if (place < 0).any():
                 return ""
-            self.looks.append(look(solved_results(self.study, cases, self.found, place, self.folder)))
-            widest = ", ".join(f"{name} ± {_text(self.looks[-1], name)}" for name in self.until.of)
-            self.tell(f"look {len(self.looks)}: {self.looks[-1]['cases']} cases, widest 95 % interval: {widest}")
-            larger = doubled(self.study)
+            seen = look(solved_results(self.study, cases, self.found, place, self.folder))
+            self.looks.append(seen)
+            widest = ", ".join(f"{name} ± {_text(seen, name)}" for name in self.until.of)
+            self.tell(f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}")
+            if unsure := seen.get("unsure"):
+                self.tell(f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} design points")
+            larger = doubled(self.study, unsure)
             if why := self._why(larger):
                 self.tell(f"stopped: {why}")
                 return why
@@ -74,11 +78,13 @@ class Growing:
         """Return why the study stops at its last look, '' if it goes on with the larger sample."""
         seen, until = self.looks[-1], self.until
         widths = seen["half_width"].values()
+        if seen["empty"]:
+            return f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
         if all(width is not None and width <= until.half_width for width in widths):
             return f"the intervals asked for are narrower than ± {until.half_width:g}"
         if seen["constant"]:
             return f"{' and '.join(seen['constant'])} does not vary, so it has no index"
-        many = 2 * seen["cases"]
+        many = larger.drawn.size
         if many > until.at_most:
             return f"the next step has {many} cases, and at_most is {until.at_most}"
         if until.hours is None:

@@ -59,20 +59,13 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     ----------
     Morris (1991), Technometrics 33, 161-174; Campolongo et al. (2007), Environ. Model. Softw. 22, 1509-1518.
     """
-    count = unit.shape[1]
-    value = y.reshape(-1, count + 1)
-    step = np.diff(unit.reshape(-1, count + 1, count), axis=1)
-    moved = np.argmax(np.abs(step), axis=2)
-    size = np.take_along_axis(step, moved[:, :, None], axis=2)[:, :, 0]
-    size = np.where(listed[moved], np.sign(size), size)
-    effect = np.full((len(value), count), np.nan)
-    np.put_along_axis(effect, moved, np.diff(value, axis=1) / size, axis=1)
+    count, effect = unit.shape[1], elementary_effects(y, unit, listed)
     good = np.isfinite(effect)
     used = good.sum(axis=0)
     out: Estimates = {"effects_used": used}
     if constant(y):
         return out | {n: np.full(count, np.nan) for n in ("mu", "mu_star", "mu_star_low", "mu_star_high", "sigma")}
-    picks = np.random.default_rng(seed).integers(0, len(value), (resamples, len(value)))
+    picks = np.random.default_rng(seed).integers(0, len(effect), (resamples, len(effect)))
     with np.errstate(invalid="ignore", divide="ignore"):
         filled = np.nan_to_num(np.abs(effect))
         drawn = filled[picks].sum(axis=1) / good[picks].sum(axis=1)
@@ -82,6 +75,23 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     out["sigma"] = np.sqrt(np.where(used > 1, spread, np.nan))
     low, high = percentile_bounds(drawn)
     return out | {"mu_star_low": low, "mu_star_high": high}
+
+
+def elementary_effects(y: np.ndarray, unit: np.ndarray, listed: np.ndarray) -> np.ndarray:
+    """Return the elementary effects of Morris trajectories, shape (trajectories, k); NaN where a row is unusable.
+
+    Parameters
+    ----------
+    y, unit, listed : as in `morris`
+    """
+    count = unit.shape[1]
+    step = np.diff(unit.reshape(-1, count + 1, count), axis=1)
+    moved = np.argmax(np.abs(step), axis=2)
+    size = np.take_along_axis(step, moved[:, :, None], axis=2)[:, :, 0]
+    size = np.where(listed[moved], np.sign(size), size)
+    effect = np.full((len(step), count), np.nan)
+    np.put_along_axis(effect, moved, np.diff(y.reshape(-1, count + 1), axis=1) / size, axis=1)
+    return effect
 
 
 def percentile_bounds(drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import math
 from typing import Any
 
 import numpy as np
@@ -40,67 +39,62 @@ def look(results: StudyResults) -> dict[str, Any]:
     -------
     dict
         `cases`, and by output `half_width` (None: no interval yet) and `at`, the factor or design point with the widest
-        interval; `constant` names outputs that do not vary, so that they have no index.
+        interval; `constant` names outputs that do not vary, so that they have no index, and `empty` those without a
+        value in any case. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
     """
     design, until = results.design, results.config.until
     assert until is not None
-    widths: dict[str, list[tuple[str, float]]]
-    seen: dict[str, Any] = {"cases": design.size, "half_width": {}, "at": {}, "constant": []}
-    if design.method == "inner_outer":
-        widths = {name: _of_points(results, name) for name in until.of}
-    else:
-        given = results.config.analysis
-        columns = outputs(
-            results.data, design.factors, until.of, given.keep, scale=given.scale, allowed=results.allowed
-        )
-        columns = columns[: len(until.of)]  # indicators of regimes follow
-        widths = {column.name: _of_indices(column.values, results) for column in columns}
-        seen["constant"] = [column.name for column in columns if constant(column.values)]
-    for name, named in widths.items():
-        place, width = max(named, key=lambda item: math.inf if math.isnan(item[1]) else item[1])
-        seen["half_width"][name] = width if math.isfinite(width) else None
-        seen["at"][name] = place
-    return seen
+    seen: dict[str, Any] = {"cases": design.size, "half_width": {}, "at": {}, "constant": [], "empty": []}
+    names = _names(results)
+    unsure = np.zeros(len(names), dtype=bool)
+    for name in until.of:
+        values, widths = (_of_points if design.method == "inner_outer" else _of_indices)(results, name)
+        if np.isnan(values).all():
+            seen["empty"].append(name)
+        elif design.method != "inner_outer" and constant(values):
+            seen["constant"].append(name)
+        widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)
+        widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
+        seen["half_width"][name] = float(widths[widest]) if np.isfinite(widths[widest]) else None
+        seen["at"][name] = names[widest]
+    return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method == "inner_outer" else {})
 
 
-def _of_indices(y: np.ndarray, results: StudyResults) -> list[tuple[str, float]]:
-    """Return the half widths of the headline indices of an output by factor; those of mu* over the output's range."""
-    design = results.design
+def _of_indices(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return an output (n,) and the half widths of its headline indices; those of mu* over the output's range."""
+    design, given = results.design, results.config.analysis
+    y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
     found = replicated(y, design, results.config.samples)
     scale = float(np.nanmax(y) - np.nanmin(y)) if design.method == "morris" and not constant(y) else 1.0
-    return [
-        (factor_name(factor), float(half))
-        for name in HEADLINES[design.method]
-        for factor, half in zip(design.factors, (found[f"{name}_high"] - found[name]) / scale, strict=True)
-    ]
+    return y, np.concatenate([found[f"{index}_high"] - found[index] for index in HEADLINES[design.method]]) / scale
 
 
-def _of_points(results: StudyResults, name: str) -> list[tuple[str, float]]:
-    """Return the half widths of log10 B10 or of a probability by design point."""
-    design = results.design
-    shape, copies = (design.meta["design_points"], design.meta["inner_samples"]), int(design.meta["replicates"])
-    member, (kind, output) = np.arange(shape[1]) % copies, statistic(name)
-    own = material_deviations(results)
+def _of_points(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the values (n,) and, by design point, the half width of log10 B10 or of a probability.
+
+    It is 0 at a point without a value in any case: more cases would not decide there.
+    """
+    design, (kind, output), own = results.design, statistic(name), material_deviations(results)
+    copies, points = int(design.meta["replicates"]), design.points
     if output in REGIMES:
-        hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
+        values = hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
     else:
         column = outputs(
-            results.data, design.factors, [output], scale="natural", unlimited=True, allowed=results.allowed
+            results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed
         )[0]
-        scatter = own.get(body_of(output), np.zeros(design.size))
+        values, scatter = column.values, own.get(body_of(output))
         if kind != "probability":
-            lives = zip(column.values.reshape(shape), scatter.reshape(shape), strict=True)
-            halves = [log_b10(*one, member, copies)[1] for one in lives]
-            return list(zip(_point_names(results), halves, strict=True))
-        hits = hits_of(column, results.config.analysis.target[output], own.get(body_of(output)))
-    return [
-        (point, share(row, member, copies)[1])
-        for point, row in zip(_point_names(results), hits.reshape(shape), strict=True)
-    ]
+            scatter = np.zeros(design.size) if scatter is None else scatter
+            halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]
+            return values, np.where([np.isnan(values[rows]).all() for rows in points], 0.0, halves)
+        hits = hits_of(column, results.config.analysis.target[output], scatter)
+    return values, np.array([share(hits[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points])
 
 
-def _point_names(results: StudyResults) -> list[str]:
+def _names(results: StudyResults) -> list[str]:
+    """Return the factors, or the design points of an inner/outer design, in words."""
     design = results.design
-    first, outer = np.arange(design.meta["design_points"]) * design.meta["inner_samples"], design.meta["outer"]
-    rows = [[in_words(name, design.columns[name][row]) for name in outer] for row in first]
-    return [", ".join(row) or "all" for row in rows]
+    if design.method != "inner_outer":
+        return list(map(factor_name, design.factors))
+    named = [[in_words(n, design.columns[n][rows.start]) for n in design.meta["outer"]] for rows in design.points]
+    return [", ".join(row) or "all" for row in named]

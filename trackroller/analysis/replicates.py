@@ -76,7 +76,7 @@ def replicated(y: np.ndarray, design: SampledDesign, samples: int) -> Estimates:
     if design.method == "saltelli":
         values, half = _saltelli(y.reshape(samples, rows), count, bool(design.meta["second_order"]), member, copies)
     elif design.method == "morris":
-        values, half = _morris(y, unit, design.listed, np.repeat(member, rows), copies)
+        values, half = _morris(y, unit, design.listed, member, copies)
     else:
         values, half = first_indices(y, unit, design.ordered, member, copies)
     out: Estimates = {}
@@ -102,11 +102,13 @@ def _saltelli(
 def _morris(
     y: np.ndarray, unit: np.ndarray, listed: np.ndarray, member: np.ndarray, copies: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    def of(rows: np.ndarray) -> np.ndarray:
-        return np.asarray(indices.morris(y[rows], unit[rows], listed, resamples=1)["mu_star"])
-
-    left = np.stack([of(member != one) for one in range(copies)])
-    return of(np.ones(len(y), dtype=bool)), jackknife(left)
+    if constant(y):
+        return (np.full(unit.shape[1], np.nan),) * 2
+    effect = np.abs(indices.elementary_effects(y, unit, listed))
+    filled, good = np.nan_to_num(effect), np.isfinite(effect).astype(float)
+    keep = (member != np.arange(copies)[:, None]).astype(float)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        return filled.sum(axis=0) / good.sum(axis=0), jackknife((keep @ filled) / (keep @ good))
 
 
 def first_indices(

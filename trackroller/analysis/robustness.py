@@ -18,9 +18,8 @@ from scipy import stats
 from scipy.optimize import brentq
 
 from trackroller.analysis.labels import output_labels
-from trackroller.analysis.probability import probabilities
 from trackroller.analysis.table import StudyResults
-from trackroller.analysis.targets import body_of, inner_sample
+from trackroller.analysis.targets import at_points, body_of
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90, SNCurve
 from trackroller.errors import InputError
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
@@ -66,27 +65,25 @@ def robustness(
     if design.method != "inner_outer":
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
         raise InputError("design", design.method, allowed)
-    shape = (design.meta["design_points"], design.meta["inner_samples"])
-    regime = regimes(ds, results.dims).reshape(shape)
+    regime = regimes(ds, results.dims)
     wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]
     wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
     columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed)
     by_output = []
     for column in columns:
-        scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size)).reshape(shape)
-        by_output.append(_statistics(column.values.reshape(shape), regime, "life" in column.name, scatter))
-        beyond = np.where(results.view.beyond_data(column.name).reshape(shape), column.values.reshape(shape), np.nan)
-        by_output[-1]["beyond_data"] = np.fmin.reduce(beyond, axis=1)
-    out = xr.Dataset(coords=_coordinates(design, shape, columns))
+        scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size))
+        by_output.append(_statistics(column.values, regime, "life" in column.name, scatter, design.points))
+        beyond = np.where(results.view.beyond_data(column.name), column.values, np.nan)
+        by_output[-1]["beyond_data"] = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
+    out = xr.Dataset(coords=_coordinates(design, columns))
     for key in by_output[0] if by_output else ():
         axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
         out[key] = (axes, np.stack([one[key] for one in by_output]), {"comment": "in the units of the output"})
-    events = np.stack([regime == i for i in range(len(REGIMES))]).reshape(-1, shape[1]).T.astype(float)
-    chances = dict(zip(("", "_low", "_high"), probabilities(events, *inner_sample(design)), strict=True))
-    for end, value in chances.items():
+    events = np.stack([regime == i for i in range(len(REGIMES))], axis=1).astype(float)
+    for end, value in zip(("", "_low", "_high"), at_points(events, design), strict=True):
         attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
-        out[f"probability{end}"] = (("regime", "point"), value.reshape(len(REGIMES), -1), attrs)
+        out[f"probability{end}"] = (("regime", "point"), value.T, attrs)
     largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
     out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
     out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
@@ -156,40 +153,43 @@ def deviation(material: Mapping[str, float]) -> float:
     return float(SNCurve.of(material).log_life_deviation)
 
 
-def _coordinates(design: SampledDesign, shape: tuple[int, int], columns: list[Output]) -> dict[str, Any]:
-    first = np.arange(shape[0]) * shape[1]
+def _coordinates(design: SampledDesign, columns: list[Output]) -> dict[str, Any]:
+    first = [rows.start for rows in design.points]
     outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
-    point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(shape[0])]
+    point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(len(first))]
     return {
         **output_labels(columns),
         "percentile": np.array(PERCENTILES),
         "regime": np.array(REGIMES, dtype=object),
-        "point": np.arange(shape[0]),
+        "point": np.arange(len(first)),
+        "point_samples": ("point", np.array([rows.stop - rows.start for rows in design.points])),
         "point_name": ("point", np.array(point, dtype=object)),
         **outer,
     }
 
 
-def _statistics(values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray) -> dict[str, np.ndarray]:
-    """Return statistics of one output, shape (points, samples), NaN where a value is not usable."""
-    points = len(values)
+def _statistics(
+    values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray, points: list[slice]
+) -> dict[str, np.ndarray]:
+    """Return statistics of one output, shape (n,), NaN where a value is not usable, at the rows of each point."""
     names = ("mean", "standard_deviation", "used_share", "b10", "b10_low", "b10_high", "b10_safe")
-    out = {name: np.full(points, np.nan) for name in names}
-    out["percentile_value"] = np.full((points, len(PERCENTILES)), np.nan)
-    for p in range(points):
-        known = ~np.isnan(values[p])
-        good = values[p][known]
-        out["used_share"][p] = good.size / values.shape[1]
+    out = {name: np.full(len(points), np.nan) for name in names}
+    out["percentile_value"] = np.full((len(points), len(PERCENTILES)), np.nan)
+    for p, rows in enumerate(points):
+        own, spread = values[rows], scatter[rows]
+        known = ~np.isnan(own)
+        good = own[known]
+        out["used_share"][p] = good.size / own.size
         if good.size < 2:
             continue
         out["percentile_value"][p] = _quantile(good, np.array(PERCENTILES) / 100)
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:
-            out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, scatter[p][known])
+            out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, spread[known])
             # a rolling case without a life (not converged) must not count as a long life
-            safe = np.where(~known | (regime[p] != 0), 0.0, values[p])
-            out["b10_safe"][p] = b10(safe, scatter[p])[0]
+            safe = np.where(~known | (regime[rows] != 0), 0.0, own)
+            out["b10_safe"][p] = b10(safe, spread)[0]
     return out
 
 

@@ -69,6 +69,7 @@ def targets(
     Notes
     -----
     At a level of the outer array the probability is the mean over its design points. Their common sample counts once.
+    If these have different numbers of samples, the bounds are the means of their bounds.
     """
     columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
     hits = np.stack([hits_of(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
@@ -116,16 +117,51 @@ def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
 
 def _of_points(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
     """Return the levels of the outer factors, and the probabilities at all points and at each level."""
-    points, inner = design.meta["design_points"], design.meta["inner_samples"]
-    sample = inner_sample(design)
-    cube = hits.reshape(points, inner, -1).transpose(1, 0, 2)
-    whole = probabilities(cube.reshape(inner, -1), *sample)
-    first = np.arange(points) * inner
+    first = [rows.start for rows in design.points]
     outer = [name for name in design.meta["outer"] if len(design.meta["outer"]) > 1]
     levels = [level for name in outer for level in _levels(design.factors[name], design.columns[name][first])]
-    estimates = [probabilities(cube[:, level.rows].mean(axis=1), *sample) for level in levels]
-    p, low, high = (part.reshape(points, -1).T for part in whole)
-    return levels, [(p, low, high), *estimates]
+    p, low, high = whole = at_points(hits, design)
+    return levels, [(p.T, low.T, high.T), *(_at_level(hits, design, level, whole) for level in levels)]
+
+
+def at_points(hits: np.ndarray, design: SampledDesign) -> Found:
+    """Return the probability of events and its bounds at each design point of an inner/outer array.
+
+    Parameters
+    ----------
+    hits : share of each event at each case, 0 to 1, shape (n, m)
+    design : the design
+
+    Returns
+    -------
+    Probability, lower and upper bound [1], each of shape (points, m).
+    """
+    sizes, sample = np.array([rows.stop - rows.start for rows in design.points]), inner_sample(design)
+    found = np.empty((3, len(sizes), hits.shape[1]))
+    for size in np.unique(sizes):
+        own = np.flatnonzero(sizes == size)
+        cube = np.stack([hits[design.points[point]] for point in own], axis=1)
+        parts = probabilities(cube.reshape(size, -1), *_first(sample, size))
+        found[:, own] = [part.reshape(len(own), -1) for part in parts]
+    return found[0], found[1], found[2]
+
+
+def _at_level(hits: np.ndarray, design: SampledDesign, level: Level, whole: Found) -> Found:
+    """Return the mean probability of the design points of a level and its bounds.
+
+    Points with different numbers of samples get the mean of their bounds, which is wide enough for any correlation.
+    """
+    own = [rows for rows, chosen in zip(design.points, level.rows, strict=True) if chosen]
+    sizes = {rows.stop - rows.start for rows in own}
+    if len(sizes) > 1:
+        p, low, high = (part[level.rows].mean(axis=0) for part in whole)
+        return p, low, high
+    return probabilities(np.mean([hits[rows] for rows in own], axis=0), *_first(inner_sample(design), sizes.pop()))
+
+
+def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
+    """Return the first rows of the sample of `inner_sample`."""
+    return (sample[0][:size], sample[1]) if sample else ()
 
 
 def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
@@ -154,7 +190,8 @@ def inner_sample(design: SampledDesign) -> tuple[np.ndarray, np.ndarray] | tuple
         return ()
     names = list(design.factors)
     chosen = [names.index(name) for name in design.meta["inner"]]
-    return design.places[: design.meta["inner_samples"], chosen], design.ordered[chosen]
+    longest = max(design.points, key=lambda rows: rows.stop - rows.start)
+    return design.places[longest, chosen], design.ordered[chosen]
 
 
 def _levels(factor: Factor, values: np.ndarray) -> Iterator[Level]:

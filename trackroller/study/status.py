@@ -160,11 +160,14 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.design, status.total)
     generations = f"these are the first generation; it goes on to {study.config.budget.designs} designs"
-    until = study.config.until
+    until, where = study.config.until, " at unsure design points" if study.config.design == "inner_outer" else ""
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
-        ("until", f"the sample doubles until its intervals are narrow, up to {until.at_most} cases" if until else ""),
+        (
+            "until",
+            f"the sample doubles{where} until its intervals are narrow, up to {until.at_most} cases" if until else "",
+        ),
         ("search", generations if study.config.design == "optimise" else ""),
         ("unused", status.unused),
         ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),

@@ -163,10 +163,11 @@ def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     samples = (
         view.study.get("samples") if design.replace(" ", "_") not in (*ARRAYS, "table", "sample", "optimise") else None
     )
+    most = "up to " if view.study.get("point_samples") else ""
     date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")
     parts = [
         date[:10],
-        f"design of experiments {design}{f' with {count(samples)} samples' if samples else ''}",
+        f"design of experiments {design}{f' with {most}{count(samples)} samples' if samples else ''}",
         size_words(view),
         f"contact model {_option_text(merged['contact_model'])}" if merged.get("contact_model") else "",
         f"accuracy {_option_text(merged['accuracy'])}" if merged.get("accuracy") else "",

@@ -9,7 +9,15 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import capital, count
 from trackroller.report.tables.table import Table
-from trackroller.report.words.targets import WHOLE, _cell, _level_words, point_words, target, target_words
+from trackroller.report.words.targets import (
+    WHOLE,
+    _cell,
+    _level_words,
+    point_words,
+    samples_of_points,
+    target,
+    target_words,
+)
 from trackroller.study.design.levels import in_words
 
 MAX_POINTS = 24  # rows of the table of design points
@@ -40,7 +48,7 @@ def target_tables(table: xr.Dataset, view: StudyView) -> list[Table]:
         return [Table("targets", title, ["Level", *heads], rows, " ".join(said))]
     order = np.argsort(-table["target_probability"].values[-1], kind="stable")
     rows = [[capital(point_words(table, int(p))), *_cells(table, "target", int(p))] for p in order[:MAX_POINTS]]
-    said.append(f"Every design point has the same {count(int(table.attrs['inner_samples']))} samples.")
+    said.append(samples_of_points(table))
     if len(order) > len(rows):
         said.append(f"{len(order) - len(rows)} more design points are in sensitivity.nc.")
     tables = [Table("targets", "Targets: probability by design point", ["Design point", *heads], rows, " ".join(said))]

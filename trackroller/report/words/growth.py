@@ -6,6 +6,7 @@ from trackroller.analysis.looks import looks_of
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import count, plain, rounded
 from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.targets import samples_of_points
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import DEFAULTS
 
@@ -14,7 +15,7 @@ HEADLINE_WORDS = {  # by design, the quantities whose intervals count
     "lhs": "first-order indices",
     "saltelli": "first-order and total indices",
     "morris": "effects mu*, as shares of the output's range,",
-    "inner_outer": "the quantity of each design point",
+    "inner_outer": "log10 B10 or a probability at each design point",
 }
 
 
@@ -40,6 +41,9 @@ def grown(view: StudyView) -> Sentence | None:
         for name, width in last["half_width"].items()
     ]
     text = f"The study asked for {HEADLINE_WORDS[design]} within ± {found['half_width']:g} (95 % intervals). "
-    text += f"The sample stopped growing at {count(last['cases'])} cases: {found['stopped']}. Widest interval: "
+    text += f"The sample stopped growing at {count(last['cases'])} cases: {found['stopped']}. "
+    if view.analysis is not None and "point_samples" in view.analysis:
+        text += f"{samples_of_points(view.analysis)} "
+    text += "Widest interval: "
     text += f"{', '.join(wide)}, from {found['replicates']} independent replicates."
     return Sentence("grown", text, {"cases": last["cases"], "half_width": last["half_width"]})

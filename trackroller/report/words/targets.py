@@ -78,6 +78,14 @@ def _level_words(part: xr.Dataset, level: int) -> str:
     return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
 
 
+def samples_of_points(table: xr.Dataset) -> str:
+    """Say how many samples the design points have."""
+    low, high = (count(int(end(table["point_samples"]))) for end in (np.min, np.max))
+    if low == high:
+        return f"Every design point has the same {high} samples."
+    return f"The design points have {low} to {high} samples: those with wide intervals grew."
+
+
 def point_words(table: xr.Dataset, point: int) -> str:
     """Name a design point: 'profile ratio 1.1, contact angle 30°'."""
     names = [n for n in str(table.attrs.get("outer_factors", "")).split(", ") if n]

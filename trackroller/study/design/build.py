@@ -60,7 +60,7 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
     ------
     InputError : as `sample`; an option that the design does not have; too many cases
     """
-    names = ("second_order", "levels", "inner", "grown_from", "rank_correlations")
+    names = ("second_order", "levels", "inner", "grown_from", "point_samples", "rank_correlations")
     options = {name: value for name in names if (value := getattr(config, name)) not in (None, ())}
     if config.until is not None:
         options["replicates"] = config.until.replicates

@@ -24,6 +24,7 @@ from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field
 from trackroller.study.design.evolution import Gene, first_generation
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
+from trackroller.study.design.growth import check_point_samples
 from trackroller.study.design.replicates import in_turn, sobol_rows
 from trackroller.study.design.saltelli import all_groups
 from trackroller.study.file.csv import read_rows
@@ -155,7 +156,7 @@ def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) ->
 def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     """Repeat one sample of the scattering factors (inner array) at each point of a grid (outer array).
 
-    The same inner sample at every design point (common random numbers) keeps chance out of their differences.
+    The same inner sample (common random numbers) keeps chance out of differences; some points may have its first rows.
     """
     outer = {name: f for name, f in free.items() if not f.scatter}
     inner = {name: f for name, f in free.items() if f.scatter}
@@ -166,15 +167,14 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         )
     check_names("design option inner", [settings["inner"]], ("lhs", "sobol"))
     drawn, sample, more = _random(settings["inner"], inner, n, seed, settings)
-    points, index, meta = _grid(outer, 0, 0, {}) if outer else ({}, np.zeros((1, 0)), {"shape": ()})
-    count = len(index)
-    columns = {name: np.repeat(values, n) for name, values in points.items()}
-    columns |= {name: np.tile(values, count) for name, values in drawn.items()}
-    places = {name: np.repeat(index[:, j], n) for j, name in enumerate(outer)}
-    places |= {name: np.tile(sample[:, j], count) for j, name in enumerate(inner)}
-    unit = np.stack([places[name] for name in free], axis=1)
-    meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": count}
-    return columns, unit, meta
+    points, index, meta = _grid(outer, 0, 0, {})
+    sizes = check_point_samples(settings["point_samples"], n, len(index))
+    point, row = np.repeat(np.arange(len(index)), sizes), np.concatenate([np.arange(size) for size in sizes])
+    columns = {name: values[point] for name, values in points.items()} | {n: v[row] for n, v in drawn.items()}
+    places = dict(zip([*outer, *inner], [*index[point].T, *sample[row].T], strict=True))
+    meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": len(index)}
+    meta |= {"point_samples": sizes} if min(sizes) < n else {}
+    return columns, np.stack([places[name] for name in free], axis=1), meta
 
 
 def genes_of(choices: Factors) -> list[Gene]:

@@ -3,22 +3,49 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
+from trackroller.errors import InputError
 from trackroller.study.design.grown_lhs import SAME, is_lhs, with_history
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
     from trackroller.study.store.folder import StudyFolder
 
+GROWN = ("samples", "grown_from", "point_samples")  # keys of a study file that growth changes
 
-def doubled(study: Study) -> Study:
-    """Return the study with twice the samples; its first samples are those of the study."""
+
+def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:
+    """Return the study with twice the samples; its first samples are those of the study.
+
+    Parameters
+    ----------
+    study : the study
+    unsure : design points of an inner/outer design that grow; by default all
+    """
     config = study.config
-    update: dict[str, Any] = {"samples": 2 * config.samples}
-    if is_lhs(config):
+    sizes = [rows.stop - rows.start for rows in study.drawn.points] if config.design == "inner_outer" else []
+    sizes = [2 * size if unsure is None or point in unsure else size for point, size in enumerate(sizes)]
+    update: dict[str, Any] = {"point_samples": tuple(sizes) if len({*sizes}) > 1 else None}
+    update["samples"] = max(sizes, default=2 * config.samples)
+    if is_lhs(config) and update["samples"] > config.samples:
         update["grown_from"] = (*(config.grown_from or ()), config.samples)
     return dataclasses.replace(study, config=config.model_copy(update=update))
+
+
+def check_point_samples(given: Any, samples: int, points: int) -> list[int]:
+    """Return the number of samples of each design point.
+
+    Raises
+    ------
+    InputError : `given` is neither empty nor a whole number from 1 to `samples` for each point
+    """
+    sizes = list(given) or [samples] * points
+    if len(sizes) != points or any(not isinstance(size, int) or not 0 < size <= samples for size in sizes):
+        allowed = f"{points} whole numbers from 1 to samples ({samples}), one for each design point"
+        raise InputError("point_samples", sizes, allowed, "Remove the key: until finds them.")
+    return sizes
 
 
 def as_planned(study: Study, folder: StudyFolder) -> Study:
@@ -31,6 +58,7 @@ def as_planned(study: Study, folder: StudyFolder) -> Study:
         return study
     if old.until is None or any(getattr(old, key) != getattr(study.config, key) for key in SAME):
         return study
-    while 2 * study.config.samples <= old.samples:
-        study = doubled(study)
-    return study
+    times, rest = divmod(old.samples, study.config.samples)
+    if rest or times & (times - 1):
+        return study
+    return dataclasses.replace(study, config=study.config.model_copy(update={k: getattr(old, k) for k in GROWN}))

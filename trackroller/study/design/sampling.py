@@ -9,6 +9,7 @@ are random pairs of different values, and in response-surface designs they are c
 from __future__ import annotations
 
 import graphlib
+import itertools
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -37,7 +38,7 @@ OPTIONS: dict[str, dict[str, Any]] = {
     "saltelli": {"second_order": True, "groups": None, "replicates": 1},
     "morris": {"levels": 4, "replicates": 1},
     "table": {"table": None},
-    "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": (), "replicates": 1},
+    "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": (), "replicates": 1, "point_samples": ()},
     "lhs": {"grown_from": (), "rank_correlations": (), "replicates": 1},
     "sobol": {"rank_correlations": (), "replicates": 1},
     "optimise": {"conditions": (), "population": 32, "table": None},
@@ -96,6 +97,12 @@ class SampledDesign:
         values = [f.discrete and self.method != "plackett_burman" for f in self.factors.values()]
         return np.array(values, dtype=bool)
 
+    @property
+    def points(self) -> list[slice]:
+        """Return the rows of each design point of an inner/outer array."""
+        sizes = self.meta.get("point_samples") or [self.meta["inner_samples"]] * self.meta["design_points"]
+        return [slice(end - size, end) for size, end in zip(sizes, itertools.accumulate(sizes), strict=True)]
+
     def blocks(self, values: np.ndarray) -> np.ndarray:
         """Return the values (n,) of a Saltelli design by base sample, shape (base samples, rows of a base sample).
 
@@ -127,10 +134,11 @@ def sample(
     options : second_order (saltelli, default true), groups (saltelli: groups of factors whose columns are exchanged
         together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
         default 4), table (path of the CSV), inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier
-        numbers of samples, whose rows come first), rank_correlations (lhs, sobol, inner_outer: see
-        `trackroller.study.design.correlation`), conditions and population (optimise: factors that are no choices, and
-        designs of the first generation), table (optimise: CSV of the genes of the designs instead), replicates
-        (independent samples of n / replicates each, which take turns: sample i belongs to replicate i % replicates)
+        numbers of samples, whose rows come first), point_samples (inner_outer: samples of each design point),
+        rank_correlations (lhs, sobol, inner_outer: see `trackroller.study.design.correlation`), conditions and
+        population (optimise: factors that are no choices, and designs of the first generation), table (optimise: CSV
+        of the genes of the designs instead), replicates (independent samples of n / replicates each, which
+        take turns: sample i belongs to replicate i % replicates)
 
     Returns
     -------
