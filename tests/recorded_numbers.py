@@ -167,7 +167,7 @@ def studies() -> dict[str, dict[str, Any]]:
     outer = {"contact_angle": {"values": [30, 40]}, "roller_profile_radius": {"linspace": [-6.4, -8, 3]}}
     found = {
         "grid": {"factors": levels},
-        "lhs": {"factors": mixed, "samples": 64, "analysis": {"resamples": 100}},
+        "lhs": {"factors": mixed, "samples": 64},
         "sobol": {"factors": ranges, "samples": 64},
         "morris": {"factors": ranges, "samples": 8},
         "saltelli": {"factors": ranges, "samples": 16},

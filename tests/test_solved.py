@@ -27,7 +27,6 @@ def few_cases(path: Path):
     for spec in told["factors"].values() if told["design"] == "grid" else ():
         kind = next(key for key in ("values", "linspace", "logspace") if key in spec)
         spec[kind] = spec[kind][:2] if kind == "values" else [*spec[kind][:2], 2]
-    told["analysis"] = {**told.get("analysis", {}), "resamples": 50}
     return parse_study(told)
 
 

@@ -24,7 +24,7 @@ EXACT = {"ST": np.array([V[0] + V[2], V[1], V[2]]) / V.sum(), "first": np.array(
 def analysed(design, count, seed):
     """Analyse a study whose friction power is the Ishigami function of three factors."""
     data = {"name": "e", "design": design, "samples": count, "seed": seed, "factors": CARRIERS}
-    data["analysis"] = {"outputs": ["friction_power"], "measures": ["first"]}
+    data["analysis"] = {"outputs": ["friction_power"]}
     data["outputs"] = ["forces", "friction_work"]
     study = parse_study(data | ({"second_order": False} if design == "saltelli" else {}))
     ds = study.design()
@@ -90,7 +90,7 @@ def test_designs_without_samples_are_not_told_to_take_more():
 def test_first_order_indices_above_100_percent_say_why():
     """A small sample of a function without interactions, and factors that are correlated."""
     study = {"name": "e", "design": "lhs", "samples": 40, "seed": 1, "outputs": ["forces", "friction_work"]}
-    study |= {"factors": CARRIERS, "analysis": {"outputs": ["friction_power"], "measures": ["first"]}}
+    study |= {"factors": CARRIERS, "analysis": {"outputs": ["friction_power"]}}
 
     def note(samples, seed, **extra):
         parsed = parse_study(study | {"samples": samples, "seed": seed} | extra)

@@ -64,7 +64,7 @@ def test_groups_of_the_g_function_lie_in_their_intervals(options):
     hits, errors = [], []
     for seed in range(40):
         design = sample(UNIT5, "saltelli", 128, seed, **options)
-        found = of_groups(G.evaluate(design.unit), design, PARTS, seed, 100)
+        found = of_groups(G.evaluate(design.unit), design, PARTS)
         for name, exact in (("group_S1", first), ("group_ST", total)):
             hits.append((found[f"{name}_low"] <= exact) & (exact <= found[f"{name}_high"]))
             errors.append(found[name] - exact)
@@ -79,12 +79,12 @@ def test_groups_of_ishigami_and_single_factors_have_their_known_indices():
     spec = {f"x{i}": {"uniform": [0, 1]} for i in range(3)}
     design = sample(spec, "saltelli", 1024, 1)
     y = f.evaluate(design.unit)
-    found = of_groups(y, design, {"outer": ("x0", "x2"), "x1": ("x1",)}, resamples=50)
+    found = of_groups(y, design, {"outer": ("x0", "x2"), "x1": ("x1",)})
     exact = 1 - f.first[1]
     assert found["group_S1"] == pytest.approx([exact, f.first[1]], abs=0.02)
     assert found["group_ST"] == pytest.approx([exact, f.first[1]], abs=0.02)
-    alone = of_groups(y, design, {name: (name,) for name in spec}, resamples=50)
-    plain = sobol(y, 3, True, resamples=50)
+    alone = of_groups(y, design, {name: (name,) for name in spec})
+    plain = sobol(y, 3, True)
     np.testing.assert_allclose(alone["group_S1"], plain["S1"], atol=1e-12)
     np.testing.assert_allclose(alone["group_ST"], plain["ST"], atol=1e-12)
 
@@ -116,7 +116,7 @@ def test_each_level_has_its_own_indices_within_their_intervals(method, size, opt
     for seed in range(20):
         design = sample(SPEC, method, size, seed, **options)
         y = by_kind(design.columns["a"], design.columns["b"], design.columns["kind"])
-        found = within_levels(y, design, "kind", seed, 100)
+        found = within_levels(y, design, "kind")
         assert np.isnan(found["conditional_S1"][:, 1]).all()
         for name, exact in (("conditional_S1", FIRST), ("conditional_ST", TOTAL)):
             if name not in found:
@@ -183,7 +183,7 @@ def solved(data):
 
 @pytest.mark.parametrize("exchange", ["factors", "groups"])
 def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
-    analysis = {"groups": {"load": ["axial_force", "radial_force"]}, "outputs": ["roller_life_hours"], "resamples": 60}
+    analysis = {"groups": {"load": ["axial_force", "radial_force"]}, "outputs": ["roller_life_hours"]}
     ds = solved(FILE | {"exchange": exchange, "analysis": analysis})
     assert ds.sizes["case"] == 64 * (10 if exchange == "factors" else 8)
     sens = analyse(results_of(ds))
@@ -198,7 +198,7 @@ def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
 
 
 def test_levels_reach_analysis_table_and_summary():
-    analysis = {"conditional_on": "roller_material", "outputs": ["roller_life_hours"], "resamples": 60}
+    analysis = {"conditional_on": "roller_material", "outputs": ["roller_life_hours"]}
     for design in ("saltelli", "lhs"):
         ds = solved(FILE | {"design": design, "samples": 256, "analysis": analysis})
         sens = analyse(results_of(ds))
@@ -217,7 +217,7 @@ def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
     study = parse_study(data | {"analysis": {"conditional_on": "roller_material"}})
     ds = study.design()
     ds["roller_life_hours"] = ("case", np.exp(ds["axial_force"].values), {"units": "h"})
-    ds.attrs["study"] = json.dumps(data | {"analysis": {"conditional_on": "roller_material", "measures": ["first"]}})
+    ds.attrs["study"] = json.dumps(data | {"analysis": {"conditional_on": "roller_material"}})
     sens = analyse(results_of(ds))
     assert (sens["conditional_S1"].sel(output="roller_life_hours", factor="axial_force") > 0.8).all()
     with pytest.raises(InputError, match="Did you mean 'roller_material'"):

@@ -327,7 +327,7 @@ def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
                 "velocity": {"uniform": [10, 90]},
             },
             "rank_correlations": [["axial_force", "radial_force", -0.7]],
-            "analysis": {"outputs": ["roller_life_hours"], "measures": ["first"]},
+            "analysis": {"outputs": ["roller_life_hours"]},
             "outputs": ["life"],
         }
     )

@@ -37,7 +37,7 @@ def random_aims(seed, design):
     wanted = {"roller_life_hours": {"min": float(np.round(10 ** rng.uniform(2.0, 4.0), 1))}}
     if rng.random() < 0.5:
         wanted["friction_power"] = {"max": 9.0} | ({"min": 2.0} if rng.random() < 0.5 else {})
-    analysis = {"target": wanted, "measures": ["first"], "resamples": 50}
+    analysis = {"target": wanted}
     data = {"name": "a", "design": design, "factors": factors, "analysis": analysis, "seed": int(seed)}
     data |= {"outputs": ["forces", "friction_work", "life"]} | ({"samples": 40} if design != "grid" else {})
     if rng.random() < 0.3:

@@ -5,8 +5,6 @@ First-order shares of variance, delta with the level that chance alone reaches, 
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 from SALib.analyze import rbd_fast
 from scipy.stats import rankdata
@@ -25,13 +23,7 @@ MEASURES = {
 }
 
 
-def given_data(
-    y: np.ndarray,
-    unit: np.ndarray,
-    ordered: np.ndarray,
-    seed: int = 0,
-    measures: Iterable[str] = tuple(MEASURES),
-) -> Estimates:
+def given_data(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -> Estimates:
     """Estimate the given-data measures of one output.
 
     Parameters
@@ -40,7 +32,6 @@ def given_data(
     unit : quantiles or list indices of the factors, shape (n, k)
     ordered : for which factors more and less mean something, shape (k,); the others have no rank correlation
     seed : of all random numbers
-    measures : of `MEASURES`
 
     Returns
     -------
@@ -54,19 +45,15 @@ def given_data(
     """
     good = np.isfinite(y)
     y, unit = y[good], unit[good]
-    count, measures = unit.shape[1], tuple(measures)
-    out: Estimates = {name: np.full(count, np.nan) for measure in measures for name in MEASURES[measure]}
+    out: Estimates = {name: np.full(unit.shape[1], np.nan) for names in MEASURES.values() for name in names}
     out["rows_used"] = np.array(len(y))
     if len(y) < MIN_ROWS or constant(y):
         return out
-    if "first" in measures:
-        out |= firsts(y, unit, ordered, seed)
-    if "prcc" in measures:
-        out["prcc"], out["prcc_low"], out["prcc_high"] = prcc(y, unit, ordered)
+    out |= firsts(y, unit, ordered, seed)
+    out |= dict(zip(MEASURES["prcc"], prcc(y, unit, ordered), strict=True))
     for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
-        if "delta" in measures:
-            for name, value in zip(MEASURES["delta"], delta(y, unit[:, j], bool(ordered[j]), seed), strict=True):
-                out[name][j] = value
+        for name, value in zip(MEASURES["delta"], delta(y, unit[:, j], bool(ordered[j]), seed), strict=True):
+            out[name][j] = value
     return out
 
 

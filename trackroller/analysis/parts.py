@@ -21,9 +21,7 @@ from trackroller.study.outputs import Output
 ENDS = ("", "_low", "_high")
 
 
-def parts_of(
-    design: SampledDesign, columns: Sequence[Output], asked: Analysis, seed: int, resamples: int
-) -> xr.Dataset:
+def parts_of(design: SampledDesign, columns: Sequence[Output], asked: Analysis) -> xr.Dataset:
     """Compute the indices of groups and within the levels of a category that a study file asks for.
 
     Parameters
@@ -31,7 +29,6 @@ def parts_of(
     design : the design
     columns : the outputs
     asked : the key `analysis` of the study file, with `groups` and `conditional_on`
-    seed, resamples : of the bootstrap
 
     Returns
     -------
@@ -48,20 +45,18 @@ def parts_of(
         coords["group_name"] = ("group", np.array(words, dtype=object))
         members = [", ".join(map(factor_name, names)) for names in groups.values()]
         coords["group_members"] = ("group", np.array(members, dtype=object))
-        estimates = [of_groups(column.values, design, groups, seed, resamples) for column in columns]
+        estimates = [of_groups(column.values, design, groups) for column in columns]
         variables |= stacked(estimates, ("output", "group"))
     if category := asked.conditional_on:
         levels = design.factors[category].levels
         coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
         coords["factor"] = np.array(list(design.factors), dtype=object)
-        estimates = [within_levels(column.values, design, category, seed, resamples) for column in columns]
+        estimates = [within_levels(column.values, design, category) for column in columns]
         variables |= stacked(estimates, ("output", "level", "factor"))
     return xr.Dataset(variables, coords | {"output": np.array([c.name for c in columns], dtype=object)})
 
 
-def of_groups(
-    y: np.ndarray, design: SampledDesign, groups: Mapping[str, Sequence[str]], seed: int = 0, resamples: int = 300
-) -> Estimates:
+def of_groups(y: np.ndarray, design: SampledDesign, groups: Mapping[str, Sequence[str]]) -> Estimates:
     """Estimate the first-order and the total index of groups of factors.
 
     Parameters
@@ -69,7 +64,6 @@ def of_groups(
     y : output, shape (n,), NaN where unusable
     design : a grid or a Saltelli design
     groups : name -> factors; together they hold each factor once
-    seed, resamples : of the bootstrap
 
     Returns
     -------
@@ -94,7 +88,7 @@ def of_groups(
     block = design.blocks(y)
     block = block[np.isfinite(block).all(axis=1)]
     whole = (1 << columns) - 1
-    drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)], seed, resamples)
+    drawn = closed_indices(block, columns, second, [*sets, *(whole ^ one for one in sets)])
     return with_bounds("group_S1", drawn[:, : len(sets)]) | with_bounds("group_ST", 1 - drawn[:, len(sets) :])
 
 
@@ -106,9 +100,7 @@ def _grid_indices(table: np.ndarray, groups: Sequence[tuple[int, ...]]) -> tuple
     return first, 1 - others, part.size
 
 
-def within_levels(
-    y: np.ndarray, design: SampledDesign, category: str, seed: int = 0, resamples: int = 300
-) -> Estimates:
+def within_levels(y: np.ndarray, design: SampledDesign, category: str) -> Estimates:
     """Estimate the indices of all other factors within each level of a category.
 
     Parameters
@@ -116,7 +108,6 @@ def within_levels(
     y : output, shape (n,), NaN where unusable
     design : a grid, a Saltelli design, a random sample or a table
     category : a factor with a list of values
-    seed, resamples : of the bootstrap
 
     Returns
     -------
@@ -131,7 +122,7 @@ def within_levels(
     code = {level: i for i, level in enumerate(levels)}
     level_of = np.array([code[value] for value in design.columns[category].tolist()])
     one = {"grid": _grid_level, "saltelli": _saltelli_level}.get(design.method, _sample_level)
-    by_level = [one(y, design, place, level_of == i, seed, resamples) for i in range(len(levels))]
+    by_level = [one(y, design, place, level_of == i) for i in range(len(levels))]
     return {name: np.stack([part[name] for part in by_level]) for name in by_level[0]}
 
 
@@ -140,9 +131,7 @@ def _spread(values: np.ndarray, place: int) -> np.ndarray:
     return np.insert(np.asarray(values, dtype=float), place, np.nan)
 
 
-def _grid_level(
-    y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray, seed: int, resamples: int
-) -> Estimates:
+def _grid_level(y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray) -> Estimates:
     shape = tuple(size for j, size in enumerate(design.meta["shape"]) if j != place)
     table = y[inside].reshape(shape)  # the other factors keep their order
     first, total, cells = _grid_indices(table, [(j,) for j in range(len(shape))])
@@ -153,9 +142,7 @@ def _grid_level(
     return out
 
 
-def _saltelli_level(
-    y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray, seed: int, resamples: int
-) -> Estimates:
+def _saltelli_level(y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray) -> Estimates:
     """Estimate from the blocks whose rows all lie at one level.
 
     Where A lies at the level, A, the rows AB_j of all other factors and BA of the category (B with the category of A)
@@ -180,17 +167,15 @@ def _saltelli_level(
     part, cluster = part[good], cluster[good]
     whole, single = (1 << (count - 1)) - 1, [1 << j for j in range(count - 1)]
     sets = [*single, *(whole ^ j for j in single)]
-    drawn = closed_indices(part, count - 1, False, sets, seed, resamples, cluster)
+    drawn = closed_indices(part, count - 1, False, sets, cluster=cluster)
     first, rest = np.split(drawn, 2, axis=1)
     out: Estimates = {"conditional_rows": np.array(len(part))}
     bounds = with_bounds("conditional_S1", first) | with_bounds("conditional_ST", 1 - rest)
     return out | {name: _spread(values, place) for name, values in bounds.items()}
 
 
-def _sample_level(
-    y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray, seed: int, resamples: int
-) -> Estimates:
+def _sample_level(y: np.ndarray, design: SampledDesign, place: int, inside: np.ndarray) -> Estimates:
     rows = inside & np.isfinite(y)
-    shares = firsts(y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place), seed)
+    shares = firsts(y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place))
     out: Estimates = {"conditional_rows": np.array(rows.sum())}
     return out | {f"conditional_S1{end}": _spread(shares[f"first{end}"], place) for end in ENDS}

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import logging
 from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -52,15 +51,6 @@ NEEDS = {
 }
 
 
-@dataclass(frozen=True)
-class Settings:
-    """Seed, number of bootstrap resamples and given-data measures of an analysis."""
-
-    resamples: int
-    measures: tuple[str, ...]
-    seed: int = 0
-
-
 class Estimated(NamedTuple):
     """Estimates for one output, how many rows, blocks, effects or cells they used, and the sizes of their course."""
 
@@ -70,7 +60,7 @@ class Estimated(NamedTuple):
     sizes: np.ndarray = np.zeros(0, dtype=int)
 
 
-def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
+def _saltelli(y: np.ndarray, design: SampledDesign) -> Estimated:
     groups, second = design.meta.get("groups"), bool(design.meta["second_order"])
     count = len(groups or design.factors)
     block = design.blocks(y)
@@ -78,28 +68,26 @@ def _saltelli(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     # rows of A and B only: their mixtures repeat coordinates, so they are not independent rows
     own = np.full_like(block, np.nan)
     own[:, [0, -1]] = block[:, [0, -1]]
-    # a design of groups gives single factors no index, so their first-order index comes from given data
-    measures = tuple(dict.fromkeys(("first", *how.measures) if groups else how.measures))
-    given = given_data(own.ravel(), design.places, design.ordered, how.seed, measures)
-    if groups:
+    given = given_data(own.ravel(), design.places, design.ordered)
+    if groups:  # such a design gives single factors no Sobol index
         return Estimated(given, int(np.isfinite(block).all(axis=1).sum()), blocks)
-    out = sobol(y, count, second, how.seed, how.resamples)
+    out = sobol(y, count, second)
     at = convergence.sizes(blocks)
     lean = block[:, np.r_[0 : count + 1, -1]]  # the course needs no second order
 
     def part(blocks: int) -> indices.Estimates:
-        return sobol(lean[:blocks].ravel(), count, False, how.seed, how.resamples)
+        return sobol(lean[:blocks].ravel(), count, False)
 
     out |= convergence.course(part, at, part(blocks) if second else out, ("S1", "ST")) | given
     return Estimated(out, int(out.pop("blocks_used")), int(out.pop("blocks")), at)
 
 
-def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
+def _morris(y: np.ndarray, design: SampledDesign) -> Estimated:
     step = len(design.factors) + 1
 
     def part(paths: int) -> indices.Estimates:
         rows = slice(0, paths * step)
-        return indices.morris(y[rows], design.unit[rows], design.listed, how.seed, how.resamples)
+        return indices.morris(y[rows], design.unit[rows], design.listed)
 
     total = int(design.meta["trajectories"])
     at = convergence.sizes(total, smallest=4)
@@ -108,28 +96,27 @@ def _morris(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
     return Estimated(out, int(out["effects_used"].sum()), total * (step - 1), at)
 
 
-def _grid(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
+def _grid(y: np.ndarray, design: SampledDesign) -> Estimated:
     out = indices.grid_shares(y.reshape(design.meta["shape"]))
-    out |= given_data(y, design.unit, design.ordered, how.seed, how.measures)
+    out |= given_data(y, design.unit, design.ordered)
     return Estimated(out, int(out.pop("cells_used")), int(out.pop("cells")))
 
 
-def _coded(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
+def _coded(y: np.ndarray, design: SampledDesign) -> Estimated:
     out = indices.effects(y, design.unit, design.listed, design.method != "plackett_burman")
     return Estimated(out, int(out.pop("rows_used")), len(y))
 
 
-def _given(y: np.ndarray, design: SampledDesign, how: Settings) -> Estimated:
+def _given(y: np.ndarray, design: SampledDesign) -> Estimated:
     ordered, places = design.ordered, design.places
-    measures = tuple(dict.fromkeys(("first", *how.measures)))  # `first` ranks the factors
-    out = given_data(y, places, ordered, how.seed, measures)
+    out = given_data(y, places, ordered)
     if len(design.factors) > 1 and not correlated_pairs(design):
-        out |= pairs(y, places, ordered, how.seed)
+        out |= pairs(y, places, ordered)
     at = convergence.sizes(len(y), smallest=64)
 
     def part(n: int) -> indices.Estimates:
         every = max(1, len(y) // n)  # the first rows of a table may be sorted, so take every so many rows
-        return firsts(y[::every], places[::every], ordered, how.seed)
+        return firsts(y[::every], places[::every], ordered)
 
     out |= convergence.course(part, at, out, ("first",))
     return Estimated(out, int(out.pop("rows_used")), len(y), at)
@@ -146,7 +133,7 @@ def _of_replicates(found: Estimated, y: np.ndarray, design: SampledDesign) -> Es
     return found._replace(estimates=found.estimates | out | course, sizes=at)
 
 
-_METHODS: dict[str, Callable[[np.ndarray, SampledDesign, Settings], Estimated]] = {
+_METHODS: dict[str, Callable[[np.ndarray, SampledDesign], Estimated]] = {
     "saltelli": _saltelli,
     "morris": _morris,
     "grid": _grid,
@@ -186,7 +173,6 @@ def analyse(results: StudyResults) -> xr.Dataset:
     if design.method == "optimise":
         allowed = "a design that draws its rows evenly: a search prefers good designs"
         raise InputError("design", design.method, allowed, "Take design saltelli, sobol or lhs for indices.")
-    how = Settings(given.resamples, given.measures)
     own = material_deviations(results)
     aims = targets(ds, design, given.target, own, results.view.valid) if given.target else xr.Dataset()
     if design.method == "inner_outer":
@@ -197,12 +183,12 @@ def analyse(results: StudyResults) -> xr.Dataset:
     by_output = []
     for number, column in enumerate(columns, 1):
         log.info("analyse output %d of %d: %s", number, len(columns), column.name)
-        by_output.append(_METHODS[design.method](column.values, design, how))
+        by_output.append(_METHODS[design.method](column.values, design))
         by_output[-1].estimates.pop("rows_used", None)
         if "replicates" in design.meta:
             by_output[-1] = _of_replicates(by_output[-1], column.values, design)
     result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
-    result = result.merge(parts_of(design, columns, given, how.seed, how.resamples))
+    result = result.merge(parts_of(design, columns, given))
     result = result.assign(_quality(result, design, columns, by_output))
     if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
         words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
@@ -214,8 +200,6 @@ def analyse(results: StudyResults) -> xr.Dataset:
         "needs": NEEDS[design.method],
         "rows": design.size,
         "kept_regimes": ", ".join(given.keep),
-        "bootstrap_seed": how.seed,
-        "resamples": how.resamples,
         "interval": "95 %",
         "treatment": treatment(regimes(ds, results.dims), given.keep, results.allowed) + correlated(design),
         "study": results.study.merged(),

@@ -72,10 +72,8 @@ def solved(data=LHS, regime=None, **fake):
         ({"analysis": {"outputs": ["roller_peak_stress"]}}, ["analysis.outputs", "Add peak_stress"]),
         ({"analysis": {"outputs": ["normal_force"]}}, ["one number a case", "normal_force[1]"]),
         ({"analysis": {"outputs": []}}, ["analysis.outputs"]),
-        ({"analysis": {"resample": 100}}, ["resample", "resamples"]),
-        ({"analysis": {"resamples": 5}}, ["analysis.resamples", "50"]),
+        ({"analysis": {"scales": 100}}, ["scales", "scale"]),
         ({"analysis": {"scale": {"friction_power": "log"}}}, ["analysis.scale.friction_power", "log10"]),
-        ({"analysis": {"measures": ["detla"]}}, ["analysis.measures", "delta"]),
         ({"analysis": {"keep": ["full_slip"]}}, ["analysis.keep", "rolling"]),
         ({"analysis": {"material_scatter": True}}, ["material_scatter", "inner_outer"]),
         ({"analysis": 3}, ["analysis"]),
@@ -179,16 +177,15 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
     assert lives == sorted(lives, reverse=True)
 
 
-def test_analysis_keys_decide_outputs_scale_and_measures(tmp_path):
+def test_analysis_keys_decide_outputs_and_scale(tmp_path):
     ds = solved(
-        LHS | {"analysis": {"outputs": ["friction_power"], "scale": "log10", "measures": ["delta"]}},
+        LHS | {"analysis": {"outputs": ["friction_power"], "scale": "log10"}},
         roller_life_hours=lambda x, v: v,
         friction_power=lambda x, v: 10 ** (3 * x),
     )
     ds.to_netcdf(tmp_path / "study.nc")
     sens = analyse(results_of(tmp_path / "study.nc"))
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
-    assert "delta" in sens and "prcc" not in sens and "first" in sens
     told = contents(view_of(ds, sens))["tables"]["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
@@ -265,19 +262,11 @@ def test_delta_agrees_with_salib_knows_categories_and_keeps_the_inert_in_the_noi
     assert exact == pytest.approx(4 / 9, abs=0.02) and low <= 4 / 9 <= high
 
 
-def test_every_measure_has_an_interval_and_only_the_wanted_are_there():
+def test_every_measure_has_an_interval():
     x = np.random.default_rng(3).random((300, 2))
-    found = given_data(x[:, 0], x, np.array([True, True]), measures=("delta", "prcc"))
-    assert set(found) == {
-        "delta",
-        "delta_low",
-        "delta_high",
-        "delta_noise",
-        "prcc",
-        "prcc_low",
-        "prcc_high",
-        "rows_used",
-    }
+    found = given_data(x[:, 0], x, np.array([True, True]))
+    ends = [f"{name}{end}" for name in ("first", "delta", "prcc") for end in ("", "_low", "_high")]
+    assert set(found) == {*ends, "delta_noise", "rows_used"}
     assert found["delta"][0] > 0.6 > found["delta_noise"][0]
 
 

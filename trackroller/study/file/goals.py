@@ -3,8 +3,7 @@
     analysis:
       outputs: [roller_life_hours, friction_power, peak_stress[1,guide]]
       scale: {friction_power: log10}
-      measures: [first, delta]
-      resamples: 1000
+      groups: {load: [radial_force, axial_force]}
       target: {roller_life_hours: {min: 500}}
     pareto: {roller_life_hours: max, friction_power: min, axis_distance: min}
     constraints:
@@ -33,7 +32,6 @@ from trackroller.study.design.entries import choice
 from trackroller.study.design.factors import Factor
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
-MEASURES = ("first", "delta", "prcc")
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
 DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
@@ -93,14 +91,12 @@ class Analysis(BaseModel):
         {}, description="natural or log10, for all or by output; default log10 for lives"
     )
     keep: tuple[str, ...] = Field(("rolling",), description="regimes whose cases are used; others are counted")
-    measures: tuple[str, ...] = Field(MEASURES, description="given-data measures besides the indices of the design")
     groups: dict[str, tuple[str, ...]] = Field(
         {}, description="grid, saltelli: groups of factors whose first-order and total indices are wanted, by name"
     )
     conditional_on: str | None = Field(
         None, description="factor with a list of values: indices of the others within each of its levels"
     )
-    resamples: int = Field(300, ge=50, le=10_000, description="bootstrap resamples behind the 95 % intervals")
     material_scatter: bool | float = Field(
         False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
     )
@@ -116,13 +112,12 @@ class Analysis(BaseModel):
             choice(scale, f"analysis.scale.{name}".rstrip("."), SCALES)
         return value
 
-    @field_validator("keep", "measures")
+    @field_validator("keep")
     @classmethod
-    def _lists(cls, value: tuple[str, ...], info: Any) -> tuple[str, ...]:
-        options = REGIMES[:3] if info.field_name == "keep" else MEASURES
+    def _keep(cls, value: tuple[str, ...]) -> tuple[str, ...]:
         for name in value:
-            choice(name, f"analysis.{info.field_name}", options)
-        if info.field_name == "keep" and "rolling" not in value:
+            choice(name, "analysis.keep", REGIMES[:3])
+        if "rolling" not in value:
             raise InputError("analysis.keep", list(value), "rolling and, if wanted, full_slip and lift_off")
         return tuple(dict.fromkeys(value))
 
