@@ -123,9 +123,21 @@ def test_a_study_that_grows_is_unfinished_until_it_is_gathered_again(tmp_path, m
 
     with pytest.raises(Stopped):
         run_study(grown, solver=solver)
+    code, said, _ = command(("status", "stopped"))
+    assert code == 0 and "next      chunk 1 of 2, axial_force 50, friction_coefficient 0.1 to 0.2" in said
     with pytest.warns(UserWarning, match="12 of 16 cases are solved"):
         assert tr.open_study("results/stopped").data.sizes["case"] == 12
     assert tr.open_study("results/stopped/study.nc").data["regime"].size == 12
+
+
+def test_chunks_name_their_levels(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    lines = []
+    study = {"name": "named", "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces"], "chunk_size": 6}
+    run_study(parse_study(study | {"factors": PAIRS | LISTS}), tell=lines.append)
+    told = [line.split(": ")[0] for line in lines if line.startswith("chunk")]
+    assert told[0] == "chunk 1 of 4, material_pair PA6 / POM, axial_force 20 to 30"
+    assert told[3] == "chunk 4 of 4, material_pair POM / PA6, axial_force 30 to 40"
 
 
 @pytest.mark.parametrize(("design", "said"), [("lhs", "lhs design with another factor is drawn anew"), ("grid", None)])

@@ -147,9 +147,11 @@ def print_status(name: str, results: Path, figures: bool) -> int:
 
 
 def _print_left(status: Status) -> None:
-    """Print the time left, and what can be looked at."""
+    """Print the time left, the next chunk, and what can be looked at."""
     if status.missing:
         print(f"time left {duration(status.seconds_left)} on one core")
+        if status.upcoming:
+            print(f"next      {status.upcoming}")
         if status.done:
             print("look      `trackroller report` and `explore` work on the solved cases")
     else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from collections import Counter
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -16,7 +17,7 @@ from trackroller.study.cost import START, bytes_a_case, duration, seconds_of_rep
 from trackroller.study.design.growth import as_planned
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
-from trackroller.study.store.chunks import FAILED
+from trackroller.study.store.chunks import FAILED, CorruptFile, read
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.plan import chunk_size, locate, study_folder, unused_cases
@@ -48,6 +49,8 @@ class Status:
         Whether `study.nc` exists, and whether another version of the solver made the files.
     unused : str
         How many solved cases of an earlier design this design does not hold, and why; '' if it holds all.
+    upcoming : str
+        Number and levels of the first chunk that is not solved; '' without one.
     corrupt : list of str
         Damaged or altered files, and what is wrong with each.
     """
@@ -62,6 +65,7 @@ class Status:
     gathered: bool
     outdated: bool
     unused: str = ""
+    upcoming: str = ""
     by_level: dict[tuple[str, str], int] = field(default_factory=dict)
     corrupt: list[str] = field(default_factory=list)
 
@@ -130,6 +134,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         gathered=folder.gathered.is_file(),
         outdated=folder.of_another_solver,
         unused=unused_cases(study, folder, found, place),
+        upcoming=_upcoming(folder),
         corrupt=[
             *found.corrupt.values(),
             *(f"{path}: it is gone" for path in folder.lost_files()),
@@ -176,6 +181,15 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         ("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"),
     ]
     return [(name, text) for name, text in rows if text]
+
+
+def _upcoming(folder: StudyFolder) -> str:
+    """Return the words for the first chunk of the plan that is not solved; '' if there is none."""
+    for name in folder.record().get("chunks", {}):
+        if not folder.chunk(name).is_file():
+            with contextlib.suppress(CorruptFile, FileNotFoundError):  # the next run plans its cases anew
+                return str(read(folder.case_list(name)).attrs.get("words", ""))
+    return ""
 
 
 def _level(name: str, level: Any) -> str:

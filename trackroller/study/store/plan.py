@@ -23,6 +23,7 @@ from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.grown_lhs import with_history
+from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
 
 SHORTEST, LONGEST = 8.0, 40.0  # seconds of solving a chunk: long beside the start of a job (1-2 s), short to lose
 LARGEST_CHUNK = 20_000
+MOST_LEVELS = 3  # that the words for a chunk list
 
 
 @dataclass(frozen=True)
@@ -156,9 +158,9 @@ def new_plan(study: Study, folder: StudyFolder, found: Inventory) -> Plan:
         name = chunk_name(names[part])
         # an index of all names would take 70 bytes a case
         block = fields.isel(case=part, missing_dims="ignore").assign_coords(case=names[part])
-        own = json.dumps(options[group[part[0]]])
-        listed = block.assign_attrs(options=own, identity=identity, words=f"chunk {count} of {len(parts)}")
-        chunks.write(folder.case_list(name), listed)
+        words = ", ".join([f"chunk {count} of {len(parts)}", *_levels_of(study, part)])
+        attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
+        chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
     uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
     return Plan(study, folder, sizes, len(names), len(wanted), tuple(uses), cases)
@@ -198,6 +200,21 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
 def _split(rows: np.ndarray, size: int) -> list[np.ndarray]:
     """Return the rows in parts of at most `size` rows."""
     return np.array_split(rows, math.ceil(len(rows) / size)) if len(rows) else []
+
+
+def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
+    """Return the levels of the cases of a chunk for each listed factor of which the chunk holds some levels only."""
+    words = []
+    for name, factor in study.drawn.factors.items():
+        levels = list(dict.fromkeys(study.drawn.columns[name][rows].tolist())) if factor.discrete else []
+        if not 0 < len(levels) < len(factor.levels):
+            continue
+        if factor.numeric and len(levels) > 1:
+            words.append(f"{name} {in_words(name, min(levels))} to {in_words(name, max(levels))}")
+        else:
+            shown = ", ".join(in_words(name, level) for level in levels[:MOST_LEVELS])
+            words.append(f"{name} {shown}" + ", ..." * (len(levels) > MOST_LEVELS))
+    return words
 
 
 def record_of(plan: Plan, inputs: Mapping[str, Any]) -> dict[str, Any]:
