@@ -106,54 +106,25 @@ def _lengths(nodes: tuple[int, int]) -> tuple[int, int]:
     return fft.next_fast_len(2 * (ny + beside) - 1), fft.next_fast_len(2 * (nx + beside) - 1, real=True)
 
 
-def _kernels(sides: tuple[float, float], nodes: tuple[int, int], depths: tuple[float, ...]) -> np.ndarray:
-    """Return the Fourier transforms of the stresses of hat loads, (depth, load, 9, y, x); see `hat_kernels`.
-
-    Parameters
-    ----------
-    sides : tuple of float
-        Grid spacings along x and y over the larger of the two [1].
-    nodes : tuple of int
-        Nodes along x and y.
-    depths : tuple of float
-        Depths over the larger spacing [1].
-    """
-    from scipy import fft  # heavy, see _lengths
-
-    from trackroller.halfspace.hats import hat_kernels
-
-    return np.asarray(fft.rfft2(hat_kernels(sides, nodes, np.array(depths), _lengths(nodes)), overwrite_x=True))
-
-
 @lru_cache(maxsize=64)
 def _smooth_kernels(ratio: float, nodes: tuple[int, int], inner: tuple[int, int]) -> np.ndarray:
     """Return the kernels of loads on the ladder at `DEPTHS`, without the spread by B-splines and hats.
 
     Patches whose sides have nearly the same ratio share the kernels, which take most of the time of a plane.
     """
-    sides = min(ratio, 1.0), min(1.0 / ratio, 1.0)
+    from scipy import fft  # heavy, see _lengths
+
+    from trackroller.halfspace.hats import hat_kernels
+
+    sides, lengths = (min(ratio, 1.0), min(1.0 / ratio, 1.0)), _lengths(nodes)
     small = 0.5 * min(side * n for side, n in zip(sides, inner, strict=True))
-    kernels = _kernels(sides, nodes, tuple((small * DEPTHS).tolist()))
+    kernels = fft.rfft2(hat_kernels(sides, nodes, small * DEPTHS, lengths, np.float32(0.0)), overwrite_x=True)
     # The transform of B-spline and hat is sinc^5; its inverse up to the sixth power of the wave number.
-    for axis, length in zip((3, 4), _lengths(nodes), strict=True):
+    for axis, length in zip((3, 4), lengths, strict=True):
         wave = 2.0 - 2.0 * np.cos(2.0 * np.pi * np.arange(kernels.shape[axis]) / length)
         inverse = 1.0 + 5.0 / 24.0 * wave + 47.0 / 1152.0 * wave**2
         kernels *= inverse.reshape((-1, 1) if axis == 3 else -1).astype(np.float32)
-    return kernels
-
-
-def _stresses(loads: Loads, kernels: np.ndarray, more: int, poisson_ratio: np.ndarray) -> np.ndarray:
-    """Return the stresses of both bodies, (body, depth, component, y, x), with `more` places on each side along y."""
-    from scipy import fft  # heavy, see _lengths
-
-    from trackroller.halfspace.hats import body_spectra
-    from trackroller.halfspace.stress import FRICTION_SIGNS
-
-    _, ny, nx = loads.tractions.shape
-    lengths = _lengths((nx, ny + more))
-    spectra = fft.rfft2(np.pad(loads.tractions, ((0, 0), (more, 0), (0, 0))).astype(np.float32), lengths)
-    bodies = body_spectra(spectra, kernels, poisson_ratio.astype(np.float32), np.array(FRICTION_SIGNS, np.float32))
-    return np.asarray(fft.irfft2(bodies, lengths, overwrite_x=True)[..., : ny + 2 * more, :nx])
+    return np.asarray(kernels)
 
 
 def planes(loads: Loads, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:
@@ -173,17 +144,13 @@ def planes(loads: Loads, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.nd
     numpy.ndarray
         Stresses (body, depth, component, y, x) in the order of `halfspace.stress.COMPONENTS` [MPa]. Along y the planes
         have `PADDING` times the nodes more on each side.
-
-    Notes
-    -----
-    The stresses are those of `halfspace.stress.stress_on_grid`, by convolutions in single precision, whose rounding is
-    1000 times smaller than the error of the planes.
     """
-    _, ny, nx = loads.tractions.shape
-    more, unit = math.ceil(PADDING * ny), max(loads.step_x, loads.step_y)
-    sides = loads.step_x / unit, loads.step_y / unit
-    kernels = _kernels(sides, (nx, ny + more), tuple((np.asarray(depths) / unit).tolist()))
-    return _stresses(loads, kernels, more, poisson_ratio)
+    from trackroller.halfspace.hats import planes_below
+    from trackroller.halfspace.stress import FRICTION_SIGNS
+
+    more = math.ceil(PADDING * loads.tractions.shape[1])
+    padded = np.pad(loads.tractions, ((0, 0), (more, more), (0, 0))).astype(np.float32)
+    return planes_below(padded, (loads.step_x, loads.step_y), depths, poisson_ratio, FRICTION_SIGNS)
 
 
 def deep_planes(loads: Loads, poisson_ratio: np.ndarray) -> np.ndarray:
@@ -203,11 +170,20 @@ def deep_planes(loads: Loads, poisson_ratio: np.ndarray) -> np.ndarray:
 
     Notes
     -----
-    Stresses at a depth are smooth: half the nodes give them with errors of the fourth order of the spacing.
+    Stresses at a depth are smooth: half the nodes give them with errors of the fourth order of the spacing, 1000 times
+    larger than the rounding of single precision.
     """
+    from scipy import fft  # heavy, see _lengths
+
+    from trackroller.halfspace.hats import body_spectra
+    from trackroller.halfspace.stress import FRICTION_SIGNS
+
     ladder = loads.on_ladder()
     _, ny, nx = ladder.tractions.shape
     more = math.ceil(PADDING * ny)
     ratio = math.exp(RUNG * round(math.log(ladder.step_x / ladder.step_y * (nx - 2) / (ny - 2)) / RUNG))
     kernels = _smooth_kernels(ratio * (ny - 2) / (nx - 2), (nx, ny + more), (nx - 2, ny - 2))
-    return _stresses(ladder, kernels, more, poisson_ratio)[..., 1:-1]
+    lengths = _lengths((nx, ny + more))
+    spectra = fft.rfft2(np.pad(ladder.tractions, ((0, 0), (more, 0), (0, 0))).astype(np.float32), lengths)
+    bodies = body_spectra(spectra, kernels, poisson_ratio.astype(np.float32), np.array(FRICTION_SIGNS, np.float32))
+    return np.asarray(fft.irfft2(bodies, lengths, overwrite_x=True)[..., : ny + 2 * more, 1 : nx - 1])

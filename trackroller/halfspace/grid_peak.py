@@ -13,9 +13,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy import fft
 
-from trackroller.halfspace.influence import CornerLoads, corner_loads, hat_influence, stress_parts
+from trackroller.halfspace.hats import planes_below
+from trackroller.halfspace.influence import CornerLoads, corner_loads, stress_parts
 from trackroller.halfspace.peak import Peak
 from trackroller.halfspace.stress import FRICTION_SIGNS, body_stress, von_mises
 from trackroller.numerics.threads import share_rows
@@ -76,20 +76,8 @@ class GridLoad:
 
 def _planes(load: GridLoad, depths: np.ndarray, poisson_ratio: np.ndarray) -> np.ndarray:
     """Return the von Mises stress (2, nz, ny, nx) of roller and guide below the nodes at `depths` [mm]."""
-    ny, nx, _ = load.tractions.shape
-    shape = (fft.next_fast_len(3 * ny - 2), fft.next_fast_len(3 * nx - 2, real=True))
-    spectra = fft.rfft2(np.moveaxis(load.tractions, -1, 0), shape)
-    out = np.empty((len(FRICTION_SIGNS), depths.size, ny, nx))
-    for k, depth in enumerate(depths):
-        for nu in dict.fromkeys(poisson_ratio.tolist()):
-            lateral, rolling, normal = (
-                fft.rfft2(kernel, shape) for kernel in hat_influence(*load.sides, nx, ny, float(depth), nu)
-            )
-            spectrum = np.stack([spectra[2] * normal, spectra[0] * lateral + spectra[1] * rolling])
-            pressed, sheared = fft.irfft2(spectrum, shape)[..., ny - 1 : 2 * ny - 1, nx - 1 : 2 * nx - 1]
-            for body in np.flatnonzero(poisson_ratio == nu):
-                out[body, k] = von_mises(np.moveaxis(pressed + FRICTION_SIGNS[body] * sheared, 0, -1))
-    return out
+    tractions = np.moveaxis(load.tractions, -1, 0)
+    return von_mises(np.moveaxis(planes_below(tractions, load.sides, depths, poisson_ratio, FRICTION_SIGNS), 2, -1))
 
 
 def _seeds(values: np.ndarray, load: GridLoad, depths: np.ndarray, count: int) -> list[np.ndarray]:

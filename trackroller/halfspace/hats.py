@@ -1,8 +1,10 @@
-"""Compiled kernels of whole planes: stresses of hat loads for convolutions of a grid, at several depths at once."""
+"""Stresses on whole planes below the nodes of a grid: convolutions with the stresses of hat loads."""
 
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import ArrayLike
+from scipy import fft
 
 from trackroller.halfspace.influence import NU
 from trackroller.halfspace.kernels import bilinear_corner
@@ -22,7 +24,7 @@ def _mirror_hats(corners, area, signs, out):  # pragma: no cover (compiled)
 
 
 @compiled
-def hat_kernels(sides, nodes, depths, lengths):  # pragma: no cover (compiled)
+def hat_kernels(sides, nodes, depths, lengths, zero):  # pragma: no cover (compiled)
     """Return the stresses of unit hat loads at node offsets -(n - 1) to n - 1, for circular convolutions.
 
     Parameters
@@ -35,15 +37,17 @@ def hat_kernels(sides, nodes, depths, lengths):  # pragma: no cover (compiled)
         z >= 0 over the larger spacing, (depth,) [1].
     lengths : tuple of int
         Lengths of the convolution along y and x, at least 2 n - 1 each.
+    zero : numpy.float32 or numpy.float64
+        0 in the precision of the result.
 
     Returns
     -------
     numpy.ndarray
-        (depth, load, component, y, x) in single precision [1]: loads q_x, q_y, p; the six components without nu, then
+        (depth, load, component, y, x) [1]: loads q_x, q_y, p; the six components without nu, then
         the factors of nu in xx, yy and xy. Offset 0 has index 0, and -1 the last one.
     """
     nx, ny = nodes
-    out = np.zeros((depths.size, 3, 9, lengths[0], lengths[1]), dtype=np.float32)
+    out = np.full((depths.size, 3, 9, lengths[0], lengths[1]), zero)
     corners = np.empty((27, ny + 2, nx + 2))
     for depth in range(depths.size):
         for j in range(ny + 2):
@@ -92,4 +96,37 @@ def body_spectra(spectra, kernels, poisson_ratio, signs):  # pragma: no cover (c
                 for i in range(load.shape[1]):
                     sheared = load[0, i] * (k_x[i] + nu * n_x[i]) + load[1, i] * (k_y[i] + nu * n_y[i])
                     stress[body, depth, c, i] = load[2, i] * (k_p[i] + nu * n_p[i]) + sign * sheared
+    return out
+
+
+def planes_below(
+    tractions: np.ndarray, sides: tuple[float, float], depths: np.ndarray, poisson_ratio: ArrayLike, signs: ArrayLike
+) -> np.ndarray:
+    """Return the stresses of bodies on planes below the nodes of a grid.
+
+    Parameters
+    ----------
+    tractions : numpy.ndarray
+        q_x, q_y, p at the nodes, (3, ny, nx) [MPa], bilinear between them. Their precision is that of the sums.
+    sides : tuple of float
+        Grid spacings along x and y [mm].
+    depths : numpy.ndarray
+        z >= 0 of the planes, (depth,) [mm].
+    poisson_ratio, signs : array_like
+        nu of the bodies [1], and the signs of q_x and q_y on them, (body,).
+
+    Returns
+    -------
+    numpy.ndarray
+        Stresses (body, depth, component, ny, nx) in the order of `stress.COMPONENTS` [MPa].
+    """
+    (_, ny, nx), unit, kind = tractions.shape, max(sides), tractions.dtype.type
+    bodies = np.asarray(poisson_ratio, kind), np.asarray(signs, kind)
+    lengths = fft.next_fast_len(2 * ny - 1), fft.next_fast_len(2 * nx - 1, real=True)
+    loads, spacings = fft.rfft2(tractions, lengths), (sides[0] / unit, sides[1] / unit)
+    out = np.empty((len(bodies[0]), depths.size, 6, ny, nx))
+    for i in range(depths.size):  # one plane at a time saves memory
+        hats = hat_kernels(spacings, (nx, ny), depths[i : i + 1] / unit, lengths, kind(0.0))
+        spectra = body_spectra(loads, fft.rfft2(hats), *bodies)
+        out[:, i] = fft.irfft2(spectra, lengths)[:, 0, :, :ny, :nx]
     return out

@@ -12,7 +12,6 @@ The kernels are compiled at the first call and cached on disk. The sums release 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import NamedTuple
 
 import numpy as np
@@ -157,43 +156,3 @@ def stress_parts(loads: CornerLoads, points: Array) -> Array:
     out = np.zeros((len(points), 4, 6))
     _sum_points(loads, np.ascontiguousarray(points), out)
     return out
-
-
-@compiled
-def corner_table(x, y, z, poisson_ratio):  # pragma: no cover (compiled)
-    """Return `bilinear_corner` as A + nu B at every pair of y (ny,) and x (nx,), depth z: (18, ny, nx), in spacings."""
-    table = np.empty((NU, y.size, x.size))
-    for j in range(y.size):
-        for i in range(x.size):
-            k = bilinear_corner(x[i], y[j], z)
-            for c in range(NU):
-                table[c, j, i] = k[c] + poisson_ratio * k[c + NU]
-    return table
-
-
-def hat_influence(hx: float, hy: float, nx: int, ny: int, depth: float, poisson_ratio: float) -> Iterator[Array]:
-    """Yield the stresses of unit hat loads (bilinear, one node) for the loads q_x, q_y, p in turn.
-
-    One load at a time saves memory.
-
-    Parameters
-    ----------
-    hx, hy : float
-        Grid spacings [mm].
-    nx, ny : int
-        Numbers of nodes.
-    depth : float
-        z >= 0 [mm].
-    poisson_ratio : float
-        Poisson's ratio of the body [1].
-
-    Yields
-    ------
-    numpy.ndarray, shape (6, 2 ny - 1, 2 nx - 1)
-        Stresses at node offsets -(n - 1) to n - 1 [1].
-    """
-    length = max(hx, hy)
-    gx, gy = hx / length, hy / length
-    table = corner_table(gx * np.arange(-nx, nx + 1), gy * np.arange(-ny, ny + 1), depth / length, poisson_ratio)
-    for load in (LOAD_X, LOAD_Y, LOAD_Z):
-        yield np.diff(np.diff(table[load : load + 6], n=2, axis=1), n=2, axis=2) / (gx * gy)

@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy import fft
 
 from trackroller.errors import InputError
 from trackroller.halfspace import influence
 from trackroller.halfspace.arrays import check_depth, components, grid_axis, grid_tractions
+from trackroller.halfspace.hats import planes_below
 from trackroller.numerics.compiled import fast, inner
 from trackroller.numerics.numbers import number_in, read_array
 from trackroller.numerics.threads import share_rows
@@ -155,21 +155,9 @@ def stress_on_grid(
         raise InputError("depths", z.shape, "depths have shape (nz,)")
     check_depth("depths", z)
     poisson_ratio = number_in(poisson_ratio, "poisson_ratio", "0 <= poisson_ratio <= 0.5", 0.0, 0.5)
-    ny, nx = ya.size, xa.size
-    shape = (fft.next_fast_len(3 * ny - 2, real=True), fft.next_fast_len(3 * nx - 2, real=True))
-    loads = fft.rfft2(np.moveaxis(q, -1, 0), shape)
-    steps = (xa[-1] - xa[0]) / (nx - 1), (ya[-1] - ya[0]) / (ny - 1)
-    out = np.empty((z.size, ny, nx, 6))
-    for i, depth in enumerate(z):
-        spectrum = np.zeros((6, *loads.shape[1:]), dtype=complex)
-        for load, kernel in zip(
-            loads, influence.hat_influence(*steps, nx, ny, float(depth), poisson_ratio), strict=True
-        ):
-            if load.any():
-                spectrum += load * fft.rfft2(kernel, shape)
-        field = fft.irfft2(spectrum, shape)[:, ny - 1 : 2 * ny - 1, nx - 1 : 2 * nx - 1]
-        out[i] = np.moveaxis(field, 0, -1)
-    return out
+    steps = (xa[-1] - xa[0]) / (xa.size - 1), (ya[-1] - ya[0]) / (ya.size - 1)
+    stress = planes_below(np.moveaxis(q, -1, 0), steps, z, [poisson_ratio], [1.0])
+    return np.moveaxis(stress[0], 1, -1)
 
 
 def body_stress(parts: Array, poisson_ratio: ArrayLike, sign: ArrayLike) -> Array:
