@@ -10,6 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
@@ -60,7 +61,7 @@ class FrictionLaw:
         """Return the law for compiled code, slip speeds in mm/s."""
         return Knots(self.speed, self.factor)
 
-    @property
+    @cached_property
     def is_constant(self) -> bool:
         """Return True if the factor is 1 at every speed."""
         return bool(np.all(self.factor == 1.0))

@@ -20,6 +20,7 @@ Frame: x lateral, y in the rolling direction (Kalker and CONTACT: x), z into the
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
@@ -141,6 +142,7 @@ def _add_far_field(patch, field, points, rule, out):
         _far_field(patch, field, points[i, 0], points[i, 1], points[i, 2], rule, out[i])
 
 
+@lru_cache(maxsize=128)
 def unit_rule(order: int) -> np.ndarray:
     """Return nodes and weights (2, order) of `clustered_rule`; raise InputError above the size of the scratch array."""
     if not 1 <= order <= MOST_POINTS:

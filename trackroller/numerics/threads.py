@@ -51,6 +51,10 @@ def share_rows(work: Callable[[int, int], object], rows: int, smallest: int, lar
     smallest, largest : int
         Limits of the number of rows in a piece; default: no upper limit.
     """
+    if rows <= smallest:  # to count the threads takes longer than a call for a few rows
+        if rows:
+            work(0, rows)
+        return
     threads = thread_count()
     size = max(smallest, -(-rows // (8 * threads))) if threads > 1 else rows
     size = size if largest is None else min(size, largest)

@@ -243,10 +243,11 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
             numbers[name] = np.array(
                 [math.nan if isinstance(v, str) and v in words else number(name, v) for v in raw], dtype=float
             ).reshape(n)
-        bad = np.flatnonzero(~parameter.accepts(numbers[name]))
-        if bad.size:
-            remedy = parameter.remedy(float(numbers[name][bad[0]]))
-            raise InputError(f"{name} (case {bad[0]})", raw[bad[:1]].tolist()[0], parameter.allowed(), remedy)
+        good = parameter.accepts(numbers[name])
+        if not good.all():
+            bad = int(np.argmin(good))
+            remedy = parameter.remedy(float(numbers[name][bad]))
+            raise InputError(f"{name} (case {bad})", raw[bad : bad + 1].tolist()[0], parameter.allowed(), remedy)
     return numbers
 
 

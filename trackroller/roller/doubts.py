@@ -67,9 +67,9 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     told = []
     for name, usual in USUAL.items():
         given = np.ravel(values.get(name, math.nan)).tolist()  # a friction coefficient may be a word
-        found = np.array([v for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0])
-        places = (np.argmax, *(() if name in FROM_ZERO else (np.argmin,)))
-        ends = {float(found[place(np.abs(found))]) for place in places} if found.size else ()
+        found = [float(v) for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0]
+        places = (max, *(() if name in FROM_ZERO else (min,)))
+        ends = {place(found, key=abs) for place in places} if found else ()
         told += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():

@@ -202,24 +202,28 @@ def _check_cases(table: CaseTable, options: Options) -> None:
 
 
 def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
-    for i in range(0, max(len(table), 1), size):
+    if len(table) <= size:
+        yield table
+        return
+    for i in range(0, len(table), size):
         yield table.take(np.arange(i, min(i + size, len(table))))
 
 
 def _solve_window(table: CaseTable, options: Options) -> Block:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
-    rows = number = np.arange(len(table))
     mirrored = np.zeros(len(table), bool)
     if options.shortcuts:
         table, mirrored = handed(table)
-    # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not of_patches(options.outputs, options.life_criterion):
-        rows, number = requirements.distinct_mechanics(table)
 
     def solve_all(cases: CaseTable) -> Block:
         return join([meet(part, options, _solve_block) for part in _cut(cases, BLOCK)])
 
-    table, block = temperature.settle(table, solve_all(table.take(rows)).take(number), options, solve_all)
+    distinct, number = table, np.arange(len(table))
+    # limits of patches depend on the speed and on all values of the materials
+    if options.shortcuts and len(table) > 1 and not of_patches(options.outputs, options.life_criterion):
+        rows, number = requirements.distinct_mechanics(table)
+        distinct = table.take(rows)
+    table, block = temperature.settle(table, solve_all(distinct).take(number), options, solve_all)
     stages_case.finish(table, block, options)
     reflect(block.values, mirrored)
     return block
@@ -228,9 +232,11 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 def _solve_block(table: CaseTable, options: Options) -> Block:
     """Solve cases together that share a contact model, a friction law and profiles."""
     groups = list(_groups(table, options))
+    if len(groups) == 1:  # its rows are in order
+        model, n, _ = groups[0]
+        return _solve_group(table, options.changed(contact_model=model), n)
     parts = [_solve_group(table.take(rows), options.changed(contact_model=model), n) for model, n, rows in groups]
-    order = np.argsort(np.concatenate([rows for *_, rows in groups]))
-    return parts[0] if len(parts) == 1 else join(parts).take(order)  # the rows of one group are in order
+    return join(parts).take(np.argsort(np.concatenate([rows for *_, rows in groups])))
 
 
 def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.ndarray]]:

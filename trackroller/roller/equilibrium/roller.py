@@ -78,14 +78,9 @@ class Loads:
         rows : numpy.ndarray of int, shape (2 m,)
             Number of the roller of each contact.
         """
-        side = np.repeat([1.0, -1.0], len(rows) // 2)
-        slip = Slip(
-            side * self.sine[rows],
-            self.cosine[rows],
-            self.guide_profile_radius[rows],
-            self.rolling_radius[rows],
-            shift,
-        )
+        sine, second = self.sine[rows], slice(len(rows) // 2, None)
+        sine[second] = -sine[second]
+        slip = Slip(sine, self.cosine[rows], self.guide_profile_radius[rows], self.rolling_radius[rows], shift)
         return self.shape.take(rows).at(normal), slip
 
 
@@ -114,10 +109,11 @@ class Roller:
 
     def contact(self, shift: np.ndarray, normal: np.ndarray, fine: bool, pick=slice(None)) -> np.ndarray:
         """Return F_T, F_A, M_R of both contacts, (3, 2, m), at shift (m,) [mm] and normal forces (2, m) [N]."""
-        rows = np.tile(self.rows[pick], 2)
-        ellipse, slip = self.loads.contacts(normal.reshape(-1), np.tile(shift, 2), rows)
+        own = self.rows[pick]
+        rows = np.concatenate((own, own))
+        ellipse, slip = self.loads.contacts(normal.reshape(-1), np.concatenate((shift, shift)), rows)
         r = self.law(ellipse, slip, self.loads.friction[rows], rows, fine)
-        return np.stack([r.lateral_force, r.driving_force, r.spin_moment]).reshape(3, 2, shift.size)
+        return np.array((r.lateral_force, r.driving_force, r.spin_moment)).reshape(3, 2, shift.size)
 
     def normal_forces(self, ratio: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Return F_N (2, m) [N] from eqs (7), (9) for given ratios F_T,i / F_N,i, (2, m) [1]."""
@@ -127,7 +123,7 @@ class Roller:
         b1, b2 = -self.axial_force[pick], -self.radial_force[pick]
         with np.errstate(divide="ignore", invalid="ignore"):
             det = a11 * a22 - a12 * a21
-            return np.stack([(b1 * a22 - a12 * b2) / det, (a11 * b2 - a21 * b1) / det])
+            return np.array(((b1 * a22 - a12 * b2) / det, (a11 * b2 - a21 * b1) / det))
 
     def without_friction(self) -> np.ndarray:
         """Return F_N (2, m) [N] from eqs (7), (9) without friction."""
@@ -155,7 +151,7 @@ class Roller:
         s, c = self.sin[pick], self.cos[pick]
         lateral = c * (f[0, 0] + f[0, 1]) + s * (normal[0] - normal[1]) + self.axial_force[pick]
         radial = s * (f[0, 1] - f[0, 0]) + c * (normal[0] + normal[1]) + self.radial_force[pick]
-        return np.stack([lateral, radial, self.torque(f, pick)])
+        return np.array((lateral, radial, self.torque(f, pick)))
 
     def shift(self, w: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Return r_Delta0 = c w / sqrt(1 - w^2) [mm] for w in (-1, 1)."""

@@ -67,6 +67,9 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None
 def patch_limits(results: Results, options: Options) -> None:
     """Add the results of the limits that need the tractions of the patches, or what these limits share."""
     scene = results.scene
+    own, shared = (limits(options.outputs, options.life_criterion) for limits in (of_patches, of_mechanics))
+    if not own and not shared:
+        return
 
     def fields() -> Tractions:
         t = surface_tractions(results)
@@ -74,9 +77,9 @@ def patch_limits(results: Results, options: Options) -> None:
         return Tractions(**{name: results.full(getattr(t, name)) for name in names}, mirrored=scene.mirror.symmetric)
 
     solved = dataclasses.replace(solved_of(scene.table, results.values, options), tractions=fields)
-    for limit in of_patches(options.outputs, options.life_criterion):
+    for limit in own:
         results.values |= limit.evaluate(solved)
-    for limit in of_mechanics(options.outputs, options.life_criterion):
+    for limit in shared:
         assert limit.shared is not None
         results.values |= limit.shared(solved)
 

@@ -126,7 +126,7 @@ class Results:
 
     def by_contact(self, flat: np.ndarray) -> np.ndarray:
         """Return flat values (2 n, ...) as (n, 2, ...)."""
-        return np.moveaxis(flat.reshape(2, self.scene.n, *flat.shape[1:]), 0, 1)
+        return flat.reshape(2, self.scene.n, *flat.shape[1:]).swapaxes(0, 1)
 
     @property
     def rows(self) -> np.ndarray:
