@@ -117,7 +117,7 @@ def grow_study(
     scheduler: str | None = None,
     tell: Tell | None = None,
     started: Callable[[int, int], None] | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
 ) -> Plan:
     """Let the sample of a study grow until its intervals are narrow, and gather the cases.

@@ -56,7 +56,7 @@ class _Search:
     folder: StudyFolder
     results: Path | str
     executor: Callable[[], Executor]
-    progress: Callable[[int], None]
+    progress: Callable[[int, int], None]
     found: Inventory = field(init=False)
 
     def __post_init__(self) -> None:
@@ -88,7 +88,7 @@ class _Search:
             with self.planned(one):
                 self.found = take_inventory(self.folder)
         else:
-            self.progress(len(cases.fingerprints))
+            self.progress(len(cases.fingerprints), 0)
         return judge(self.collected(one, cases), genes)
 
     def collected(self, study: Study, cases: Cases) -> StudyResults:
@@ -129,7 +129,7 @@ def search_designs(
     scheduler: str | None = None,
     tell: Tell | None = None,
     started: Callable[[int, int], None] | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
 ) -> Plan:
     """Search for the best designs of a study and gather the designs among which its model decided.
@@ -168,7 +168,7 @@ def search_designs(
             started(study.config.budget.designs * study.drawn.meta["inner_samples"], 0)
         if rerun_failed:
             forget_failed(folder, take_inventory(folder))
-        search = _Search(study, folder, results, executor, progress or (lambda cases: None))
+        search = _Search(study, folder, results, executor, progress or (lambda *counts: None))
         known, facts = _evolve(search, cheaper(study), tell)
         if cheaper(study) is study:
             decided = known

@@ -42,9 +42,10 @@ class Progress:
         """Record the number of cases, and how many were solved before."""
         self.say(total=total, done=done, step="solving")
 
-    def advanced(self, count: int) -> None:
-        """Record solved cases."""
-        self.say(at_once=False, done=self.told.get("done", 0) + count)
+    def advanced(self, count: int, failed: int) -> None:
+        """Record solved cases, of which some failed."""
+        told = self.told
+        self.say(at_once=False, done=told.get("done", 0) + count, failed=told.get("failed", 0) + failed)
 
 
 def is_held(path: Path) -> bool:
@@ -97,6 +98,7 @@ def _work(name: str, progress: Progress) -> None:
     from trackroller.study.status import find_study, status_of
 
     study = find_study(f"studies/{name}.yaml")
+    progress.say(failed=status_of(study).failed)  # in the chunks that an earlier run solved
     plan = run_any(study, started=progress.started, progress=progress.advanced)
     status = status_of(study)
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)

@@ -18,23 +18,27 @@ _COLUMNS = (
     MofNCompleteColumn(),
     TextColumn("{task.fields[rate]} cases/s, left"),
     TimeRemainingColumn(),
+    TextColumn("{task.fields[failed]}"),
 )
 
 
-@dataclass(frozen=True)
+@dataclass
 class Bar:
     """A progress bar with the functions that a run of a study calls."""
 
     shown: Progress
     task: TaskID
+    failed: int = 0
 
     def started(self, total: int, done: int) -> None:
         """Set the number of cases, and how many of them were solved before."""
         self.shown.update(self.task, total=total, completed=done)
 
-    def advanced(self, count: int) -> None:
-        """Add solved cases."""
+    def advanced(self, count: int, failed: int) -> None:
+        """Add solved cases, of which some failed."""
         self.shown.advance(self.task, count)
+        self.failed += failed
+        self.shown.update(self.task, failed=f"{self.failed} failed" if self.failed else "")
         self.shown.update(self.task, rate=f"{self.shown.tasks[0].speed or 0:.0f}")
 
     def tell(self, line: str) -> None:
@@ -55,7 +59,7 @@ def progress_bar(name: str, shown: bool = True) -> Iterator[Bar]:
     """
     console = Console(file=sys.stderr, soft_wrap=True)
     with Progress(*_COLUMNS, console=console, disable=not shown, speed_estimate_period=120) as progress:
-        yield Bar(progress, progress.add_task(name, total=None, rate="-"))
+        yield Bar(progress, progress.add_task(name, total=None, rate="-", failed=""))
 
 
 class _Last(logging.Handler):

@@ -36,7 +36,7 @@ def run_study(
     scheduler: str | None = None,
     tell: Tell | None = None,
     started: Callable[[int, int], None] | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
 ) -> Plan:
     """Plan a study, solve the missing cases and gather the results.
@@ -56,7 +56,7 @@ def run_study(
     started : callable, optional
         Receives the number of different cases and how many of them the complete chunks hold.
     progress : callable, optional
-        Receives the number of cases of each finished block of the other chunks.
+        Receives the number of cases of each finished block of the other chunks, and how many of them failed.
     solver : callable, optional
         Replaces `trackroller.solve` in this process.
 
@@ -97,7 +97,7 @@ def executing(scheduler: str | None, solver: Solver | None = None) -> Iterator[E
 def solve_study(
     study: Study,
     started: Callable[[int, int], None] | None = None,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
     solver: Solver | None = None,
 ) -> xr.Dataset:
     """Solve a study in memory.
@@ -125,7 +125,7 @@ def solve_study(
         for block in solve_here(part, study.materials, solver):
             blocks.append(block)
             if progress is not None:
-                progress(block.sizes["case"])
+                progress(*chunks.counts(block))
     solved = chunks.join(blocks).sel(case=cases["case"].values)
     results = {name: values.variable for name, values in solved.data_vars.items()}
     axes = {name: values.variable for name, values in solved.coords.items() if name != "case"}

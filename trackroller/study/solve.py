@@ -110,7 +110,7 @@ def solve_chunk(
     *,
     executor: Executor = solve_here,
     tell: Tell = log.warning,
-    progress: Callable[[int], None] | None = None,
+    progress: Callable[[int, int], None] | None = None,
 ) -> str:
     """Solve the cases of a chunk and write its file. A killed process loses the chunk that it works on.
 
@@ -127,7 +127,7 @@ def solve_chunk(
     tell : callable
         Receives one line for each event that the user should read.
     progress : callable, optional
-        Receives the number of cases of each finished block.
+        Receives the number of cases of each finished block, and how many of them failed.
 
     Returns
     -------
@@ -151,7 +151,7 @@ def solve_chunk(
             for block in executor(cases, database):
                 blocks.append(block)
                 if progress is not None:
-                    progress(block.sizes["case"])
+                    progress(*chunks.counts(block))
             spent = time.perf_counter() - started
             chunk = chunks.join(blocks).sel(case=cases["case"].values)
             chunks.write(folder.chunk(name), chunk, packed=True)
@@ -165,7 +165,7 @@ def solve_chunk(
 
 
 def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
-    count, failed = chunk.sizes["case"], int((chunk["regime"] == chunks.FAILED).sum())
+    count, failed = chunks.counts(chunk)
     solved = f"{count} case" if count == 1 else f"{count} cases"
     return f"{words}: {solved} solved in {spent:.1f} s, {count / max(spent, 1e-3):.0f} cases/s, {failed} failed"
 

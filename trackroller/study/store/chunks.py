@@ -50,6 +50,11 @@ def failure(cases: np.ndarray, reason: str) -> xr.Dataset:
     return xr.Dataset({name: ("case", values) for name, values in rows.items()}, {"case": cases})
 
 
+def counts(block: xr.Dataset) -> tuple[int, int]:
+    """Return the number of cases of a block, and how many of them failed."""
+    return block.sizes["case"], int((block["regime"] == FAILED).sum())
+
+
 def join(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
     """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up."""
     blocks = list(blocks)
