@@ -88,6 +88,19 @@ def test_the_page_begins_with_the_roller_of_the_readme(browser, live):
         assert dict(pair.split("=") for pair in shown.run("location.hash.slice(1)").split("&")) == given
 
 
+@pytest.mark.parametrize(("roller", "guide"), [("PA6", "PA6"), ("1.7225-quenched-tempered", "EN AW-7075")])
+def test_a_roller_with_many_warnings_stands_on_one_screen(page, roller, guide):
+    loads = {"radial_force": -3000, "friction_coefficient": 0.6, "motor_force": -60, "velocity": 2000}
+    page.run(f"""document.querySelector('.stage').dataset.stage = 'old';
+        trackroller.state.replace({json.dumps(loads | {"roller_material": roller, "guide_material": guide})})""")
+    page.until(SETTLED)
+    assert page.run("document.querySelectorAll('.warnings li').length") >= 3
+    assert page.run("document.documentElement.scrollHeight") <= 800
+    page.run("document.querySelector('.full').click()")
+    assert page.run("[...document.querySelectorAll('.warnings li')].every((w) => w.scrollWidth <= w.clientWidth)")
+    assert page.run("[...document.querySelectorAll('.warnings li')].every((w) => w.clientHeight > 0)")
+
+
 def test_a_profile_is_chosen_among_the_files_of_the_folder(browser, live):
     rows = [f"{0.05 * i:.2f},{-(7 - (49 - (0.05 * i) ** 2) ** 0.5):.6f}" for i in range(-120, 121)]
     (live.folder / "groove one.csv").write_text("x [mm],z [mm]\n" + "\n".join(rows))

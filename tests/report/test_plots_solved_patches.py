@@ -12,7 +12,7 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.analysis.columns import at_surface
 from trackroller.report.figures.contact_outline import Patch, widths
-from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
+from trackroller.report.figures.contact_patch import friction_energy, outline, shear_arrows
 from trackroller.report.figures.contact_sections import sections, surface_stress
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "tractions", "subsurface")
@@ -36,10 +36,10 @@ def test_the_outline_encloses_all_that_bears_and_little_more(edged):
         low, high = loaded_x(edged, contact)
         assert abs(low + high) > 0.1  # far from symmetric
         step = patch.x[1] - patch.x[0]
-        ends = patch.outline.get_extents()
+        ends = outline(patch).get_extents()
         assert ends.x0 == pytest.approx(low - step / 2) and ends.x1 == pytest.approx(high + step / 2)
         x, y = np.meshgrid(patch.x, patch.y)
-        within = patch.outline.contains_points(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
+        within = outline(patch).contains_points(np.column_stack([x.ravel(), y.ravel()])).reshape(x.shape)
         assert np.array_equal(within, patch.inside)
 
 
@@ -88,7 +88,7 @@ def test_two_strips_are_drawn_apart(edged):
     ds = edged.copy(deep=True)
     ds["pressure"].values[:, :, 9:12] = 0.0
     patch = Patch(ds, 1)
-    assert len(patch.outline.to_polygons()) == 2
+    assert len(outline(patch).to_polygons()) == 2
     assert len(widths(ds.sel(contact=1), "x")) == 2 and len(widths(ds.sel(contact=1), "y")) == 1
 
 

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import xarray as xr
-from contourpy import contour_generator
-from matplotlib.path import Path
 
 from trackroller.parameters import CONTACT_MODELS
 
@@ -46,16 +44,6 @@ class Patch:
             return -self.a, self.a, -self.b, self.b
         across, along = _strips(self.ds, "x"), _strips(self.ds, "y")
         return across[0][0], across[-1][1], along[0][0], along[-1][1]
-
-    @property
-    def outline(self) -> Path:
-        """Return the edge of the patch: an ellipse, or the closed lines around its loaded elements."""
-        if not self.solved:
-            circle = Path.unit_circle()
-            return Path(np.asarray(circle.vertices) * np.array([self.a, self.b]), circle.codes)
-        x, y, loaded = framed(self.x, self.y, self.inside.astype(float), 0.0)
-        rings = contour_generator(x, y, loaded).lines(0.5)
-        return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])
 
     def summed(self, values: np.ndarray, axis: int) -> np.ndarray:
         """Integrate a field or profile over y (axis 0 of a field) or x.

@@ -7,10 +7,12 @@ from typing import Any
 import matplotlib
 import numpy as np
 import xarray as xr
+from contourpy import contour_generator
 from matplotlib.axes import Axes
 from matplotlib.colors import ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patches import PathPatch
+from matplotlib.path import Path
 from matplotlib.ticker import MaxNLocator
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
@@ -22,6 +24,16 @@ from trackroller.roller.record import CASE, inputs_of, is_default
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
 PANEL_MM = 70.0  # width of a map
+
+
+def outline(patch: Patch) -> Path:
+    """Return the edge of a patch: an ellipse, or the closed lines around its loaded elements."""
+    if not patch.solved:
+        circle = Path.unit_circle()
+        return Path(np.asarray(circle.vertices) * np.array([patch.a, patch.b]), circle.codes)
+    x, y, loaded = framed(patch.x, patch.y, patch.inside.astype(float), 0.0)
+    rings = contour_generator(x, y, loaded).lines(0.5)
+    return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])
 
 
 def case_name(ds: xr.Dataset) -> str:
@@ -80,7 +92,7 @@ def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -
     levels = np.linspace(0, top, 17)
     x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
-    edge = PathPatch(patch.outline, facecolor="none", edgecolor="black", linewidth=0.9)
+    edge = PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9)
     axes.add_patch(edge)
     image.set_clip_path(edge)
     axes.set_title(f"Contact {patch.contact}", loc="left", fontsize=7.5, pad=3)

@@ -18,7 +18,7 @@ from trackroller.analysis.columns import at_surface
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, widths
-from trackroller.report.figures.contact_patch import case_text
+from trackroller.report.figures.contact_patch import case_text, outline
 from trackroller.report.numbers import near, rounded
 from trackroller.roller.record import MATERIALS, materials_of
 
@@ -138,7 +138,7 @@ def _surface(axes: Axes, patch: Patch, part: xr.Dataset, field: tuple, drawn: tu
     """Draw the stress on the surface of one body, as far as the sections reach, with the edge of the patch."""
     x, y, stress = field
     _fill(axes, x, y, stress, drawn[0])
-    axes.add_patch(PathPatch(patch.outline, facecolor="none", edgecolor="black", linewidth=0.9))
+    axes.add_patch(PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9))
     for limit, own, places in ((axes.set_xlim, "xz_x", x), (axes.set_ylim, "yz_y", y)):
         reach = part[own].values
         limit(max(float(reach[0]), float(places[0])), min(float(reach[-1]), float(places[-1])))

@@ -28,17 +28,21 @@ async function start() {
   const rows = new Map();
   const times = []; // ms from the event of a slider to its picture
   let since = 0;
+  let looked = false; // for studies that run; the server loads much for them, which would delay the first picture
+  const seen = (ready) => ready && !looked && ((looked = true), results.look());
 
   const view = pictureView({ again: () => flow.again() });
   const flow = live({
     values: () => state.values,
     inside: () => view.inside() && state.tab === "roller",
     shown(picture, { unworn }) {
+      seen(picture.complete);
       for (const row of rows.values()) row.complain("");
       view.show(picture, unworn);
       if (since) requestAnimationFrame(() => (times.push(performance.now() - since), (since = 0)));
     },
     failed(errors) {
+      seen(true);
       for (const row of rows.values()) row.complain("");
       for (const { field, message } of errors) {
         const unknown = (name) => state.values[name] && !offered.materials.some((m) => m.name === state.values[name]);
@@ -143,7 +147,6 @@ async function start() {
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (view.redraw(), variants.redraw()));
   state.read(location.hash || new URLSearchParams(offered.first).toString());
   if (!TABS.some(([name]) => name === state.tab)) state.show("roller");
-  results.look();
   window.trackroller = { state, times };
   root.dataset.ready = "";
 }

@@ -10,6 +10,7 @@ const KINDS = [
   ["roller", "von Mises below, roller"],
   ["guide", "von Mises below, guide"],
 ];
+const FEW = 4; // warnings that stand on one screen, in one line each until they are asked for in full
 const SHOWN = { preview: "preview while it moves", standard: "standard" };
 
 function drawn(text) {
@@ -52,11 +53,11 @@ function margins(list, complete) {
       el("td", { class: "n" }, m.beyond && Number.isFinite(m.hours) ? `${m.life.split(" (")[0]} †` : m.life.split(" (")[0]),
     ),
   );
-  const guessed = list.some((m) => m.guessed) ? "* rests on placeholders of a material. " : "";
+  const guessed = list.some((m) => m.guessed) ? "* rests on placeholders. " : "";
   const beyond = list.some((m) => m.beyond && Number.isFinite(m.hours)) ? "† beyond the S-N data. " : "";
   return [
     el("table", { class: "margins" }, el("thead", {}, head), el("tbody", {}, body)),
-    el("p", { class: "soft" }, guessed, beyond, "Margin: permitted over present load; at least 1 is required.", complete ? "" : " The distances to slip and lift-off follow when it rests."),
+    el("p", { class: "soft" }, guessed, beyond, "Margin: permitted over present load, at least 1.", complete ? "" : " The distances to slip and lift-off follow when it rests."),
   ];
 }
 
@@ -64,6 +65,15 @@ export function pictureView({ again }) {
   const verdict = el("p", { class: "verdict", role: "status", "aria-live": "polite" });
   const stage = el("span", { class: "stage" });
   const warnings = el("ul", { class: "warnings" });
+  const full = el("button", { type: "button", class: "mini full", hidden: true, "aria-pressed": "false", onclick: () => fold(full.getAttribute("aria-pressed") === "true") });
+  function fold(short) {
+    const items = [...warnings.children];
+    full.setAttribute("aria-pressed", String(!short));
+    warnings.classList.toggle("short", short);
+    items.forEach((item, i) => (item.hidden = short && i >= FEW));
+    full.textContent = items.length > FEW ? `all ${items.length} warnings in full` : "warnings in full";
+    full.hidden = short && items.length <= FEW && items.every((item) => item.scrollWidth <= item.clientWidth);
+  }
   const drawing = el("div", { class: "drawing-place" });
   const map = maps();
   let kind = "pressure";
@@ -83,7 +93,7 @@ export function pictureView({ again }) {
   const node = el(
     "div",
     { class: "picture" },
-    el("div", { class: "head" }, verdict, stage, warnings),
+    el("div", { class: "head" }, verdict, el("div", { class: "stages" }, stage, full), warnings),
     el("div", { class: "left" }, section("Roller and guide, to scale", drawing), section("Contact patches", choice.node, map.node), whole, unchecked),
     el("div", { class: "right" }, section("Contacts", tables), section("Margins, the first limit first", limits)),
   );
@@ -107,7 +117,8 @@ export function pictureView({ again }) {
       stage.dataset.stage = picture.complete ? "complete" : picture.accuracy;
       node.classList.toggle("preview", picture.accuracy === "preview");
       const said = [...picture.flags.map((flag) => [flag.sentence, flag.remedy]), ...picture.doubts.map((text) => ["Doubtful.", text])];
-      replace(warnings, said.map(([head, text]) => el("li", {}, el("strong", {}, head), " ", text)));
+      replace(warnings, said.map(([head, text]) => el("li", { title: text }, el("strong", {}, head), " ", text)));
+      fold(full.getAttribute("aria-pressed") !== "true");
       replace(drawing, drawn(picture.drawing));
       replace(tables, picture.lines.length ? lines(picture.lines) : el("p", {}, picture.reason || "No values: a contact has lifted off."));
       replace(limits, margins(picture.margins, picture.complete));
@@ -121,6 +132,8 @@ export function pictureView({ again }) {
       stage.textContent = "shown: the last case that could be solved";
       stage.dataset.stage = "refused";
       replace(warnings, errors.map((error) => el("li", {}, error.message)));
+      warnings.classList.remove("short");
+      full.hidden = true;
       node.classList.add("preview");
     },
   };
