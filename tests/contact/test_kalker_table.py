@@ -182,6 +182,38 @@ def test_preview_by_the_table_keeps_near_the_exact_theory(change):
     assert float(ds.energy_residual) < (1e-2 if "roller_material" in change or "guide_material" in change else 1e-6)
 
 
+def test_beside_a_nearly_lifted_contact_the_elements_serve():
+    """Where the table's error would change F_N of the light contact by 4 %, the row names kalker and is as exact."""
+    forces = np.linspace(34.0, 56.0, 12)
+    cases = [tr.Case(axial_force=f, friction_coefficient=0.5, motor_force=0.0) for f in forces]
+    outputs = ("forces", "contact", "friction_work")
+    ds = tr.solve(cases, contact_model="kalker_table", outputs=outputs)
+    exact = tr.solve(cases, contact_model="kalker", outputs=outputs)
+    normal, twice = exact.normal_force.values, np.sin(2 * np.deg2rad(cases[0].contact_angle))
+    by_table = (table.stored().force_error("p99") * 0.5 * normal[:, ::-1] / normal / twice).max(axis=1)
+    used = np.array(ds.contact_model_used.flag_meanings.split())[ds.contact_model_used.values]
+    assert set(used[by_table > 0.04]) == {"kalker"} and set(used[by_table < 0.028]) == {"kalker_table"}
+    assert by_table.max() > 0.2 and float(ds.normal_force_error_estimate.max()) < 0.05
+    assert float(ds.force_error_estimate.max()) < 0.05
+    off = abs(ds.normal_force / exact.normal_force - 1).values[by_table > 0.04]
+    assert off.max() < 0.03  # 0.08 by the table alone
+    np.testing.assert_allclose(
+        ds.friction_energy_per_distance[:, 1], exact.friction_energy_per_distance[:, 1], rtol=0.02
+    )
+    assert float(ds.energy_residual.max()) < 1e-6
+
+
+def test_the_elements_take_over_without_a_step():
+    """Along a line of axial forces no step of F_N stands out by half a per cent where the elements begin to serve."""
+    forces = np.linspace(33.0, 46.0, 161)
+    cases = [tr.Case(axial_force=f, friction_coefficient=0.5, motor_force=0.0) for f in forces]
+    ds = tr.solve(cases, contact_model="kalker_table", outputs=("forces", "contact"))
+    used = ds.contact_model_used.values
+    assert used[0] != used[-1] and np.count_nonzero(np.diff(used)) == 1
+    change = np.diff(np.log(ds.normal_force.min("contact").values))
+    assert np.abs(np.diff(change)).max() < 5e-3
+
+
 def test_patches_without_friction_or_force_have_no_traction():
     ellipse = Ellipse(np.array([1.0, np.nan]), np.array([1.0, np.nan]), np.array([100.0, np.nan]))
     elastic = Elastic(np.full(2, 8e4), np.full(2, 0.3), np.zeros(2))

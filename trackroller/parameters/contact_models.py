@@ -147,7 +147,7 @@ _BUILT_IN = (
     ),
     ModelDeclaration(
         "kalker_table",
-        "table of solutions of the exact theory; outside its range the exact theory",
+        "table of solutions of the exact theory; the exact theory outside its range and beside a nearly lifted contact",
         converged_up_to=1e-4,
         rank=3,
         options=("slip_terms",),

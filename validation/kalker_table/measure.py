@@ -53,13 +53,14 @@ def rolling(designs: list[tr.Case]) -> Any:
 
 
 def outside(designs: list[tr.Case], found: Any) -> dict[str, float]:
-    """Return the shares of the designs that elements solved, and of those with an axis ratio beyond the table's."""
+    """Return the shares of the designs that elements served, and of those with an axis ratio beyond the table's."""
     used = found.contact_model_used
     by_table = used.flag_values[used.flag_meanings.split().index("kalker_table")]
     g = (found.semi_axis_rolling / found.semi_axis_lateral).values
     return {
         "designs": float(len(designs)),
-        "outside": float(np.mean(used.values != by_table)),
+        "by_elements": float(np.mean(used.values != by_table)),
+        "outside": float(np.mean(((g < RATIOS[0]) | (g > RATIOS[1])).any(axis=1))),
         "axis_ratio_too_small": float(np.mean((g < RATIOS[0]).any(axis=1))),
         "axis_ratio_too_large": float(np.mean((g > RATIOS[1]).any(axis=1))),
         "smallest_axis_ratio": float(np.nanmin(g)),

@@ -39,6 +39,12 @@ REFINED_ERROR = 4e-3
 # Estimated relative error of F_N in the other contact above which a patch is solved on three times the elements, too.
 # Only contacts near lift-off have such an error.
 LIGHT_ERROR, LIGHT_FACTOR = 1e-2, 3
+# Relative error of F_N in the other contact that the error of the table may cause. From the first value on the elements
+# take over by and by, so that the forces have no step. Beyond the second value they serve alone, which keeps the
+# estimated error of the friction forces below 5 % of mu F_N.
+TABLE_SERVES = 0.03, 0.039
+# Elements across patches that serve for the table. A patch takes the first number that promises the error of F_N.
+SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.02
 
 
 def refined_above(elements: int) -> float:
@@ -56,7 +62,8 @@ class Correction:
     settings : KalkerSettings
         Discretisation of the elements; the friction law must be constant.
     trusts_table : bool
-        True: inside the table's range the forces are not corrected, and the elements give the tractions only.
+        True: inside the table's range the forces are corrected only where `TABLE_SERVES` asks for it. Elsewhere the
+        elements give the tractions only.
     """
 
     difference_step = 1e-5  # relative step of derivatives of the corrected law
@@ -69,8 +76,9 @@ class Correction:
         self.offset, self.slope = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))  # over mu F_N, mu F_N and mu F_N c
         self.limit = np.zeros((n, 2, 3))  # extrapolation to small elements, in the same units
         self.place, self.reach = np.full((n, 2), np.nan), np.zeros((n, 2))
+        self.normal = np.full((n, 2), np.nan)  # F_N at the last balance
         self.error = np.full((n, 2), np.nan)  # of the friction forces over mu F_N, estimated
-        self.beyond = np.zeros(n, bool)  # rollers outside the table's range
+        self.share = np.zeros((n, 2))  # of the elements in the forces, from 0 to 1
         self.count = 0  # of solved patches
         self.store, self.finer = Store(2 * n), Store(2 * n)  # solutions, and solutions on twice the elements
 
@@ -101,15 +109,33 @@ class Correction:
         """
         change = np.zeros(len(rows))
         forces, place, held = self._table(patch, slip, friction, rows)
-        self.beyond[rows[~held]] = True
-        pick = np.flatnonzero(~(held & self.trusts_table))
+        share = np.where(held & self.trusts_table, self._share(patch, slip, friction, rows), 1.0)
+        share = np.maximum(share, self.share[rows, _side(slip)])  # it only grows, so that the corrections settle
+        self.share[rows, _side(slip)], pick = share, np.flatnonzero(share > 0.0)
         if pick.size:
-            own, side = rows[pick], _side(slip)[pick]
+            own, side, part = rows[pick], _side(slip)[pick], share[pick]
             before = self._corrected(forces[pick], place[pick], own, side)
             exact = self._elements(patch.take(pick), slip.take(pick), friction[pick], own, place[pick])
+            exact = forces[pick] + part[:, None] * (exact - forces[pick])
+            self.error[own, side] = np.fmax(self.error[own, side], (1.0 - part) * table.stored().force_error("p99"))
             self._learn(exact - forces[pick], place[pick], own, side)
             change[pick] = np.max(np.abs(exact - before), axis=1)
         return np.where(held, change, OUTSIDE * change)
+
+    def _share(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the share of the elements in the forces of patches inside the table, (m,), see `TABLE_SERVES`."""
+        first, last = TABLE_SERVES
+        with np.errstate(divide="ignore", invalid="ignore"):
+            error = table.stored().force_error("p99") * friction * patch.normal_force / self._turned(patch, slip, rows)
+        part = np.clip((np.nan_to_num(error) - first) / (last - first), 0.0, 1.0)
+        return part**2 * (3.0 - 2.0 * part)
+
+    def _turned(self, patch: Patch, slip: Slip, rows: np.ndarray) -> np.ndarray:
+        """Return the change of F_T in patches that changes F_N of the other contact by all of it, (m,) [N]."""
+        side = _side(slip)
+        self.normal[rows, side] = patch.normal_force
+        other = self.normal[rows, 1 - side]  # of mirror images only one contact is given
+        return 2.0 * np.abs(slip.sine * slip.cosine) * np.where(np.isnan(other), patch.normal_force, other)
 
     def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
         """Store the differences `offset` (m, 3) at the places of the slip, and their derivatives if known."""
@@ -160,34 +186,40 @@ class Correction:
         balance an error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
         """
         value, force_error, side = solution.resultants.columns, solution.force_error.copy(), _side(slip)
-        normal = np.empty((len(self.error), 2))
-        normal[rows] = patch.normal_force[:, None]  # of mirror images only one contact is given
-        normal[rows, side] = patch.normal_force
-        other = 2.0 * np.abs(slip.sine * slip.cosine) * normal[rows, 1 - side]
+        other, creep = self._turned(patch, slip, rows), Creepage.of_slip(slip, self.settings.profile_slip)
+
+        def solve_again(pick: np.ndarray, elements: int) -> None:
+            settings = dataclasses.replace(self.settings, elements=elements, tolerance=self.traction_tolerance)
+            elastic = self.elastic.take(rows[pick])
+            best = solve_patch(patch.take(pick), creep.take(pick), friction[pick], elastic, settings)
+            self.count += pick.size
+            good = best.converged
+            value[pick[good]], force_error[pick[good]] = best.resultants.columns[good], best.force_error[good]
+
+        if self.trusts_table:
+            wanted = extrapolation.elements_for(force_error / (SERVED_ERROR * other), self.settings.elements)
+            enough = np.searchsorted(SERVING, np.minimum(wanted, SERVING[-1]))
+            for number in range(1, len(SERVING)):
+                if (enough == number).any():
+                    solve_again(np.flatnonzero(enough == number), SERVING[number])
+            return value, force_error
         least = np.minimum(friction * patch.normal_force, other)
         rough = np.flatnonzero(force_error > refined_above(self.settings.elements) * least)
-        if self.trusts_table or not self.settings.refines or not rough.size:
+        if not self.settings.refines or not rough.size:
             return value, force_error
-        patch, slip, coarse = patch.take(rough), slip.take(rough), solution.take(rough)
-        mu, rows = friction[rough], rows[rough]
-        finer = self.on_finer(patch, slip, mu, rows, coarse, forces=True)
-        self.finer.put(_slots(rows, side[rough]), finer)
+        finer_patch, finer_slip, coarse = patch.take(rough), slip.take(rough), solution.take(rough)
+        mu, own = friction[rough], rows[rough]
+        finer = self.on_finer(finer_patch, finer_slip, mu, own, coarse, forces=True)
+        self.finer.put(_slots(own, side[rough]), finer)
         self.count += rough.size
-        plain = finer.resultants.columns
-        change = plain - (value[rough] - coarse.limit[:, :3])
-        creep, good = Creepage.of_slip(slip, self.settings.profile_slip), finer.converged
-        _, limit = extrapolation.extrapolated(patch, creep, mu, self.elastic.take(rows), finer, plain, change)
-        error = extrapolation.force_error(patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
+        plain, good = finer.resultants.columns, finer.converged
+        change, elastic = plain - (value[rough] - coarse.limit[:, :3]), self.elastic.take(own)
+        _, limit = extrapolation.extrapolated(finer_patch, creep.take(rough), mu, elastic, finer, plain, change)
+        error = extrapolation.force_error(finer_patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
         value[rough[good]], force_error[rough[good]] = (plain + limit)[good], error[good]
-        light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
+        light = rough[force_error[rough] > LIGHT_ERROR * other[rough]]
         if light.size:
-            elements = LIGHT_FACTOR * self.settings.elements
-            settings = dataclasses.replace(self.settings, elements=elements, tolerance=self.traction_tolerance)
-            elastic, rough = self.elastic.take(rows[light]), rough[light]
-            best = solve_patch(patch.take(light), creep.take(light), mu[light], elastic, settings)
-            self.count += light.size
-            good = best.converged
-            value[rough[good]], force_error[rough[good]] = best.resultants.columns[good], best.force_error[good]
+            solve_again(light, LIGHT_FACTOR * self.settings.elements)
         return value, force_error
 
     def on_finer(

@@ -22,6 +22,7 @@ EARLY = 24
 LONG, SEEN_USED = 0.42, 1e-4
 UNLIKE = 3.4  # factor on (K/mu)^2 of unlike bodies: they slide at the leading edge, where like bodies stick
 FITTED, FITTED_AT, SLENDER = 0.054, 28, 0.9  # factor, elements and power of the axis ratio of `force_error`
+ORDER = 1.5  # with which the errors of extrapolated forces fall
 SECOND_ORDER = 1.0 / 3.0  # weight of quantities of second order
 FEW = 5.0  # elements in an adhesion area at which half of the change between the grids is random
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and two spins of an element: where the elements
@@ -102,7 +103,12 @@ def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int)
 
 def error_scale(elements: int) -> float:
     """Return how the errors of forces grow from FITTED_AT to `elements` along each axis, a factor."""
-    return (FITTED_AT / elements) ** 1.5
+    return (FITTED_AT / elements) ** ORDER
+
+
+def elements_for(excess: np.ndarray, elements: int) -> np.ndarray:
+    """Return how many elements along each axis make an error of `elements` smaller by the factor `excess`, (n,)."""
+    return elements * np.maximum(excess, 1.0) ** (1.0 / ORDER)
 
 
 def force_error(

@@ -2,7 +2,8 @@
 
 Forces, spin moment, adhesion area and dissipation come from the table. Tractions, which stresses need, come from the
 exact solver at the creepages found with the table. Peaks take them on few elements, and on twice as many where the
-estimated error is large. Rollers outside the table's range are solved exactly.
+estimated error is large. Rollers outside the table's range are solved exactly. Beside a nearly lifted contact the exact
+solver serves the loaded contact, because a small error of its friction force is a large one of the light contact.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions, Works
+from trackroller.contact.kalker.correction import SERVING
 from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
@@ -45,7 +47,8 @@ class TableModel(ContactModel):
     def __init__(self, given: Rollers, settings: Accuracy) -> None:
         super().__init__(given, settings)
         self.exact = KalkerModel(given, settings, trusts_table=True)
-        self.correction, self.rough = self.exact.correction, self.exact
+        self.served = KalkerModel(given, replace(settings, elements=SERVING[0]), trusts_table=True)
+        self.correction, self.rough = self.served.correction, self.exact
         if settings.peak_elements not in (0, settings.elements):
             self.rough = KalkerModel(given, replace(settings, elements=settings.peak_elements), trusts_table=True)
             self.rough.correction.traction_tolerance = ROUGH_TOLERANCE
@@ -54,8 +57,7 @@ class TableModel(ContactModel):
     @classmethod
     def errors(cls) -> dict[str, tuple[float, float, float, float]]:
         """Return the measured errors of the creep forces, over mu F_N and mu F_N sqrt(a b)."""
-        errors = table.stored().errors
-        median, p99 = (max(errors[f"{kind}_force_{q}"] for kind in ("like", "unlike")) for q in ("median", "p99"))
+        median, p99 = (table.stored().force_error(level) for level in ("median", "p99"))
         return dict.fromkeys(("friction_force", "spin_moment"), (median, p99, p99, p99))
 
     def _table(self, patch: Any, slip: Slip, friction, rows) -> table.TableSolution:
@@ -68,7 +70,7 @@ class TableModel(ContactModel):
         if not rest.size:
             return looked_up.resultants
         self._beyond[rows[rest]] = True
-        other = self.exact.law(patch.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
+        other = self.served.law(patch.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
         return looked_up.resultants.replaced(rest, other)
 
     def surface(self, patch: Any, slip: Slip, friction, rows) -> SurfaceTractions:
@@ -94,25 +96,24 @@ class TableModel(ContactModel):
     def power(self, patch: Any, slip: Slip, friction, rows) -> Works:
         """Return the dissipation: the work of the creepages, and of the pressures on unlike materials.
 
-        The table does not hold the work of the pressures, so the exact solver gives both on unlike materials.
+        The table does not hold the work of the pressures, so the exact solver gives it on unlike materials.
         """
-        looked_up = self._table(patch, slip, friction, rows)
-        work, pressed = looked_up.friction_energy_per_distance, np.zeros(len(rows))
-        rest = np.flatnonzero(~looked_up.known | (self.given.elastic.coupling[rows] != 0.0))
+        r = self.correction.law(patch, slip, friction, rows)
+        work, pressed = -(slip.longitudinal * r.driving_force + slip.spin * r.spin_moment), np.zeros(len(rows))
+        rest = np.flatnonzero(self.given.elastic.coupling[rows] != 0.0)
         if rest.size:
-            other = self.exact.power(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
-            work[rest], pressed[rest] = other.dissipated, other.by_pressure
-        return Works(work, pressed)
+            pressed[rest] = self.exact.power(patch.take(rest), slip.take(rest), friction[rest], rows[rest]).by_pressure
+        return Works(work + pressed, pressed)
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
         """Return residual and convergence of the friction law in the patches solved exactly; 0 and True by table."""
-        return self.exact.state(n)
+        return self.served.state(n)
 
     def force_error(self, n: int) -> np.ndarray:
-        """Return the estimated error of the rollers outside the table's range; NaN of the others, (n, 2)."""
-        return np.where((self.used(n) == self.exact.name)[:, None], self.exact.force_error(n), np.nan)
+        """Return the estimated error of the contacts that the exact solver serves; NaN of the others, (n, 2)."""
+        return np.where((self.used(n) == self.exact.name)[:, None], self.served.force_error(n), np.nan)
 
     def used(self, n: int) -> np.ndarray:
         """Return the name of the model that gave the forces of each of n rollers."""
-        beyond = self._beyond if self.correction is None else self._beyond | self.correction.beyond
+        beyond = self._beyond | (self.correction.share > 0.0).any(axis=1)
         return np.where(beyond, self.exact.name, self.name).astype(object)

@@ -118,6 +118,10 @@ class Tables:
     poisson: Spline
     errors: dict[str, float]
 
+    def force_error(self, level: str) -> float:
+        """Return the measured error of the forces over mu F_N of like and unlike bodies: 'median', 'p99' or 'max'."""
+        return max(self.errors[f"{kind}_force_{level}"] for kind in ("like", "unlike"))
+
 
 def read(path) -> Tables:
     """Return the tables of an npz file."""
