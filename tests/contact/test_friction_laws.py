@@ -32,18 +32,19 @@ MAPPINGS = [
 
 @pytest.mark.parametrize("mapping", MAPPINGS, ids=lambda m: m["kind"])
 def test_a_law_survives_its_mapping_and_its_text(mapping):
-    """Mapping -> law -> mapping -> law and JSON -> law give equal laws with equal hashes."""
+    """Mapping -> law -> mapping -> law and JSON -> law give equal laws."""
     law = law_of(mapping)
     for again in (law_of(law.as_dict()), law_of(json.dumps(law.as_dict())), law_of(law)):
-        assert again == law and hash(again) == hash(law) and again.as_dict() == law.as_dict()
-    assert len({law, law_of(mapping)}) == 1
+        assert again.as_dict() == law.as_dict()
+        np.testing.assert_array_equal(again.knots, law.knots)
 
 
 def test_laws_of_the_mapping_are_those_of_the_functions():
-    assert law_of(None) == constant() == law_of("constant") == linear_falling(10.0, 1.0)
-    assert law_of(MAPPINGS[1]) == linear_falling(100, 0.5) != linear_falling(100, 0.4)
-    assert law_of(MAPPINGS[2]) == exponential_falling(30.0, 0.4)
-    assert law_of(MAPPINGS[3]) == table([0, 10, 100], [0.3, 0.35, 0.2])
+    for law in (law_of(None), constant(), law_of("constant"), linear_falling(10.0, 1.0)):
+        assert law.is_constant and law.as_dict() == {"kind": "constant"}
+    made = linear_falling(100, 0.5), exponential_falling(30.0, 0.4), table([0, 10, 100], [0.3, 0.35, 0.2])
+    for mapping, law in zip(MAPPINGS[1:], made, strict=True):
+        np.testing.assert_array_equal(law_of(mapping).knots, law.knots)
     np.testing.assert_allclose(table([0, 1], [3, 2]).factor, [1, 2 / 3])  # only ratios count
     np.testing.assert_allclose(law_of(MAPPINGS[1])([0, 50, 100, 1e6]), [1, 0.75, 0.5, 0.5])
     speeds = np.linspace(0, 300, 777)

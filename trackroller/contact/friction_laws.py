@@ -77,17 +77,6 @@ class FrictionLaw:
         falls = -np.diff(self.factor) / np.diff(self.speed)
         return float(max(0.0, falls.max(initial=0.0)))
 
-    def _content(self) -> tuple[bytes, bytes]:
-        if self.is_constant:
-            return b"", b""
-        return self.speed.tobytes(), self.factor.tobytes()
-
-    def __eq__(self, other: object) -> bool:
-        return isinstance(other, FrictionLaw) and self._content() == other._content()
-
-    def __hash__(self) -> int:
-        return hash(self._content())
-
     def as_dict(self) -> dict[str, Any]:
         """Return the mapping from which `law_of` makes this law, with all its fields."""
         if self.is_constant:

@@ -23,7 +23,7 @@ from trackroller.contact.settings import Accuracy, Rollers
 from trackroller.contact.sliding_model import SlidingModel
 from trackroller.contact.table.model import TableModel
 from trackroller.errors import InputError, check_names
-from trackroller.parameters.contact_models import declare, withdraw
+from trackroller.parameters.contact_models import declare
 
 CLASSES: dict[str, type[ContactModel]] = {
     model.declaration.name: model for model in (SlidingModel, FastsimModel, KalkerModel, TableModel)
@@ -67,12 +67,6 @@ def _digest(model: type[ContactModel]) -> str:
         constants = [[value for value in code.co_consts if not inspect.iscode(value)] for code in codes]
         source = repr([(code.co_code, code.co_names, own) for code, own in zip(codes, constants, strict=True)])
     return hashlib.sha256(source.encode()).hexdigest()
-
-
-def unregister(name: str) -> None:
-    """Remove a contact model that `register` added."""
-    withdraw(name)
-    del CLASSES[name]
 
 
 def contact_model(

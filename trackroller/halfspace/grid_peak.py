@@ -23,6 +23,7 @@ from trackroller.numerics.threads import share_rows
 DEPTHS = (0.0, 0.06, 0.15, 0.3, 0.48, 0.7, 1.0)  # of the scanned planes / smaller half side of the patch [1]
 EDGE_ROWS, EDGE_DEPTHS = 9, (0.0, 0.25, 0.5, 1.0)  # points below a sharp edge; depth / width of an element [1]
 APART = 0.25  # smallest distance between seeds / half sides of the patch [1]
+SMALLEST = 0.1  # last step of a climb over its first [1]
 WORTH = 0.9  # share of the highest seed that a seed needs for a climb
 # For smooth pressures the error falls nearly with the square of the element size. A third of the change from a grid
 # with elements of twice the size is therefore added. A relative change above SMOOTH shows a singular pressure, to
@@ -111,7 +112,7 @@ def _edge_seeds(value, load: GridLoad) -> list[np.ndarray]:
     return [places[int(np.argmax(value(places)))]]
 
 
-def _climb(value, start: np.ndarray, steps: np.ndarray, smallest: float) -> tuple[np.ndarray, float]:
+def _climb(value, start: np.ndarray, steps: np.ndarray) -> tuple[np.ndarray, float]:
     """Return place and value of the maximum of `value` near `start`.
 
     Each step evaluates six neighbours and the maximum of the parabolas along the three axes; if none of them is clearly
@@ -140,13 +141,13 @@ def _climb(value, start: np.ndarray, steps: np.ndarray, smallest: float) -> tupl
             place, top = candidates[best], float(heights[best])
             if np.max(moved) > 0.5:
                 continue
-        if np.all(steps <= smallest * first):
+        if np.all(steps <= SMALLEST * first):
             break
         steps = 0.4 * steps
     return place, top
 
 
-def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: float) -> Peak:
+def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int) -> Peak:
     """Return the peaks of roller and guide below one patch, arrays (2,)."""
     coarse = load.coarse
     depths = min(load.size) * np.array(DEPTHS)
@@ -164,7 +165,7 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, smallest: f
         starts += _edge_seeds(value, load)
         heights = [float(value(seed[None])[0]) for seed in starts]
         climbs = [k for k in np.argsort(heights)[::-1] if k >= scanned or heights[k] >= WORTH * max(heights)]
-        summits.append(_highest(value, [_climb(value, starts[k], 0.5 * steps, smallest) for k in climbs], coarse))
+        summits.append(_highest(value, [_climb(value, starts[k], 0.5 * steps) for k in climbs], coarse))
     return Peak(*np.array(summits).T)
 
 
@@ -183,9 +184,7 @@ def _highest(value, summits: list[tuple[np.ndarray, float]], coarse: GridLoad) -
     return *peak, max(error, possible / best[0] - 1.0) + ERROR_FLOOR, change
 
 
-def find_grid_peaks(
-    loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds: int = 2, smallest: float = 0.1
-) -> Peak:
+def find_grid_peaks(loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds: int = 2) -> Peak:
     """Find the peak von Mises stress of roller and guide below n patches with tractions on grids.
 
     Parameters
@@ -196,8 +195,6 @@ def find_grid_peaks(
         Poisson's ratios of roller and guide [1].
     seeds : int
         Number of places on the surface, and below it, from which the search climbs.
-    smallest : float
-        Last step of a climb over its first step, which is half an element of twice the size.
 
     Returns
     -------
@@ -214,7 +211,7 @@ def find_grid_peaks(
     def work(first: int, last: int) -> None:
         for i in range(first, last):
             if np.all(np.isfinite(loads[i].tractions)):
-                out.put(i, _one_peak(loads[i], poisson_ratio[i], seeds, smallest))
+                out.put(i, _one_peak(loads[i], poisson_ratio[i], seeds))
 
     share_rows(work, len(loads), 1)
     return out

@@ -176,14 +176,6 @@ def declare(model: ModelDeclaration) -> None:
     _derive()
 
 
-def withdraw(name: str) -> None:
-    """Remove a contact model again. The built-in models stay: results are read by their numbers."""
-    if name in [model.name for model in _BUILT_IN]:
-        raise InputError("contact_model", name, "a model that was registered from outside")
-    del DECLARED[name]
-    _derive()
-
-
 def _derive() -> None:
     MEANINGS.clear()
     MEANINGS.update({name: model.meaning for name, model in DECLARED.items()})

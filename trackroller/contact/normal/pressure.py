@@ -109,9 +109,7 @@ def solve_normal(
     hx: float,
     hy: float,
     load: float,
-    material: np.ndarray | None = None,
     start: np.ndarray | None = None,
-    tolerance: float = TOLERANCE,
 ) -> NormalSolution:
     """Solve for pressure, patch and approach under a load.
 
@@ -125,12 +123,8 @@ def solve_normal(
         Side of an element in the rolling direction [mm].
     load : float
         Normal force over the contact modulus E*, > 0 [mm^2].
-    material : numpy.ndarray of bool, shape (ny, nx), optional
-        True where both bodies have material. Default: everywhere.
     start : numpy.ndarray, shape (ny, nx), optional
         Pressures over the contact modulus from which the iteration starts [1].
-    tolerance : float
-        Residual at which the iteration stops, see `NormalSolution` [1].
 
     Returns
     -------
@@ -147,15 +141,10 @@ def solve_normal(
     Polonsky, I. A. & Keer, L. M. (1999). A numerical method for solving rough contact problems. Wear 231, 206-219.
     """
     ny, nx = gap.shape
-    allowed = np.ones(gap.shape, bool) if material is None else material
     surface, area = _Surface(hx, hy, ny, nx), hx * hy
-    if start is None:
-        reach = np.where(allowed, gap, np.inf)
-        depth = np.quantile(reach[allowed], 0.5) - reach
-        start = np.sqrt(np.maximum(depth, 0.0))
-    p = np.where(allowed, np.maximum(start, 0.0), 0.0)
+    p = np.maximum(np.sqrt(np.maximum(np.quantile(gap, 0.5) - gap, 0.0)) if start is None else start, 0.0)
     if not p.any():
-        p = allowed.astype(float)
+        p = np.ones(gap.shape)
     p *= load / (p.sum() * area)
     residual, approach, step = np.inf, 0.0, 0
     direction, size_old, conjugate = np.zeros_like(p), 1.0, False
@@ -166,10 +155,9 @@ def solve_normal(
         approach = float(total[inside].mean())
         deviation = total - approach
         depth_scale = max(abs(approach - float(gap[inside].min())), 1e-300)
-        outside = allowed & ~inside
-        deepest = -float(deviation[outside].min()) if outside.any() else 0.0
+        deepest = -float(deviation[~inside].min(initial=0.0))
         residual = max(float(np.abs(deviation[inside]).max()), deepest) / depth_scale
-        if residual <= tolerance or step > ITERATIONS:
+        if residual <= TOLERANCE or step > ITERATIONS:
             break
         size = float(np.sum(deviation[inside] ** 2))
         if conjugate:
@@ -181,7 +169,7 @@ def solve_normal(
         answer -= answer[inside].mean()
         length = float(np.sum(deviation[inside] * direction[inside]) / np.sum(answer[inside] * direction[inside]))
         p = np.where(inside, np.maximum(p - length * direction, 0.0), 0.0)
-        again = allowed & (p == 0.0) & (deviation < 0.0)
+        again = (p == 0.0) & (deviation < 0.0)
         conjugate = not again.any()
         p[again] -= length * deviation[again]
         p *= load / (p.sum() * area)
