@@ -8,6 +8,7 @@ import fake_solver
 import numpy as np
 import pytest
 import xarray as xr
+from scipy import stats
 from workflow_place import snakemake, started
 
 import trackroller as tr
@@ -241,6 +242,8 @@ def test_the_jackknife_of_a_mean_is_student_s_interval_and_events_that_never_occ
     assert jackknife(left) == pytest.approx(1.15 * 2.1314 * values.std(ddof=1) / 4, rel=1e-4)
     member = np.arange(64) % 16
     assert share(np.zeros(64), member, 16) == (0.0, pytest.approx(1 - 0.025 ** (1 / 64)))
+    once = share(np.arange(256) == 9.0, np.arange(256) % 16, 16)  # one event: the bound of Clopper and Pearson
+    assert once == (1 / 256, pytest.approx(stats.beta.ppf(0.975, 2, 255) - 1 / 256))
     assert log_b10(np.full(64, np.inf), np.zeros(64), member, 16) == (np.inf, 0.0)
     assert log_b10(np.full(64, np.nan), np.zeros(64), member, 16)[1] == np.inf
 

@@ -182,14 +182,16 @@ def _deviation(kernel: np.ndarray) -> float:
 def share(hits: np.ndarray, member: np.ndarray, copies: int) -> tuple[float, float]:
     """Return a probability and the half width of its 95 % interval; `hits` 0 to 1 and `member` have the shape (n,).
 
-    Where no sample has the event, or all have it, the half width is that of Clopper and Pearson.
+    Few events (or few non-events) scatter too little among replicates. The half width is therefore at least that of
+    Clopper and Pearson for the effective number of samples, see `trackroller.analysis.probability.probabilities`.
     """
     total, size = np.bincount(member, hits, copies), np.bincount(member, minlength=copies)
-    value = float(hits.mean())
-    if value in (0.0, 1.0):
-        low, high = bounds(np.array(value), len(hits))
-        return value, float(high - low)
-    return value, float(jackknife((total.sum() - total) / (size.sum() - size)))
+    count, value = len(hits), float(hits.mean())
+    wide = float(jackknife((total.sum() - total) / (size.sum() - size)))
+    variance = (wide / (WIDER * t.ppf(0.975, copies - 1))) ** 2
+    gain = value * (1 - value) / max(count * variance, 1e-300)
+    low, high = bounds(np.array(value), count * np.clip(gain, 1.0, max(1.0, count * min(value, 1 - value))))
+    return value, max(wide, float(high) - value, value - float(low))
 
 
 def log_b10(lives: np.ndarray, scatter: np.ndarray, member: np.ndarray, copies: int) -> tuple[float, float]:

@@ -28,7 +28,8 @@ COPIES = 16
 STEPS = 9
 FIRST = {"morris": 2}  # samples of a replicate at the first look, as in `trackroller.study.file.until`
 LEVELS = np.array([0.0, 1.0, 4.0])  # of the categorical function
-SHARES = (0.002, 0.01, 0.05, 0.5)
+SHARES = (0.002, 0.015, 0.03, 0.05, 0.5)
+RARE = 0.03  # an event below this share has too few cases for a scatter to compare widths with
 WEIGHTS = np.array([1.0, 0.5, 0.25])  # of three normal factors, whose sum is log life
 Estimator = Callable[[SampledDesign], tuple[np.ndarray, np.ndarray, float]]  # values, half widths, scale of these
 
@@ -185,9 +186,12 @@ def measure(
                 truth = mean_effects(function, count, np.arange(count) < (name == "category"))
             draws = partial(draw, name, method, count)
             found[f"{method}, {name}"] = measured(of_indices(function), draws, truth, half_width, runs)
+    rare = [name for name in found if any(f"probability {one:g} " in name for one in SHARES if one < RARE)]
     return {
         "least_coverage": min(float(one["coverage"].min()) for one in found.values()),
-        "largest_width": max(float(one["width_over_demanded"].max()) for one in found.values()),
+        "largest_width": max(
+            float(one["width_over_demanded"].max()) for name, one in found.items() if name not in rare
+        ),
         "found": found,
     }
 
