@@ -163,10 +163,20 @@ def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     np.testing.assert_allclose(judge(solved).values[found["recommended"]], best["values"])
     assert best["reference"] != best["values"] and np.allclose(best["reference"], best["values"], rtol=0.2)
     said, table = best_of(solved.view)
+    assert "Beside the budget it solved polished designs (" in said[-1]
     assert said[0].startswith("Recommended: ") and "at `reference`" in " ".join(said)
     assert table.heads[1] == "Recommended" and len(table.heads) <= 6
     page = write_best(solved.view, tmp_path / "best.html").read_text()
     assert "Optima of the search" in page and said[0].split(":")[0] in page
+
+
+def test_a_search_without_a_valid_design_solves_its_budget_only_and_says_why(tmp_path):
+    none = changed(constraints=["max_pressure < 100", "max_pressure > 200"], budget={"designs": 1})
+    solved = tr.open_study(search_designs(none, tmp_path).folder.root)
+    assert solved.data.sizes["case"] == 2 and optimum_of(solved)["optima"] == []  # one design at two conditions
+    assert solved.pareto().attrs["excluded"] == "1 that are valid in no condition"
+    said, _ = best_of(solved.view)
+    assert "budget of 1 design is spent" in said[-1] and "Beside the budget" not in said[-1]
 
 
 def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
@@ -239,6 +249,7 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
         ({"budget": {"hours": 0}}, "budget.hours = 0"),
         ({"goals": {"pair_life_hour": "max"}}, "Did you mean 'pair_life_hours'"),
         ({"goals": {"b10(max_pressure)": "min"}}, "b10 of a life"),
+        ({"goals": {"median(pair_life_hours)": "max"}}, "mean, worst, b10 or probability of one. For example mean"),
         ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a target or of a regime"),
         ({"goals": {"pair_life_hours": "up"}}, "known names are max, min"),
         ({"goals": {"pair_life_hours": "max", "worst(pair_life_hours)": "min"}}, "each result once"),

@@ -205,12 +205,13 @@ def pareto_of_search(results: StudyResults) -> xr.Dataset:
     The dimension `row` numbers the designs. Only the designs that are valid in the most conditions are compared.
     """
     judged, goals, design = judge(results), goals_of_search(results), results.design
-    kept = np.flatnonzero(judged.violation == judged.violation.min())
+    least = judged.violation.min()
+    kept = np.flatnonzero((judged.violation == least) & (least < 1))
     first = kept * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
     left = len(judged.violation) - len(kept)
-    excluded = f"{left} that are valid in fewer conditions" if left else ""
+    excluded = f"{left} that are valid in {'fewer conditions' if least < 1 else 'no condition'}" if left else ""
     attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
     lives = {f"beyond_{n}": ("row", beyond_data(results, n)[kept].astype(np.int8)) for n in goals if "life" in n}

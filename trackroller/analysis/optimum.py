@@ -196,7 +196,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
         valid = int((known.violation == 0).sum())
         tell(f"generation {number}: {len(known.genes)} designs, {valid} valid in all conditions, {first.sum()} best")
         if len(known.genes) >= budget.designs:
-            why = f"the {budget.designs} designs of the budget are solved"
+            why = f"the budget of {budget.designs} design{'s' * (budget.designs != 1)} is spent"
             break
         many = min(budget.generation, budget.designs - len(known.genes))
         drawn = next_generation(genes, known.genes, known.costs, known.violation, many, (study.config.seed, number))
@@ -212,21 +212,27 @@ def _choices(study: Study) -> dict[str, Factor]:
 def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Plan:
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
     study, choices = search.study, _choices(search.study)
-    decided = _polished(search, decided, choices)
+    many, usable = len(decided.genes), decided.violation.min() < 1  # a design that is never valid is no optimum
+    decided = _polished(search, decided, choices) if usable else decided
     front = np.flatnonzero(nondominated_ranks(decided.costs, decided.violation) == 0)
     best = decided.take(front)
     chosen = recommended(best)
-    shown = np.union1d(spread(best.costs, REPORTED), [chosen])
+    shown = np.union1d(spread(best.costs, REPORTED), [chosen]) if usable else np.empty(0, int)
     exact = {"accuracy": "reference"}
     if study.config.contact_model == TABLE:
         exact["contact_model"] = ELEMENTS
-    checked = search.judged(_with(study, **exact), best.genes[shown])
-    around = _neighbours(choices, best.genes[chosen])
+    checked = search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
+    around = _neighbours(choices, best.genes[chosen]) if usable else []
     moved = search.judged(study, np.array([genes for *_, genes in around])) if around else best.take(np.empty(0, int))
-    tell(f"solved {len(shown)} optima at reference, and {len(around)} neighbours of the recommended one")
+    beside = (
+        f"polished designs ({len(decided.genes) - many}), neighbours of the recommended design ({len(around)}) and "
+    )
+    beside += f"optima at reference ({len(shown)})"
+    tell(f"solved beside the budget: {beside}" if usable else "no design is valid, so there is no optimum to check")
     final = search.of(study, decided.genes)
     goals = goals_of_search(search.collected(final, Cases(final)))
     result = facts | {
+        "beside": beside if usable else "",
         "goals": goals,
         "front": len(front),
         "decided": len(decided.genes),

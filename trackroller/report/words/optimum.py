@@ -34,7 +34,7 @@ def optimum_sentences(view: StudyView) -> list[Sentence]:
 
 def least_violation(search: dict[str, Any]) -> float:
     """Return the share of the conditions in which the best design is not valid [1]; 0 if a design is always valid."""
-    return float(min(one["violation"][0] for one in search["optima"]))
+    return float(min((one["violation"][0] for one in search["optima"]), default=1.0))
 
 
 def design_words(view: StudyView, number: int) -> str:
@@ -127,4 +127,5 @@ def _searched(search: dict[str, Any]) -> str:
     text = f"The search solved {count(designs)} design{'s' * (designs != 1)} in {generations} "
     text += f"generation{'s' * (generations != 1)} with "
     text += f"`{search['model']}`; {count(search['valid'])} are valid in all conditions. It ended because "
-    return capital(f"{text}{search['stopped']}.")
+    beside = f" Beside the budget it solved {search['beside']}." if search.get("beside") else ""
+    return capital(f"{text}{search['stopped']}.{beside}")

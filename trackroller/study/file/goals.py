@@ -36,6 +36,11 @@ SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
 DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
 STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
+STATISTICS_OF = {  # by the key of a study file
+    "pareto": STATISTICS,
+    "goals": ("mean", "worst", "b10", "probability"),
+    "until.of": ("b10", "probability"),
+}
 TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table", "optimise")
 
 
@@ -278,6 +283,9 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
 
 def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
     """Return the error for a name that is no result of these groups; it gives the nearest one."""
+    if kinds := STATISTICS_OF.get(where) if "(" in name else None:
+        allowed = f"a result, or {', '.join(kinds[:-1])} or {kinds[-1]} of one"
+        return InputError(where, name, allowed, f"For example {kinds[0]}({name.partition('(')[2].rstrip(') ')}).")
     variable = name.split("[")[0].strip()
     name_of = DEFAULTS[variable][0] if variable in DEFAULTS else variable
     if name_of in VARIABLES and (group := VARIABLES[name_of].group) not in set(groups):

@@ -16,9 +16,9 @@ from trackroller.errors import InputError
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.factors import Factor
 from trackroller.study.design.roles import scattered
-from trackroller.study.file.goals import check_statistic, output_names, statistic
+from trackroller.study.file.goals import STATISTICS_OF, check_statistic, output_names, statistic
 
-JUDGED_BY = ("worst", "mean", "b10", "probability")  # statistics over the conditions of a design
+JUDGED_BY = STATISTICS_OF["goals"]  # over the conditions of a design
 
 
 class Budget(BaseModel):
@@ -26,7 +26,9 @@ class Budget(BaseModel):
 
     model_config = ConfigDict(extra="forbid", frozen=True)
 
-    designs: int = Field(640, ge=1, le=1_000_000, description="largest number of designs that the search solves")
+    designs: int = Field(
+        640, ge=1, le=1_000_000, description="largest number of designs of the search; polishing and checks come on top"
+    )
     population: int | None = Field(
         None, ge=4, le=10_000, description="designs of a generation; default a twentieth of the designs, 8 to 32"
     )
