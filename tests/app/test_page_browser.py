@@ -8,6 +8,7 @@ from contextlib import closing
 from pathlib import Path
 
 import pytest
+import yaml
 from browser import CHROMIUM, Browser, Page
 from live_page import LivePage
 
@@ -231,6 +232,24 @@ def test_a_study_is_made_by_clicks_and_by_text(page):
     page.until("!document.querySelector('button.main').disabled")
     fields = page.run("[...document.querySelectorAll('.study select, .study input')].map((f) => f.value)")
     assert {"lhs", "7", "uniform", "0.1, 0.3"} <= set(fields)
+
+
+def test_a_study_takes_profile_duty_and_options_of_the_roller(page, live):
+    rows = [f"{0.05 * i:.2f},{-(7 - (49 - (0.05 * i) ** 2) ** 0.5):.6f}" for i in range(-120, 121)]
+    (live.folder / "arc.csv").write_text("x [mm],z [mm]\n" + "\n".join(rows))
+    given = {"normal": "halfspace", "roller_profile": '{file: "arc.csv"}', "credit_pressure": "false"}
+    given |= {"duty": "{hours_per_day: 16, days_per_year: 250}", "contact_model": "sliding"}
+    page.run(f"trackroller.state.replace({json.dumps(given)})")
+    page.run("document.querySelector('[aria-label=\"Make Axial force a factor of the study\"]').click()")
+    page.until("document.querySelector('.plan').textContent.includes('3, 0 of them')")
+    written = yaml.safe_load(page.run("document.querySelector('textarea').value"))
+    assert written["base"] == {"roller_profile": {"file": "arc.csv"}}
+    assert written["duty"] == {"hours_per_day": 16, "days_per_year": 250} and written["credit_pressure"] is False
+    page.run("trackroller.state.replace({motor_force: 0})")
+    page.run("[...document.querySelectorAll('button')].find((b) => b.textContent.startsWith('Take the')).click()")
+    page.until("!document.querySelector('textarea').value.includes('duty')")
+    again = yaml.safe_load(page.run("document.querySelector('textarea').value"))
+    assert again["base"] == {"motor_force": 0} and not {"normal", "credit_pressure"} & set(again)
 
 
 def test_names_with_markup_stay_text(page, live):

@@ -94,6 +94,7 @@ export function parameterRow(parameter, { change, curve, factor }) {
       range.setAttribute("aria-valuetext", Number.isFinite(size) ? `${number(size)} ${unit}` : "straight");
     },
     complain(message) {
+      if (message) node.closest("details")?.setAttribute("open", "");
       said.textContent = message ?? "";
       node.classList.toggle("wrong", Boolean(message));
       field.setAttribute("aria-invalid", String(Boolean(message)));
@@ -125,6 +126,7 @@ export function wordRow({ name, label, meaning, words = null, list = null, fallb
     },
     tell: (text) => replace(facts, text),
     complain(message) {
+      if (message) node.closest("details")?.setAttribute("open", "");
       said.textContent = message ?? "";
       node.classList.toggle("wrong", Boolean(message));
       field.setAttribute("aria-invalid", String(Boolean(message)));

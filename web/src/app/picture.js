@@ -66,7 +66,7 @@ export function pictureView({ again }) {
   const stage = el("span", { class: "stage" });
   const warnings = el("ul", { class: "warnings" });
   const full = el("button", { type: "button", class: "mini full", hidden: true, "aria-pressed": "false", onclick: () => fold(full.getAttribute("aria-pressed") === "true") });
-  function fold(short) {
+  function fold(short = full.getAttribute("aria-pressed") !== "true") {
     const items = [...warnings.children];
     full.setAttribute("aria-pressed", String(!short));
     warnings.classList.toggle("short", short);
@@ -108,7 +108,7 @@ export function pictureView({ again }) {
     node,
     lives: section("Life", lives),
     inside,
-    redraw: draw,
+    redraw: () => (fold(), draw()),
     show(picture, unworn) {
       if (last && picture.accuracy === "standard" && !picture.sections.length && inside()) picture.sections = last.sections;
       last = picture;
@@ -118,7 +118,7 @@ export function pictureView({ again }) {
       node.classList.toggle("preview", picture.accuracy === "preview");
       const said = [...picture.flags.map((flag) => [flag.sentence, flag.remedy]), ...picture.doubts.map((text) => ["Doubtful.", text])];
       replace(warnings, said.map(([head, text]) => el("li", { title: text }, el("strong", {}, head), " ", text)));
-      fold(full.getAttribute("aria-pressed") !== "true");
+      fold();
       replace(drawing, drawn(picture.drawing));
       replace(tables, picture.lines.length ? lines(picture.lines) : el("p", {}, picture.reason || "No values: a contact has lifted off."));
       replace(limits, margins(picture.margins, picture.complete));

@@ -57,6 +57,7 @@ export function resultsView(state, { open, told }) {
         "td",
         { class: "actions" },
         study.pages.includes("report.html") ? link("report.html", "Report") : null,
+        study.pages.includes("report.html") ? el("a", { href: `results/${encodeURIComponent(study.name)}/report.html`, download: `${study.name}.html`, title: "one file, which can be sent", "aria-label": `Save the report of ${study.name}` }, "Save") : null,
         study.pages.includes("explorer.html") ? link("explorer.html", "Explorer") : null,
         done && study.pages.length < 2 ? button("Make the pages", () => act("resume", { name: study.name }), "of ") : null,
         study.state === "running" ? button("Pause", () => act("pause", { name: study.name })) : null,

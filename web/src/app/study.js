@@ -53,6 +53,7 @@ export function studyView(state, offered, { started }) {
   let text = "";
   let [timer, newest] = [0, 0];  // an answer to an earlier text or study would take back what was changed since
   let sound = false;
+  let taken = []; // options of the roller on the screen
   const roleOf = (name) => offered.parameters.find((p) => p.name === name)?.role ?? "choice";
   const labelOf = (name) => offered.parameters.find((p) => p.name === name)?.label ?? name.replaceAll("_", " ").replace(/^./, (c) => c.toUpperCase());
 
@@ -145,7 +146,7 @@ export function studyView(state, offered, { started }) {
       change();
     });
     field.addEventListener("change", change);
-    const role = select("set by", [["choice", "the designer"], ["condition", "the use"]], study.roles?.[key] ?? roleOf(key), (value) => {
+    const role = select("set by", [["choice", "designer's choice"], ["condition", "condition of use"]], study.roles?.[key] ?? roleOf(key), (value) => {
       study.roles = { ...study.roles, [key]: value };
       if (value === roleOf(key)) delete study.roles[key];
       later({ study });
@@ -177,12 +178,19 @@ export function studyView(state, offered, { started }) {
   }
   design.field.addEventListener("change", () => (samples.node.hidden = !SAMPLED.includes(design.field.value)));
 
-  // The roller on the screen becomes what all cases share; options become options.
-  function takeRoller() {
-    const options = offered.options.map((o) => o.name);
-    const entries = Object.entries(state.values).map(([key, value]) => [key, value !== "" && Number.isFinite(Number(value)) ? Number(value) : value]);
-    study.base = Object.fromEntries(entries.filter(([key]) => !options.includes(key) && !(key in study.factors)));
-    for (const [key, value] of entries) if (options.includes(key)) study[key] = value;
+  // The roller on the screen becomes what all cases share; options become options. The server reads the texts.
+  async function takeRoller() {
+    const lines = Object.entries(state.values).map(([key, value]) => `${key}: ${value}`);
+    const answer = lines.length ? await ask("checked", { text: lines.join("\n") }, "roller").catch((error) => error) : { study: {} };
+    if (!answer.study) return tell({ errors: answer.errors, plan: [], doubts: [] });
+    const options = [...offered.options.map((o) => o.name), "duty"];
+    const given = Object.entries(answer.study);
+    for (const key of taken) delete study[key];
+    study.base = Object.fromEntries(given.filter(([key]) => !options.includes(key) && !(key in study.factors)));
+    taken = given.map(([key]) => key).filter((key) => options.includes(key));
+    for (const key of taken) study[key] = answer.study[key];
+    fill();
+    check({ study });
   }
 
   function add(key) {
@@ -194,10 +202,9 @@ export function studyView(state, offered, { started }) {
       const list = parameter ? (Number.isFinite(size) && now !== null ? (size === 0 ? [0, 10] : [round(size * 0.8), size, round(size * 1.2)]) : [now ?? 1]) : [...new Set([String(now), ...offered.materials.map((m) => m.name)])].slice(0, 2);
       study.factors[key] = { values: list };
     }
-    takeRoller();
-    state.show("study");
     fill();
-    check({ study });
+    state.show("study");
+    takeRoller();
   }
 
   async function run() {
@@ -216,7 +223,7 @@ export function studyView(state, offered, { started }) {
     if (key) add(key);
     choose.field.value = "";
   });
-  const take = el("button", { type: "button", onclick: () => (takeRoller(), fill(), check({ study })) }, "Take the roller on the screen");
+  const take = el("button", { type: "button", onclick: takeRoller }, "Take the roller on the screen");
   const node = el(
     "div",
     { class: "study" },
@@ -245,7 +252,7 @@ export function studyView(state, offered, { started }) {
   return {
     node,
     add,
-    draw: () => text === "" && (takeRoller(), fill(), check({ study })),
+    draw: () => text === "" && takeRoller(),
     open(content) {
       state.show("study");
       area.value = content;
