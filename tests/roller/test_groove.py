@@ -7,7 +7,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.contact.cross_sections import Gap, parabola
-from trackroller.contact.normal.wearing import WearingPatch, on_cells
+from trackroller.contact.normal.wearing import WearingPatch, evened_at_rims, on_cells, smoothed
 from trackroller.damage.wear import wear_depth
 from trackroller.errors import InputError
 from trackroller.roller import wearing
@@ -66,6 +66,31 @@ def test_cells_keep_the_volume():
     got = on_cells(edges, depth, cells)
     assert got.sum() * (cells[1] - cells[0]) == pytest.approx(depth.sum() * 0.1, rel=1e-12)
     assert got.min() == 0.0 and got[0] == 0.0
+
+
+def test_smoothing_keeps_the_volume_and_has_its_variance():
+    point, places = np.zeros(81), np.arange(-40, 41)
+    point[40] = 1.0
+    wide = smoothed(point, 4.0)
+    assert wide.sum() == pytest.approx(1.0) and (wide * places**2).sum() == pytest.approx(0.25**2 * (16 - 1))
+    np.testing.assert_array_equal(smoothed(point, 1.0), point)  # columns of the new patch see every cell
+
+
+def test_only_the_rims_of_a_patch_are_evened():
+    depth, loaded = np.random.default_rng(1).uniform(size=(2, 30)), np.zeros(30, bool)
+    loaded[3:27] = True
+    even = evened_at_rims(depth, loaded)
+    assert even.sum(axis=1) == pytest.approx(depth.sum(axis=1))
+    np.testing.assert_array_equal(even[:, 9:21], depth[:, 9:21])
+    assert np.abs(np.diff(even[:, :6])).sum() < 0.7 * np.abs(np.diff(depth[:, :6])).sum()
+
+
+def test_the_pressure_of_a_deep_groove_is_smooth_over_the_travel():
+    """One roller whose pressure rose twofold at the end while its rims saw the cells at random; in truth it falls."""
+    case = {"radial_force": -390, "contact_angle": 20, "roller_profile_radius": -7.8, "motor_force": -5}
+    more = {"friction_coefficient": 0.4, "guide_overrollings_per_hour": 1000}
+    pressure = tr.wear(roller(1e-5, 1e-5, **case, **more), 300, FORCES, **SLIDING).max_pressure.max("contact").values
+    assert pressure[-1] < 0.7 * pressure[0] and np.all(np.diff(pressure) < 0.01 * pressure[0])
 
 
 @pytest.mark.parametrize("k", [0.0, 1e-30])

@@ -18,7 +18,7 @@ from trackroller.contact.cross_sections import Gap
 from trackroller.contact.drawn_profiles import gap, treats_sides_alike, with_wear
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.normal.measure import Box
-from trackroller.contact.normal.wearing import WearingPatch, on_cells, resolved
+from trackroller.contact.normal.wearing import WearingPatch, evened_at_rims, on_cells, smoothed
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, local_rates
 from trackroller.errors import InputError
@@ -200,10 +200,11 @@ class Wearing:
         depth, closing, moved = state.depth.copy(), state.closing.copy(), self._moved(state.closing)
         for k, patch in enumerate(patches):
             worn, closes = patch.worn(travel)
+            worn = evened_at_rims(worn, patch.loaded)
             closing[k] += closes
             for body, shift in enumerate((moved[k], 0.0)):
                 grown = depth[k, body] + on_cells(patch.edges - shift, worn[body], self.cells)
-                depth[k, body] = resolved(grown, self.cells, patch.width)
+                depth[k, body] = smoothed(grown, patch.width / (self.cells[1] - self.cells[0]))
         return replace(state, travel=state.travel + travel, depth=depth, closing=closing)
 
     def _two_ways(self, at: Groove, patches: list[WearingPatch], step: float) -> tuple[Groove | None, float, str]:

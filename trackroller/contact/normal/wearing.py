@@ -24,6 +24,8 @@ from trackroller.contact.influence import displacements
 BESIDE = 0.25  # columns added on each side of the patch, over the columns of the grid
 LOADED = 1e-5  # share of the largest column load from which a column counts as loaded
 ROUNDS = 60  # limit of changes of the loaded columns
+RIM = 3.0  # columns at the end of a patch whose depths are evened; the share falls to nothing within as many more
+SPREAD = 0.25  # standard deviation of the smoothing of depths over the width of a column
 
 
 class WearingPatch:
@@ -143,15 +145,28 @@ def on_cells(edges: np.ndarray, depth: np.ndarray, cells: np.ndarray) -> np.ndar
     return np.maximum(np.diff(volume(np.clip(cells, edges[0], edges[-1]))) / np.diff(cells), 0.0)
 
 
-def resolved(depth: np.ndarray, cells: np.ndarray, width: float) -> np.ndarray:
-    """Return depths (m,) of cells with the edges `cells`, smoothed to what columns of a `width` [mm] resolve.
+def evened_at_rims(depth: np.ndarray, loaded: np.ndarray) -> np.ndarray:
+    """Return depths (2, m) of a step with differences of neighbours halved near the ends of the `loaded` columns (m,).
+
+    The patch ends within a column, which takes all or nothing of its load. The next patch has other columns, and sees
+    the difference as a pressure that the following steps make larger. The volume does not change.
+    """
+    inside, face = np.flatnonzero(loaded), np.arange(1, depth.shape[1])
+    within = np.minimum(face - inside[0], inside[-1] + 1 - face)  # columns between a face and the nearer end
+    flow = np.zeros((depth.shape[0], depth.shape[1] + 1))
+    flow[:, 1:-1] = 0.25 * np.clip((2.0 * RIM - within) / RIM, 0.0, 1.0) * np.diff(depth, axis=1)
+    return depth + np.diff(flow, axis=1)
+
+
+def smoothed(depth: np.ndarray, width: float) -> np.ndarray:
+    """Return depths (m,) of cells, smoothed to what columns of elements of a `width` in cells resolve.
 
     The patch grows while it wears, and its columns with it. Their centres would see details of narrower cells at
-    random, and wear would turn these details into noise. Means over groups of cells keep the volume.
+    random, and wear would turn these details into noise. Means of neighbouring cells keep the volume.
     """
-    count = 2 ** max(round(np.log2(width / (cells[1] - cells[0]))), 0)
-    if count == 1:
-        return depth
-    whole = np.pad(depth, (0, -depth.size % count)).reshape(-1, count).mean(axis=1)
-    groups = cells[0] + (cells[1] - cells[0]) * count * np.arange(whole.size + 1)
-    return on_cells(groups, whole, cells)
+    variance = SPREAD**2 * max(width**2 - 1.0, 0.0)
+    rounds = int(np.ceil(2.0 * variance))
+    for _ in range(rounds):
+        beside = np.pad(depth, 1, mode="edge")
+        depth = depth + 0.5 * variance / rounds * (beside[2:] - 2.0 * depth + beside[:-2])
+    return depth
