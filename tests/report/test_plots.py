@@ -308,7 +308,8 @@ def test_the_surface_map_is_highest_where_a_peak_at_the_surface_is_marked(solved
             assert stress.max() == pytest.approx(float(part["peak_stress"]), rel=0.02)
             assert (x[i], y[j]) == pytest.approx((float(part["peak_x"]), float(part["peak_y"])), abs=2 * (x[1] - x[0]))
     assert found
-    figure, info = sections(solved, 2)
+    with style.look():
+        figure, info = sections(solved, 2)
     assert [axes.get_title(loc="left") for axes in figure.axes[2:6:3]] == ["Roller, surface", "Guide, surface"]
     assert "Default case" in info.caption
     bare = solved.drop_vars("shear_lateral")

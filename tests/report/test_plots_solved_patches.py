@@ -11,6 +11,7 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.analysis.columns import at_surface
+from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, widths
 from trackroller.report.figures.contact_patch import friction_energy, outline, shear_arrows
 from trackroller.report.figures.contact_sections import sections, surface_stress
@@ -46,7 +47,8 @@ def test_the_outline_encloses_all_that_bears_and_little_more(edged):
 def test_maps_and_the_running_track_show_the_whole_patch(edged):
     ends = [loaded_x(edged, contact) for contact in (1, 2)]
     for draw in (shear_arrows, friction_energy):
-        figure, info = draw(edged)
+        with style.look():
+            figure, info = draw(edged)
         maps = [axes for axes in figure.axes if axes.get_title(loc="left").startswith("Contact")]
         for axes, (low, high) in zip(maps, ends, strict=True):
             assert axes.get_xlim()[0] < low and axes.get_xlim()[1] > high

@@ -57,7 +57,7 @@ def model_errors(view: StudyView) -> style.Drawn:
         for panel in row:
             panel.axhline(100 * GOOD, color="0.35", linewidth=0.8, linestyle=(0, (1, 2)), zorder=0)
     for first, last, (title, _) in zip(axes[0], axes[-1], columns, strict=True):
-        first.set_title(capital(title), loc="left", pad=3)
+        first.set_title(capital(title))
         last.set_xlabel(factor_label(x))
         if along.ordered and spaced_by_ratio(along.at, 4.0):
             last.set_xscale("log")

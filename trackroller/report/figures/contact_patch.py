@@ -76,13 +76,11 @@ def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[A
     grid = figure.add_gridspec(1 + profile, count, height_ratios=[height, 30] if profile else None)
     maps = [figure.add_subplot(grid[0, i]) for i in range(count)]
     for axes in maps:
-        axes.set_xlim(left - 0.08 * a, right + 0.08 * a)
-        axes.set_ylim(rear - 0.12 * b, front + 0.12 * b)
-        axes.set_aspect("equal" if to_scale else "auto")
+        axes.set(xlim=(left - 0.08 * a, right + 0.08 * a), ylim=(rear - 0.12 * b, front + 0.12 * b))
+        axes.set(aspect="equal" if to_scale else "auto", xlabel="$x_\\mathrm{C}$ (lateral) [mm]")
         axes.xaxis.set_major_locator(MaxNLocator(5 if to_scale and b < 1.2 * a else 3))
         axes.yaxis.set_major_locator(MaxNLocator(5))
         axes.grid(False)
-        axes.set_xlabel("$x_\\mathrm{C}$ (lateral) [mm]")
     maps[0].set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]")
     return figure, maps, figure.add_subplot(grid[-1, :]) if profile else None, to_scale
 
@@ -95,7 +93,7 @@ def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -
     edge = PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9)
     axes.add_patch(edge)
     image.set_clip_path(edge)
-    axes.set_title(f"Contact {patch.contact}", loc="left", fontsize=7.5, pad=3)
+    axes.set_title(f"Contact {patch.contact}")
     return image
 
 
@@ -185,12 +183,9 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
         look = {"color": style.PAIR[i], "linestyle": style.LINES[i]}
         across.plot(patch.x, profile, label=f"contact {patch.contact}", **look)
-    across.set_xlim(grid[0].get_xlim())
     across.locator_params(axis="x", nbins=5)
-    across.set_ylim(bottom=0)
-    across.set_xlabel("$x_\\mathrm{C}$ (lateral) [mm]")
-    across.set_ylabel("Sum along $y_\\mathrm{C}$\n[J/(m mm)]")
-    across.set_title("Across the running track", loc="left", fontsize=7.5, pad=3)
+    across.set(xlim=grid[0].get_xlim(), ylim=(0, None), xlabel="$x_\\mathrm{C}$ (lateral) [mm]")
+    across.set(title="Across the running track", ylabel="Sum along $y_\\mathrm{C}$\n[J/(m mm)]")
     figure.legend(loc="outside lower left", ncols=2)
     style.head(figure, "Friction energy of both contacts")
     caption = (

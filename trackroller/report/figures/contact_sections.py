@@ -113,8 +113,8 @@ def _section(axes: Axes, part: xr.Dataset, body: str, plane: tuple[str, ...], dr
     if f"peak_{other}" in part:
         where = near(float(part[f"peak_{other}"]), float(np.ptp(x)))
         place = f"\nat ${other}_\\mathrm{{C}}$ = {where} mm"
-    axes.set_title(f"{body.capitalize()}, {words} section{place}", loc="left", fontsize=7.5, pad=4)
-    axes.set_ylabel("Depth $z_\\mathrm{C}$ [mm]" if axis == "x" else "$z_\\mathrm{C}$ [mm]")
+    depth = "Depth $z_\\mathrm{C}$ [mm]" if axis == "x" else "$z_\\mathrm{C}$ [mm]"
+    axes.set(title=f"{body.capitalize()}, {words} section{place}", ylabel=depth)
     _labels(axes, f"${axis}_\\mathrm{{C}}$ ({words}) [mm]")
     _mark_peak(axes, part, (axis, "z"))
     return image
@@ -129,8 +129,7 @@ def _fill(axes: Axes, x: np.ndarray, y: np.ndarray, stress: np.ndarray, top: flo
 
 def _labels(axes: Axes, across: str) -> None:
     axes.set_xlabel(across, labelpad=1)
-    axes.locator_params(axis="x", nbins=5)
-    axes.locator_params(axis="y", nbins=5)
+    axes.locator_params(nbins=5)
     axes.grid(False)
 
 
@@ -142,8 +141,7 @@ def _surface(axes: Axes, patch: Patch, part: xr.Dataset, field: tuple, drawn: tu
     for limit, own, places in ((axes.set_xlim, "xz_x", x), (axes.set_ylim, "yz_y", y)):
         reach = part[own].values
         limit(max(float(reach[0]), float(places[0])), min(float(reach[-1]), float(places[-1])))
-    axes.set_aspect("equal" if drawn[1] else "auto")
-    axes.set_title(f"{str(part['body'].item()).capitalize()}, surface", loc="left", fontsize=7.5, pad=4)
+    axes.set(title=f"{str(part['body'].item()).capitalize()}, surface", aspect="equal" if drawn[1] else "auto")
     axes.set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]", labelpad=1)
     _labels(axes, "$x_\\mathrm{C}$ (lateral) [mm]")
     _mark_peak(axes, part, ("x", "y"))

@@ -36,13 +36,10 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     axes = figure.subplots()
     place = np.arange(len(table))[::-1]
     _draw(axes, designs, table, place)
-    axes.set_ylim(-0.6, len(table) - 0.4)  # whole marks in the first and the last line
-    axes.set_yticks(place, list(map(str, range(1, len(names) + 1))) if numbered else names)
-    axes.set_xlabel(f"life [{designs.goal[2]}]")
-    axes.set_xscale("log")
+    style.name_rows(axes, place, list(map(str, range(1, len(names) + 1))) if numbered else names)
+    # whole marks in the first and the last line
+    axes.set(ylim=(-0.6, len(table) - 0.4), xlabel=f"life [{designs.goal[2]}]", xscale="log")
     style.log_ticks(axes.xaxis, *axes.get_xlim())
-    axes.grid(axis="y", visible=False)
-    axes.tick_params(axis="y", length=0)
     figure.legend(loc="outside lower center", ncols=5, columnspacing=1.0, handletextpad=0.4)
     style.head(figure, "Life of the designs over their conditions")
     caption = (

@@ -31,9 +31,7 @@ def intervals(view: StudyView) -> style.Drawn:
     axes.set_xscale("log", base=2)
     axes.set_xticks(cases, [count(n) for n in cases])
     axes.minorticks_off()
-    axes.set_ylim(bottom=0.0)
-    axes.set_xlabel("cases [–]")
-    axes.set_ylabel("half width of the\nwidest interval [–]")
+    axes.set(ylim=(0.0, None), xlabel="cases [–]", ylabel="half width of the\nwidest interval [–]")
     figure.legend(loc="outside lower center", ncols=2)
     style.head(figure, "Intervals as the sample grew")
     caption = f"95 % intervals from {found['replicates']} independent replicates at each doubling of the sample."

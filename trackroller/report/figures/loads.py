@@ -63,9 +63,7 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
         for axes, body in zip(panels, bodies, strict=True):
             _stress_series(axes, part, body, look, single)
     for axes, body in zip(panels, bodies, strict=True):
-        axes.set_title(body.capitalize(), loc="left", fontsize=7.5, pad=3)
-        axes.set_ylim(bottom=0)
-        axes.set_xlabel(label)
+        axes.set(title=body.capitalize(), ylim=(0, None), xlabel=label)
     panels[0].set_ylabel(with_unit(r"Peak von Mises stress $\sigma_\mathrm{DEH}$", "MPa"))
     if single:
         dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
@@ -170,8 +168,7 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
                 axes.plot(at, force, **look)
             else:
                 running(axes, at, force, look)
-        axes.set_ylabel(with_unit(f"{words} {letter}", "N"))
-        axes.set_xlabel(factor_label(x))
+        axes.set(xlabel=factor_label(x), ylabel=with_unit(f"{words} {letter}", "N"))
         axes.margins(y=0.1)
     if view.grid:
         _shade_lift_off(panels, rows, x)

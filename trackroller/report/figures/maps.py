@@ -53,9 +53,7 @@ def life_map(view: StudyView) -> style.Drawn:
     )
     bar.set_label(with_unit(capital(words), unit))
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
-    axes.set_xlabel(factor_label(pair[0]))
-    axes.set_ylabel(factor_label(pair[1]))
-    axes.grid(False)
+    axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
     over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
     style.head(figure, capital(over))
     how = "Grey cells have no life" if view.grid else "Each cell is the median of its cases; grey cells have no life"
@@ -120,7 +118,7 @@ def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, col
     image = axes.pcolormesh(cells, cmap="cividis", norm=_norm(life), edgecolor="face", linewidth=0.1)
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
-    axes.tick_params(length=2)
+    axes.grid(False)
     beyond = pd.Series(view.beyond_data(column)[rows.index], rows.index, dtype=float)
     _written(axes, life, _table(beyond.where(view.rolling[rows.index]), keys, shape) >= 0.5, image)
     return image
@@ -170,9 +168,7 @@ def regime_map(view: StudyView) -> style.Drawn:
     figure = style.new_figure(76)
     axes = figure.subplots()
     note = _regime_shares(axes, view, pair)
-    axes.set_xlabel(factor_label(pair[0]))
-    axes.set_ylabel(factor_label(pair[1]))
-    axes.grid(False)
+    axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
     style.head(figure, "Regimes: rolling, full slip, lift-off")
     said = [occurrence(view, view.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
     caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
@@ -205,11 +201,10 @@ def _regime_shares(axes: Axes, view: StudyView, pair: Pair) -> str:
             if part > 0:
                 axes.add_patch(Rectangle((left, j + gaps[1]), part, 1 - 2 * gaps[1], linewidth=thin, **looks[code]))
             left += part
-    axes.set_xlim(0, len(texts[0]))
-    axes.set_ylim(0, len(texts[1]))
+    axes.set(xlim=(0, len(texts[0])), ylim=(0, len(texts[1])))
     for axis, labels in ((axes.xaxis, texts[0]), (axes.yaxis, texts[1])):
         set_ticks(axis, labels)
-    axes.tick_params(length=0)
+    axes.grid(False)
     handles = [Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (view.regime == c).any()]
     axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
     others = len(view.factors) > 2

@@ -107,5 +107,4 @@ def _trade(
         if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
             (axes.set_xscale if name == x else axes.set_yscale)("log")
             style.log_ticks(axis, values.min(), values.max())
-    axes.set_xlabel(f"{goal_heading(front, x)} {_ARROWS[up_x]}")
-    axes.set_ylabel(f"{goal_heading(front, y)} {_ARROWS[up_y]}")
+    axes.set(xlabel=f"{goal_heading(front, x)} {_ARROWS[up_x]}", ylabel=f"{goal_heading(front, y)} {_ARROWS[up_y]}")

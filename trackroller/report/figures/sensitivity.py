@@ -62,9 +62,7 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
         axes.errorbar(value, at, xerr=np.abs([value - low, high - value]), **whisker)
     if len(drawn) > 1:
         axes.legend(loc="lower right")
-    axes.set_yticks(place, [capital(r.name) for r in ranks])
-    axes.tick_params(axis="y", length=0)
-    axes.grid(axis="y", visible=False)
+    style.name_rows(axes, place, [capital(r.name) for r in ranks])
     axes.axvline(0, color="0.2", linewidth=0.7)
     axes.set_xlabel(_axis(sens, output, index))
     style.head(figure, f"{title(sens, output)}: what decides it")
@@ -118,10 +116,9 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set_xticks(part["sample_size"].values, [str(n) for n in part["sample_size"].values])
     axes.minorticks_off()
     unit = {"saltelli": "base samples", "morris": "trajectories"}.get(str(sens.attrs["method"]), "rows")
-    axes.set_xlabel(f"{unit} [–]")
-    axes.set_ylabel(_axis(sens, output, index).replace(": ", ":\n"))
     top = max(np.nanmax(part[f"{index}_course"].sel(factor=r.factor).values) for r in ranks)
-    axes.set_ylim(min(0.0, -0.1 * top), 1.35 * top)
+    axes.set(xlabel=f"{unit} [–]", ylim=(min(0.0, -0.1 * top), 1.35 * top))
+    axes.set_ylabel(_axis(sens, output, index).replace(": ", ":\n").replace("effect [", "effect\n["))
     figure.legend(loc="outside lower center", ncols=3)
     style.head(figure, f"{title(sens, output)}: course of the indices")
     caption = f"{capital(indices.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
@@ -153,10 +150,8 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
         look = {"color": colour, "marker": style.MARKERS[i % 10], "label": capital(rank.name)}
         axes.errorbar(rank.value, float(part["sigma"].sel(factor=rank.factor)), xerr=half, **whisker | look)
     unit = indices.effect_unit(sens, output)
-    axes.set_xlabel(f"mean absolute effect μ* [{unit}]")
-    axes.set_ylabel(f"spread of the effects σ [{unit}]")
-    axes.set_xlim(0, top)
-    axes.set_ylim(0, float(np.nanmax(y)) * 1.15 or 1.0)
+    axes.set(xlabel=f"mean absolute effect μ* [{unit}]", ylabel=f"spread of the effects σ [{unit}]")
+    axes.set(xlim=(0, top), ylim=(0, float(np.nanmax(y)) * 1.15 or 1.0))
     figure.legend(loc="outside right upper")
     style.head(figure, f"{title(sens, output)}: elementary effects")
     caption = (

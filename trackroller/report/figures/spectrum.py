@@ -44,9 +44,7 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
         values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
         bars = axes.barh(words, 100 * values, color=colour, height=0.62)
         axes.bar_label(bars, [chance(float(v)) for v in values], padding=2, fontsize=7)
-        axes.set_xlim(0, 125)
-        axes.set_xticks(range(0, 101, 25))
-        axes.set_xlabel(f"damage of the {body} [%]")
+        axes.set(xlim=(0, 125), xticks=range(0, 101, 25), xlabel=f"damage of the {body} [%]")
         axes.grid(axis="y", visible=False)
         most = int(np.argmax(part))
         worst_blocks.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")

@@ -18,6 +18,8 @@ from pathlib import Path
 from typing import Any
 
 import matplotlib
+import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormatter, NullLocator
 
@@ -95,6 +97,13 @@ def new_figure(height_mm: float, width_mm: float = WIDE_MM) -> Figure:
 def head(figure: Figure, title: str, subtitle: str = "") -> None:
     """Write the title and the subtitle above the figure, in as many lines as its width needs."""
     figure.suptitle("\n".join(filter(None, (title, subtitle))), x=0.015, ha="left", wrap=True)
+
+
+def name_rows(axes: Axes, places: Sequence[float] | np.ndarray, names: Sequence[str]) -> None:
+    """Write names beside the rows of a figure, in place of ticks and grid lines."""
+    axes.set_yticks(places, names)
+    axes.tick_params(axis="y", length=0)
+    axes.grid(axis="y", visible=False)
 
 
 def log_ticks(axis: Any, low: float, high: float) -> None:

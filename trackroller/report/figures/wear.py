@@ -86,10 +86,8 @@ def over_patch(ds: xr.Dataset) -> style.Drawn:
             if np.isfinite(depth):
                 x = ds["patch_x"].sel(contact=contact)
                 axes.plot(x, depth * shape.sel(contact=contact), color=colour, ls=line, lw=1.2, label=body)
-        axes.set_title(f"contact {contact}")
-        axes.set_xlabel("lateral place [mm]")
-    panels[0].set_ylabel("worn depth [µm]")
-    panels[0].set_ylim(0.0, 1.5 * panels[0].get_ylim()[1])  # room for the legend
+        axes.set(title=f"contact {contact}", xlabel="lateral place [mm]")
+    panels[0].set(ylabel="worn depth [µm]", ylim=(0.0, 1.5 * panels[0].get_ylim()[1]))  # room for the legend
     panels[-1].legend(frameon=False, loc="upper left")
     caption = f"Worn depth after the run-in distance of {rounded(float(ds['run_in_distance']))} km, at the first rate."
     return figure, style.FigureInfo("wear_depth", caption, "")
@@ -120,8 +118,7 @@ def course(ds: xr.Dataset) -> style.Drawn:
                     continue
                 of = f"{body}, contact {contact}" if "body" in own.dims else f"contact {contact}"
                 axes.plot(travel, values, color=colour if "body" in own.dims else "0.25", ls=line, marker=".", label=of)
-        axes.set_xlabel("travel [km]")
-        axes.set_title(words)
+        axes.set(title=words, xlabel="travel [km]")
         axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])  # room for the legend
         axes.legend(frameon=False)
     style.head(figure, "Depth, pressure and fatigue over the travel")
