@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
@@ -37,6 +38,7 @@ _QUANTITY_OF = {
 _RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
 
 
+@functools.lru_cache(maxsize=64)
 def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:
     """Return the measured errors of settings by quantity; the errors of the stages are added.
 

@@ -281,6 +281,7 @@ def _slots(rows: np.ndarray, side: np.ndarray) -> np.ndarray:
 
 def _scale(patch: Patch, friction: np.ndarray) -> np.ndarray:
     """Return mu F_N, mu F_N and mu F_N c of patches, (m, 3); 1e-300 where there is no friction."""
-    capacity = np.maximum(friction * patch.normal_force, 1e-300)
-    c = np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
-    return capacity[:, None] * np.stack([np.ones_like(c), np.ones_like(c), c], axis=1)
+    scale = np.empty((len(friction), 3))
+    scale[:] = np.maximum(friction * patch.normal_force, 1e-300)[:, None]
+    scale[:, 2] *= np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
+    return scale

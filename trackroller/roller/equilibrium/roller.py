@@ -173,4 +173,5 @@ class Roller:
     def floored(self, normal: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Return normal forces that are finite and positive: a contact about to lift off still needs an ellipse."""
         load = self.load[pick]
-        return np.clip(np.where(np.isnan(normal), load, normal), 1e-9 * load, self.largest[pick])
+        known = np.where(np.isnan(normal), load, normal)
+        return np.minimum(np.maximum(known, 1e-9 * load), self.largest[pick])
