@@ -1,5 +1,8 @@
 """The page and the command of a roller that wears: sentences from the rows, figures, and a run that goes on."""
 
+import html
+import re
+import shlex
 from dataclasses import replace
 
 import numpy as np
@@ -58,7 +61,7 @@ def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(pla
     for name in whole.variables:
         np.testing.assert_array_equal(parts[name].values, whole[name].values, err_msg=str(name))
     page = (place / "page.html").read_text(encoding="utf-8")
-    assert page.count("<img ") == 2 and "trackroller wear case.yaml --to 9km" in page
+    assert page.count("<img ") == 2 and "trackroller wear --to 9km --report page.html" in page
     for sentence in sentences(whole):
         assert sentence.text in said and sentence.text in page
     end = sentences(whole)[0].values
@@ -80,7 +83,10 @@ def test_the_page_states_the_wear_coefficient_and_that_it_is_a_placeholder(tmp_p
     case = {"motor_force": 0, "axial_force": 0, "friction_coefficient": 0.2}
     ds = tr.wear(case, to=1, contact_model="sliding", accuracy="preview")
     page = tr.report(ds, tmp_path / "page.html").read_text(encoding="utf-8")
-    assert "--report page.html --set contact_model=sliding --set accuracy=preview<" in page
+    command = shlex.split(html.unescape(re.search("<code>(trackroller wear .*?)</code>", page)[1]))
+    assert command[2:6] == ["--to", "1km", "--report", "page.html"]
+    assert {"motor_force=0", "friction_coefficient=0.2", "contact_model=sliding", "accuracy=preview"} < set(command)
+    assert "errs in friction energy, and so in wear, by 41 %" in page
     assert "wear coefficient <i>k</i><sub>W</sub>" in page and "expected from 1e-05 to 0.0001" in page
 
 

@@ -197,7 +197,7 @@ def run_wear(path: Path | None, to: str, words: list[str], out: Path | None, pag
     if target is not None:
         write_result(dataset, target)
     if sheet is not None:
-        write_wear(dataset, sheet, "case.yaml" if path is None else path.name)
+        write_wear(dataset, sheet)
     for sentence in sentences(dataset):
         print(sentence.text)
 

@@ -168,8 +168,8 @@ def setting_text(value: Any) -> str | None:
     return repr(value) if isinstance(value, float) else str(value)
 
 
-def solve_command(settings: Mapping[str, Any]) -> str:
-    """Return the command that solves a case with these parameters and options."""
+def solve_command(settings: Mapping[str, Any], words: tuple[str, ...] = ("solve",)) -> str:
+    """Return the command that solves a case with these parameters and options, or that `words` name."""
     texts = {key: text for key, value in settings.items() if (text := setting_text(value)) is not None}
-    words = [word for key, text in texts.items() for word in ("--set", f"{key}={text}")]
-    return shlex.join(["trackroller", "solve", *words])
+    own = [word for key, text in texts.items() for word in ("--set", f"{key}={text}")]
+    return shlex.join(["trackroller", *words, *own])

@@ -142,12 +142,14 @@ def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str
     return [(head, material_rows(as_material(values)), material_source(values)) for head, values in by_body]
 
 
-def command_of(ds: xr.Dataset) -> str:
-    """Return the command that solves the case of a result again."""
+def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
+    """Return the command that solves the case of a result again, or that `words` name."""
     given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
     plain = {n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()}
     named = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
-    return solve_command(plain | {name: ds.attrs.get(name) for name in named})
+    plain |= {name: ds.attrs.get(name) for name in named}
+    plain |= {n: ds.attrs.get(n) for n in ("wear_law", "life_criterion") if ds.attrs.get(n) != OPTIONS[n].default}
+    return solve_command(plain, words)
 
 
 def _contact_lines(ds: xr.Dataset) -> list[list[str]]:

@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import shlex
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
-from trackroller.parameters import BODIES, OPTIONS
+from trackroller.parameters import BODIES
 from trackroller.report import html
 from trackroller.report.numbers import capital, with_unit
 from trackroller.report.pages.sheet import _pictures
-from trackroller.report.pages.sheet_facts import body_materials, versions_text
+from trackroller.report.pages.sheet_facts import body_materials, command_of, versions_text
 from trackroller.report.tables.inputs import input_rows
 from trackroller.report.tables.limits import placeholders
 from trackroller.report.tables.table import Table, cell
@@ -23,7 +22,6 @@ from trackroller.roller.record import inputs_of, materials_of
 
 MOST = 12  # rows of the table
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes
-STATED = ("contact_model", "accuracy", "wear_law", "life_rule", "life_criterion")  # options of the repeated command
 COLUMNS = (
     ("max_pressure", "pressure", 1.0, "MPa"),
     ("semi_axis_lateral", "half width", 1.0, "mm"),
@@ -65,7 +63,7 @@ _OF_BODY = (("groove_depth", 1e3, "µm"), ("peak_stress", 1.0, "MPa"), ("fatigue
 _OF_BODY_WORDS = {"groove_depth": "depth", "peak_stress": "peak stress", "fatigue_damage": "damage sum"}
 
 
-def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Path:
+def write_wear(ds: xr.Dataset, path: Path | str) -> Path:
     """Write the page of a roller that wears as one HTML file that stands alone, or as PDF by the name of the file.
 
     Parameters
@@ -74,8 +72,6 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
         Result of `trackroller.wear`.
     path : Path or str
         The file to write.
-    file : str
-        Name of the case file, for the command that repeats the page.
 
     Returns
     -------
@@ -86,7 +82,6 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
 
     drawn = _pictures(partial(style.draw_all, [partial(wear.profiles, ds), partial(wear.course, ds)]))
     flags = {f"{flag.sentence} {flag.remedy}" for i in (0, -1) for flag in flags_of(ds.isel(travel=i))}
-    chosen = [f" --set {n}={ds.attrs[n]}" for n in STATED if ds.attrs.get(n, OPTIONS[n].default) != OPTIONS[n].default]
     content = {
         "name": "A track roller while it wears",
         "said": [sentence.text for sentence in sentences(ds)],
@@ -95,8 +90,7 @@ def write_wear(ds: xr.Dataset, path: Path | str, file: str = "case.yaml") -> Pat
         "inputs": input_rows(inputs_of(ds)),
         "materials": body_materials(materials_of(ds)),
         "flags": [*placeholders(ds), *sorted(flags)],
-        "command": f"trackroller wear {shlex.quote(file)} --to {float(ds.attrs['to']):g}km "
-        f"--report {shlex.quote(Path(path).name)}{''.join(chosen)}",
+        "command": command_of(ds, ("wear", "--to", f"{float(ds.attrs['to']):g}km", "--report", Path(path).name)),
         "options": ", ".join(f"{name} {ds.attrs[name]}" for name in ("contact_model", "accuracy") if name in ds.attrs),
         "versions": versions_text(),
     }

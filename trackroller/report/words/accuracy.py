@@ -142,7 +142,7 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     if residual > KNOWN_ERROR:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
         flags.append(Flag("energy_residual", text, exact))
-    if "run_in_distance" in ds and ds.attrs.get("contact_model") == "sliding":
+    if {"run_in_distance", "groove_depth"} & set(ds) and ds.attrs.get("contact_model") == "sliding":
         flags.append(Flag("wear_of_sliding", SLIDING_WEAR, exact))
     if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
         flags.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
