@@ -139,6 +139,6 @@ DECISIONS = {
         "len(column.levels) <= 1 + np.iinfo",
         PACKED,
     ),
-    "rare-states": ("report/explorer/sample.py", "counts <= RARE", "counts < RARE", PACKED),
-    "least-of-state": ("report/explorer/sample.py", "max(RARE, left", "max(0, left", PACKED),
+    "rare-states": ("report/explorer/pack.py", "counts <= RARE", "counts < RARE", PACKED),
+    "least-of-state": ("report/explorer/pack.py", "max(RARE, left", "max(0, left", PACKED),
 }

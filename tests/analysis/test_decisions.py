@@ -11,8 +11,7 @@ import pytest
 
 from trackroller.analysis.groups import classes
 from trackroller.analysis.targets import _all, hits_of
-from trackroller.report.explorer.pack import _numbers
-from trackroller.report.explorer.sample import RARE, sample_rows
+from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
 from trackroller.study import cost
 from trackroller.study.design.grown_lhs import grown_lhs

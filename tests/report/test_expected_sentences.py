@@ -16,9 +16,8 @@ import yaml
 from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view_of
 
 from trackroller.analysis.sensitivity import analyse
-from trackroller.report.explorer.pack import pack
+from trackroller.report.explorer.pack import pack, sample_rows
 from trackroller.report.explorer.rows import Column
-from trackroller.report.explorer.sample import sample_rows
 from trackroller.report.figures import style
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.numbers import shortened

@@ -20,10 +20,9 @@ from trackroller.analysis.pareto import pareto
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.explorer.designs import design_columns
-from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, affordable_rows, pack
+from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, RARE, affordable_rows, pack, sample_rows
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
-from trackroller.report.explorer.sample import RARE, sample_rows
 from trackroller.report.figures import style
 from trackroller.solved import open_study
 from trackroller.study.file.load import parse_study
@@ -130,7 +129,7 @@ def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
     monkeypatch.setattr(
         "trackroller.report.explorer.page.sample_rows", lambda s, k, most: sample_rows(s, k, min(most, 300))
     )
-    monkeypatch.setattr("trackroller.report.explorer.sample.RARE", 10)
+    monkeypatch.setattr("trackroller.report.explorer.pack.RARE", 10)
     ds = as_table(sampled_study(2_000), pareto={"roller_life_hours": "max", "friction_coefficient": "max"})
     content = explorer(view_of(ds))
     header = json.loads(content["header"])

@@ -240,7 +240,7 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
         "pages.study.target_tables",
         "pages.study.explorer",
         "pages.study.figures",
-        "figures.study.drawers",
+        "figures.comparison.pairs",
         "figures.study.study_pareto",
         "figures.factors.coloured",
         "figures.sensitivity._axis",

@@ -18,9 +18,8 @@ from trackroller.analysis.pareto import default_objectives, pareto
 from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
 from trackroller.report.explorer.designs import design_columns
-from trackroller.report.explorer.pack import affordable_rows, pack
+from trackroller.report.explorer.pack import affordable_rows, extreme_rows, pack, sample_rows
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
-from trackroller.report.explorer.sample import extreme_rows, sample_rows
 from trackroller.report.html import render
 from trackroller.report.numbers import count, lives_in_years
 from trackroller.study.outputs import flat

@@ -21,10 +21,9 @@ from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, lives_in_years, long_name, percent, rounded
-from trackroller.report.tables.cases import reason_table, regime_table, validity_table
+from trackroller.report.tables.cases import first_limit_table, reason_table, regime_table, validity_table
 from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.designs import best_table, optima_table
-from trackroller.report.tables.first_limits import first_limit_table
 from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import (
     Row,
