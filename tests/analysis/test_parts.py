@@ -14,7 +14,7 @@ from trackroller.errors import InputError
 from trackroller.report.tables.indices import part_tables
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import level_indices
-from trackroller.study.design.saltelli import as_set, pairs_sharing, serves
+from trackroller.study.design.saltelli import pairs_sharing
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
 from validation.benchmarks.known_indices import functions
@@ -50,40 +50,40 @@ def test_rows_of_a_block_share_the_columns_that_the_pairs_are_sorted_by(count, s
     pairs = pairs_sharing(count, second_order)
     for columns, found in pairs.items():
         for i, j in found:
-            assert as_set(np.flatnonzero(block[i] == block[j])) == columns
-    assert all(as_set([j]) in pairs and as_set(set(range(count)) - {j}) in pairs for j in range(count))
-    assert serves([0, 1], count, True) and serves([0, 1, 2], 6, True) is False
-    assert serves([0, 1], 6, False) is False
+            assert sum(1 << k for k in np.flatnonzero(block[i] == block[j])) == columns
+    assert all(1 << j in pairs and (1 << count) - 1 - (1 << j) in pairs for j in range(count))
 
 
-@pytest.mark.parametrize("options", [{}, {"groups": PARTS}, {"groups": PARTS, "second_order": False}])
-def test_groups_of_the_g_function_lie_in_their_intervals(options):
-    """Rows exchanged by group cost n (2 g + 2); the plain design serves groups that two of its rows share."""
+@pytest.mark.parametrize("second_order", [True, False])
+def test_groups_of_the_g_function_lie_in_their_intervals(second_order):
+    """Rows exchanged by group cost n (2 g + 2), or n (g + 2) without the second order."""
     first = np.array([closed(m) for m in PARTS.values()])
     total = 1 - first[::-1]
     hits, errors = [], []
     for seed in range(40):
-        design = sample(UNIT5, "saltelli", 128, seed, **options)
+        design = sample(UNIT5, "saltelli", 128, seed, groups=PARTS, second_order=second_order)
         found = of_groups(G.evaluate(design.unit), design, PARTS)
         for name, exact in (("group_S1", first), ("group_ST", total)):
             hits.append((found[f"{name}_low"] <= exact) & (exact <= found[f"{name}_high"]))
             errors.append(found[name] - exact)
     assert np.mean(hits) >= 0.93
     assert np.abs(np.mean(errors, axis=0)).max() < 0.015 and np.sqrt(np.mean(np.square(errors))) < 0.04
-    rows = 128 * (12 if not options else 6 if options.get("second_order", True) else 4)
-    assert design.size == rows
+    assert design.size == 128 * (6 if second_order else 4)
 
 
 def test_groups_of_ishigami_and_single_factors_have_their_known_indices():
     f = functions()["Ishigami"]
     spec = {f"x{i}": {"uniform": [0, 1]} for i in range(3)}
-    design = sample(spec, "saltelli", 1024, 1)
-    y = f.evaluate(design.unit)
-    found = of_groups(y, design, {"outer": ("x0", "x2"), "x1": ("x1",)})
+    groups = {"outer": ("x0", "x2"), "x1": ("x1",)}
+    design = sample(spec, "saltelli", 1024, 1, groups=groups)
+    found = of_groups(f.evaluate(design.unit), design, groups)
     exact = 1 - f.first[1]
     assert found["group_S1"] == pytest.approx([exact, f.first[1]], abs=0.02)
     assert found["group_ST"] == pytest.approx([exact, f.first[1]], abs=0.02)
-    alone = of_groups(y, design, {name: (name,) for name in spec})
+    single = {name: (name,) for name in spec}
+    design = sample(spec, "saltelli", 1024, 1, groups=single)
+    y = f.evaluate(design.unit)
+    alone = of_groups(y, design, single)
     plain = sobol(y, 3, True)
     np.testing.assert_allclose(alone["group_S1"], plain["S1"], atol=1e-12)
     np.testing.assert_allclose(alone["group_ST"], plain["ST"], atol=1e-12)
@@ -183,20 +183,19 @@ def solved(data):
     return ds
 
 
-@pytest.mark.parametrize("exchange", ["factors", "groups"])
-def test_groups_reach_analysis_table_and_summary(exchange, tmp_path):
+def test_groups_reach_analysis_table_and_summary(tmp_path):
     analysis = {"groups": {"load": ["axial_force", "radial_force"]}, "outputs": ["roller_life_hours"]}
-    ds = solved(FILE | {"exchange": exchange, "analysis": analysis})
-    assert ds.sizes["case"] == 64 * (10 if exchange == "factors" else 8)
+    ds = solved(FILE | {"analysis": analysis})
+    assert ds.sizes["case"] == 64 * 8
     sens = analyse(results_of(ds))
     sens.to_netcdf(tmp_path / "sensitivity.nc")
     assert sens["group"].values.tolist() == ["load", "friction_coefficient", "roller_material"]
-    assert ("ST" in sens) == (exchange == "factors") and np.isfinite(sens["take_times"]).all()
+    assert "ST" not in sens and np.isfinite(sens["take_times"]).all()
     table = part_tables(sens)[0]
     assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
     text = " ".join(s.text for head, said in in_short(view_of(ds, sens), []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
-    assert (text.index("By groups") < text.index("explains")) if exchange == "groups" else "(total index)" in text
+    assert text.index("By groups") < text.index("explains")
 
 
 def test_levels_reach_analysis_table_and_summary():
@@ -234,24 +233,12 @@ def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
         ({"analysis": {"groups": {"g": []}}}, "at least one"),
         ({"analysis": {"groups": {"g": ["axal_force"]}}}, "Did you mean 'axial_force'"),
         ({"analysis": {"groups": {"g": ["axial_force"], "h": ["axial_force"]}}}, "in one group"),
-        ({"exchange": "groups"}, "groups of factors"),
-        ({"exchange": "group"}, "exchange"),
-        ({"design": "lhs", "exchange": "factors"}, "option of design saltelli"),
         ({"design": "morris", "analysis": {"conditional_on": "roller_material"}}, "not morris"),
         ({"analysis": {"conditional_on": "axial_force"}}, "list of at most 12"),
         ({"analysis": {"conditional_on": "material_roller"}}, "Did you mean 'roller_material'|roller_material"),
         (
-            {"exchange": "groups", "analysis": {"groups": {"g": ["axial_force"]}, "conditional_on": "roller_material"}},
-            "not saltelli with exchange: groups",
-        ),
-        (
-            {
-                "second_order": False,
-                "factors": FILE["factors"]
-                | {"velocity": {"uniform": [10, 20]}, "contact_angle": {"uniform": [20, 40]}},
-                "analysis": {"groups": {"g": ["axial_force", "radial_force", "velocity"]}},
-            },
-            "Add exchange: groups",
+            {"analysis": {"groups": {"g": ["axial_force"]}, "conditional_on": "roller_material"}},
+            "not saltelli with analysis.groups",
         ),
     ],
 )

@@ -13,7 +13,7 @@ from trackroller.analysis.indices import Estimates, complete_part, variance_shar
 from trackroller.analysis.labels import factor_name, stacked
 from trackroller.analysis.sobol import closed_indices, with_bounds
 from trackroller.study.design.factors import label
-from trackroller.study.design.saltelli import all_groups, as_set
+from trackroller.study.design.saltelli import all_groups
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import Analysis
 from trackroller.study.outputs import Output
@@ -72,19 +72,15 @@ def of_groups(y: np.ndarray, design: SampledDesign, groups: Mapping[str, Sequenc
 
     Notes
     -----
-    Valid for independent factors. A grid is exact. A Saltelli design whose columns are exchanged by group serves every
-    group. The plain design serves the groups that two of its rows share, see `trackroller.study.design.saltelli`.
+    Valid for independent factors. A grid is exact. The columns of a Saltelli design are exchanged by group.
     """
-    names = list(design.factors)
-    places = [tuple(names.index(name) for name in members) for members in groups.values()]
     if design.method == "grid":
+        names = list(design.factors)
+        places = [tuple(names.index(name) for name in members) for members in groups.values()]
         first, total, _ = _grid_indices(y.reshape(design.meta["shape"]), places)
         return {"group_S1": first, "group_ST": total}
-    second, columns = bool(design.meta["second_order"]), len(names)
-    sets = [as_set(group) for group in places]
-    if exchanged := design.meta.get("groups"):
-        columns = len(exchanged)
-        sets = [1 << exchanged.index(name) for name in groups]
+    second, exchanged = bool(design.meta["second_order"]), design.meta["groups"]
+    columns, sets = len(exchanged), [1 << exchanged.index(name) for name in groups]
     block = design.blocks(y)
     block = block[np.isfinite(block).all(axis=1)]
     whole = (1 << columns) - 1

@@ -66,7 +66,7 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
         options["replicates"] = config.until.replicates
     if config.design == "table":
         options["table"] = str(table)
-    if config.exchange == "groups":
+    if config.design == "saltelli" and config.analysis.groups:
         options["groups"] = config.analysis.groups
     if config.design == "optimise":
         options["conditions"] = scattered({name: parse(name, spec) for name, spec in factors.items()}, config.roles)

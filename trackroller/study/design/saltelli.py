@@ -1,4 +1,4 @@
-"""What the rows of a Saltelli block have in common, and which groups of factors its correlations serve.
+"""The rows of a Saltelli block, and what they have in common.
 
 A block of k columns has the rows A, AB_1 .. AB_k, (BA_1 .. BA_k,) B. AB_j is A with column j from B. A set of columns
 is written as a number whose bit j stands for column j.
@@ -64,17 +64,6 @@ def pairs_sharing(count: int, second_order: bool) -> dict[int, list[tuple[int, i
             sharing.setdefault(whole ^ one ^ from_a[j], []).append((j, i))
     ends = {columns: [pair for pair in pairs if pair[0] == 0 or pair[1] == last] for columns, pairs in sharing.items()}
     return {columns: ends[columns] or pairs for columns, pairs in sharing.items()}
-
-
-def as_set(columns: Iterable[int]) -> int:
-    """Return a set of columns as a number."""
-    return sum(1 << j for j in columns)
-
-
-def serves(members: Iterable[int], count: int, second_order: bool) -> bool:
-    """Return whether the blocks give the first-order and the total index of a group of columns."""
-    known, group = pairs_sharing(count, second_order), as_set(members)
-    return group in known and ((1 << count) - 1) ^ group in known
 
 
 def all_groups(groups: Mapping[str, Sequence[str]], factors: Iterable[str]) -> dict[str, tuple[str, ...]]:

@@ -20,7 +20,6 @@ from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.draws import check_listed, table_lines
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.roles import check_roles
-from trackroller.study.design.saltelli import serves
 from trackroller.study.file.csv import column_names, read_rows
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
@@ -109,13 +108,9 @@ def _check_roles(study: Study) -> None:
 
 
 def _check_parts(study: Study) -> None:
-    """Check `analysis.groups`, `analysis.conditional_on` and `exchange` of a study."""
+    """Check `analysis.groups` and `analysis.conditional_on` of a study."""
     config = study.config
     groups, category = config.analysis.groups, config.analysis.conditional_on
-    if config.exchange is not None and config.design != "saltelli":
-        raise InputError("exchange", config.exchange, "an option of design saltelli", "Remove the key.")
-    if config.exchange == "groups" and not groups:
-        raise InputError("exchange", "groups", "groups of factors under analysis.groups", "Add the groups.")
     if not groups and category is None:
         return
     free = study.drawn.factors if config.design == "table" else {n: f for n, f in study.parsed.items() if f.varies}
@@ -130,8 +125,8 @@ def _check_groups(
 ) -> None:
     names, seen = list(free), set()
     if config.design not in GROUPED:
-        remedy = "Take design: saltelli with exchange: groups."
-        raise InputError("analysis.groups", list(groups), f"design {' or '.join(GROUPED)}, not {config.design}", remedy)
+        allowed = f"design {' or '.join(GROUPED)}, not {config.design}"
+        raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
     for group, members in groups.items():
         where = f"analysis.groups.{group}"
         if group in specs:
@@ -146,19 +141,13 @@ def _check_groups(
             if name in seen:
                 raise InputError(where, name, "each factor in one group", "Remove it from one of the groups.")
             seen.add(name)
-        places = [names.index(name) for name in members]
-        whole = config.design == "grid" or config.exchange == "groups"
-        if not whole and not serves(places, len(names), config.second_order is not False):
-            few = "1, 2, all but 2 or all but 1 factors; with second_order: false not every pair"
-            raise InputError(
-                where, list(members), f"a group that single exchanged columns give: {few}", "Add exchange: groups."
-            )
 
 
 def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     where = "analysis.conditional_on"
-    if config.design not in CONDITIONAL or config.exchange == "groups":
-        own = f"{config.design} with exchange: groups" if config.exchange == "groups" else config.design
+    by_group = config.design == "saltelli" and bool(config.analysis.groups)
+    if config.design not in CONDITIONAL or by_group:
+        own = f"{config.design} with analysis.groups" if by_group else config.design
         raise InputError(where, name, f"design {', '.join(CONDITIONAL[:-1])} or {CONDITIONAL[-1]}, not {own}")
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])

@@ -78,9 +78,6 @@ class _Design(BaseModel):
         None, description="for design table: CSV file or workbook (.xlsx) of cases beside the study file"
     )
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
-    exchange: Literal["factors", "groups"] | None = Field(
-        None, description="saltelli: columns are exchanged by factor (default) or by group of analysis.groups"
-    )
     levels: int | None = Field(None, description="morris: number of levels")
     inner: Literal["lhs", "sobol"] | None = Field(None, description="inner_outer: how the inner array is sampled")
     rank_correlations: Correlations = Field(

@@ -66,8 +66,9 @@ def check_until(config: Any) -> None:
     if config.design not in GROWING:
         allowed = f"with until: {', '.join(GROWING[:-1])} or {GROWING[-1]}, which grow by more samples"
         raise InputError("design", config.design, allowed, "Choose one of them, or remove until.")
-    if config.exchange == "groups":
-        raise InputError("exchange", "groups", "with until: columns exchanged by factor", "Remove exchange or until.")
+    if config.design == "saltelli" and config.analysis.groups:
+        groups = list(config.analysis.groups)
+        raise InputError("analysis.groups", groups, "with until: indices of single factors", "Remove groups or until.")
     each, rest = divmod(config.samples, until.replicates)
     if rest or each & (each - 1) or not each:
         near = until.replicates << max(0, round(config.samples / until.replicates) - 1).bit_length()
