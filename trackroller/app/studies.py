@@ -87,9 +87,10 @@ def _study(text: str) -> Study:
         if data.get("table"):
             find_beside(data["table"], "table")  # only the folder of the page is read
         study = parse_study(data, TEXTS / "study.yaml")
-    cases = _least_cases(study)
+    cases, config = _least_cases(study), study.config
     if cases <= MOST_CASES:  # a larger design may fill the memory when it is drawn
-        cases = study.drawn.size
+        searched = config.budget.designs * study.drawn.meta["inner_samples"] if config.design == "optimise" else 0
+        cases = max(study.drawn.size, searched, config.until.at_most if config.until else 0)
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
         raise InputError("design", f"{cases:,} cases", allowed, "Start larger studies with `trackroller run`.")

@@ -115,6 +115,10 @@ def test_material_pairs_and_friction_by_pair_are_resolved():
         ({"name": "a", "accuracy": "standart"}, ["standart", "standard"]),
         ({"name": "a", "design": "gird"}, ["gird", "grid"]),
         ({"name": "a", "design": "table"}, ["table is missing", "CSV", "Write 'table: cases.csv' too"]),
+        (
+            {"name": "a", "design": "central_composite", "factors": {"axial_force": {"values": [1, 2]}}},
+            ["with 0 numeric factors", "Give the factors ranges"],
+        ),
         ({"name": "a", "table": "t.xlsx"}, ["table = 't.xlsx'", "Write 'design: table' too"]),
         ({"name": "a", "cases": 120}, ["similar meaning: samples, table"]),
         ({"name": "a", "chunk_size": 0}, ["chunk_size", "0"]),

@@ -21,6 +21,8 @@ _BLOCKS: dict[int, tuple[tuple[int, int, int], ...]] = {
     7: ((3, 4, 5), (0, 5, 6), (1, 4, 6), (0, 1, 3), (2, 3, 6), (0, 2, 4), (1, 2, 5)),
 }
 
+_RANGE = "Give the factors ranges, such as {uniform: [low, high]}; a list of values is no numeric factor."
+
 
 def central_composite(count: int) -> np.ndarray:
     """Return a face-centred central composite design: corners, face centres, centre.
@@ -46,7 +48,7 @@ def central_composite(count: int) -> np.ndarray:
             "design",
             f"central_composite with {count} numeric factors",
             "1 to 8 numeric factors",
-            "Screen the factors first (morris or plackett_burman) and keep the influential ones.",
+            "Screen the factors first (morris or plackett_burman) and keep the influential ones." if count else _RANGE,
         )
     if count == 1:  # pyDOE needs two factors
         return np.array([[-1.0], [1.0], [-1.0], [1.0], [0.0]])
@@ -77,7 +79,7 @@ def box_behnken(count: int) -> np.ndarray:
             "design",
             f"box_behnken with {count} numeric factors",
             "3 to 7 numeric factors",
-            "Use central_composite (up to 8 factors), or lhs.",
+            "Use central_composite (up to 8 factors), or lhs." if count else _RANGE,
         )
     if count not in _BLOCKS:
         return np.asarray(bbdesign(count, center=1))

@@ -104,7 +104,7 @@ def parse_study(
         with wrong.part():
             cross_check(study)
         with wrong.part():
-            if study.config.design == "table" and not planned:
+            if study.config.design == "table" and study.config.table and not planned:
                 check_cells(study)
         wrong.check()
         if not planned:

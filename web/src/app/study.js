@@ -36,6 +36,7 @@ const DESIGNS = {
   box_behnken: "response surface (Box-Behnken)",
   plackett_burman: "screening of many factors (Plackett-Burman)",
   table: "cases of a CSV file",
+  optimise: "search for the best designs; goals and budget stand in the text",
 };
 const SAMPLED = ["lhs", "sobol", "saltelli", "morris", "inner_outer"];
 

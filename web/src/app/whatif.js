@@ -87,18 +87,25 @@ export function whatIf(state, offered, { rows }) {
   let found = null;
   let wanted = "pair_life_hours";
   for (const field of [from, to]) field.addEventListener("change", () => solveCurve());
+  const write_ = (ends) => ([from.value, to.value] = ends.map((end) => String(Number(end.toPrecision(4)))));
 
   function setOver(name) {
     over.field.value = name;
     const ends = rows.get(name)?.ends?.() ?? offered.parameters.find((p) => p.name === name).ends ?? [1, 10];
-    [from.value, to.value] = ends.map((end) => String(Number(end.toPrecision(4))));
-    solveCurve();
+    write_(ends);
+    solveCurve(true);
   }
 
-  async function solveCurve() {
+  // Ends of a slider that the geometry forbids are drawn in, once.
+  async function solveCurve(chosen = false) {
     try {
       const answer = await ask("curve", { values: state.values, over: over.field.value, ends: [Number(from.value), Number(to.value)] });
       found = answer;
+      const kept = answer.along.filter((_, i) => Object.values(answer.columns).some((column) => column.values[i] !== null));
+      if (chosen && answer.refused && kept.length > 1) {
+        write_([kept[0], kept.at(-1)]);
+        return solveCurve();
+      }
       const names = Object.entries(found.columns);
       for (const [, column] of names) column.label = column.label.replace(/\((?=[12])/, "(contact ").replace(/,(?=\w+\)$)/, ", ");
       wanted = found.columns[result.field.value] ? result.field.value : found.columns[wanted] ? wanted : "roller_life_hours" in found.columns ? "roller_life_hours" : names[0][0];
