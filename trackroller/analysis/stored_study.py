@@ -18,7 +18,7 @@ from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import FACTOR, restored, solved_part
-from trackroller.study.file.load import checked_keys
+from trackroller.study.file.load import checked_keys, without_former
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
@@ -147,7 +147,7 @@ def _study(data: xr.Dataset) -> Study:
     text = data.attrs.get("study")
     if not isinstance(text, str):
         raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
-    stored = parse_mapping(text, "stored study file")
+    stored = without_former(parse_mapping(text, "stored study file"))
     study = Study(checked_keys(stored))
     if changed := _changed(stored, study.as_dict()):
         allowed = f"a study file that is read as it was written; {changed} has another meaning in this version"

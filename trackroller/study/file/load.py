@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -24,6 +25,8 @@ from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.yaml_file import errors_by_line, parse_mapping
+
+FORMER = ("measures", "resamples")  # keys of `analysis` that studies of earlier versions hold
 
 
 def _translated(detail: Mapping[str, Any]) -> InputError:
@@ -48,10 +51,21 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
     return InputError(where, detail.get("input"), allowed)
 
 
+def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a study file without keys of earlier versions that chose nothing else; a warning names them."""
+    given = _mapping(data.get("analysis"))
+    former = [key for key in FORMER if key in given]
+    if not former:
+        return data
+    words = " and ".join(f"analysis.{key}" for key in former)
+    warnings.warn(f"Ignored: {words}. Every analysis takes all its measures, and 300 resamples.", stacklevel=4)
+    return {**data, "analysis": {key: value for key, value in given.items() if key not in former}}
+
+
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     wrong = Collector()
-    data = study_with_radii(data, wrong)
+    data = study_with_radii(without_former(data), wrong)
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))
         wrong.check()
