@@ -163,7 +163,8 @@ def _life(designs: Designs, row: pd.Series) -> str:
         nine = f"nine of ten of its {count(int(row['cases']))} sampled conditions reach "
         nine += lasting(row["b10"], unit, row["b10_beyond"])
         nine += f" (95 % interval {low} to {high})"
-        text = f"{nine if row['b10'] > 0 else 'no life holds in nine of ten sampled conditions'}; {text}"
+        many = f"one in ten or more of its {count(int(row['cases']))} sampled conditions are not valid"
+        text = f"{nine if row['b10'] > 0 else f'{many}, so nine of ten reach no life'}; {text}"
     return f"{text}; {_validity(designs, row)}{_alone(designs)}"
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -46,32 +45,14 @@ def effect_unit(sens: xr.Dataset, output: str) -> str:
     return "powers of ten" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
 
 
-def _times(sens: xr.Dataset, output: str) -> float:
-    part = sens.sel(output=output)
-    return float(part["take_times"]) if "take_times" in part else np.nan
-
-
 def caveat(sens: xr.Dataset, output: str) -> str:
-    """State rows that were left out, and convergence.
-
-    Empty if there is nothing to state.
-    """
-    part, said, more = sens.sel(output=output), [], _times(sens, output)
+    """State rows that were left out, and why first-order indices exceed 100 %; an empty text without either."""
+    part, said = sens.sel(output=output), []
     if "reliable" in part and not int(part["reliable"]):
         said.append(f"Rows that could be used: {part['note'].item()}.")
     if headline(sens) in ("first", "S1") and "first_order_sum_note" in part:
         said += [why] if (why := str(part["first_order_sum_note"].item())) else []
-    if np.isfinite(more):
-        said.append(advice(more))
     return " ".join(said)
-
-
-def advice(times: float) -> str:
-    """Return a sentence for the result of `take_times`."""
-    if math.isnan(times):
-        return "There are too few usable samples to judge convergence."
-    more = f"The indices have not converged: take {times:.0f} times as many samples."
-    return "The indices have converged." if times <= 1 else more
 
 
 def tornado(sens: xr.Dataset, output: str) -> Sentence:
@@ -137,18 +118,19 @@ def _range_words(sens: xr.Dataset, output: str, ranks: list[Rank]) -> str:
 
 def convergence(sens: xr.Dataset, output: str) -> Sentence:
     """Say how wide the widest interval is, and whether there were samples enough."""
-    ranks, more = order(sens, output), _times(sens, output)
-    if not ranks or not np.isfinite(more):
-        return Sentence("no_index", advice(np.nan), {"output": output})
+    ranks, times = order(sens, output), float(sens.sel(output=output).get("take_times", np.nan))
+    if not ranks or not np.isfinite(times):
+        return Sentence("no_index", "There are too few usable samples to judge convergence.", {"output": output})
     widest = max(ranks, key=lambda r: r.high - r.low)
     half, size = (widest.high - widest.low) / 2, int(sens["sample_size"].values[-1])
     wide = rounded(half, 2) if headline(sens) == "mu_star" else f"{100 * half:.1f} % of the variance"
-    text = f"With {count(size)} samples the widest 95 % interval, of {widest.name}, is ± {wide}. {advice(more)}"
+    text = f"With {count(size)} samples the widest 95 % interval, of {widest.name}, is ± {wide}. The indices have "
+    text += "converged." if times <= 1 else f"not converged: take {times:.0f} times as many samples."
     return Sentence("widest", text, {"output": output, "factor": widest.factor, "half": half, "size": size})
 
 
 def morris(sens: xr.Dataset, output: str) -> Sentence:
-    """Say which factors act alike everywhere and which depend on the place."""
+    """Say which factors have the same effect everywhere, and whose effect is curved or depends on others."""
     part, ranks = sens.sel(output=output), order(sens, output)
     if not ranks:
         return Sentence("no_index", f"No effect can be given for {of_output(sens, output)}.", {"output": output})
@@ -156,10 +138,9 @@ def morris(sens: xr.Dataset, output: str) -> Sentence:
     strong = [r for r in ranks if r.value >= 0.1 * ranks[0].value]
     bent = [r.name for r in strong if sigma[r.factor] > 0.5 * r.value]
     straight = [r.name for r in strong if sigma[r.factor] <= 0.5 * r.value]
-    said = [f"{listing(straight)} act{'s' if len(straight) == 1 else ''} nearly alike everywhere"] if straight else []
+    said = [f"the effect of {listing(straight)} is nearly the same everywhere"] if straight else []
     if bent:
-        acts = "acts" if len(bent) == 1 else "act"
-        said.append(f"{listing(bent)} {acts} differently from place to place (curved, or through other factors)")
+        said.append(f"the effect of {listing(bent)} is curved or depends on other factors")
     text = f"On {of_output(sens, output)}, {'; '.join(said)}."
     return Sentence("morris", text, {"output": output, "bent": bent, "straight": straight})
 
