@@ -122,8 +122,9 @@ def course(ds: xr.Dataset) -> style.Drawn:
         axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])  # room for the legend
         axes.legend(frameon=False)
     style.head(figure, "Depth, pressure and fatigue over the travel")
-    error = 1e3 * float(ds["groove_depth_error"][-1])
+    error, relative = 1e3 * float(ds["groove_depth_error"][-1]), 100 * float(ds["pressure_error"].max())
     caption = (
-        f"Points are solved states. Steps and elements cause an estimated error of the depth of {rounded(error, 2)} µm."
+        "Points are solved states. Steps and elements cause an estimated error of the depth of "
+        f"{rounded(error, 2)} µm, and of the pressure of {rounded(relative, 2)} % at most."
     )
     return figure, style.FigureInfo("wear_course", caption, "")

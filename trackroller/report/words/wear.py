@@ -10,8 +10,6 @@ from trackroller.report.numbers import rounded
 from trackroller.report.words.sentence import Sentence
 from trackroller.roller.wearing import ENDS
 
-NOISE = 0.05  # jump of the pressure between neighbouring states that is told; a smooth peak stays far below
-
 
 def deeper_contact(ds: xr.Dataset) -> int:
     """Return the contact whose profiles have lost more depth at the end; contact 1 if both are alike."""
@@ -57,19 +55,10 @@ def _pressure(ds: xr.Dataset) -> Sentence:
         f"{rounded(pressure[-1])} MPa at the end, where the patch is {rounded(wide[-1] / wide[0])} times as wide as at "
         "first."
     )
-    jump = largest_jump(pressure)
-    if jump > NOISE:
-        text += f" The pressure jumps by {100 * jump:.0f} % or more between neighbouring states, because the elements "
-        text += "do not resolve the worn profile: pressure, stress and damage sum are rough estimates."
-    values = {"first": pressure[0], "largest": pressure[most], "last": pressure[-1], "jump": jump}
+    error = float(own["pressure_error"].max())
+    text += f" Its estimated error is {rounded(100 * error, 2)} % at most."
+    values = {"first": pressure[0], "largest": pressure[most], "last": pressure[-1], "error": error}
     return Sentence("wear_pressure", text, values)
-
-
-def largest_jump(pressure: np.ndarray) -> float:
-    """Return by how much a state lies beyond both of its neighbours at most, relative to the nearer one [1]."""
-    before, own, after = pressure[:-2], pressure[1:-1], pressure[2:]
-    near = np.clip(own, np.minimum(before, after), np.maximum(before, after))
-    return float(np.max(np.abs(own - near) / near, initial=0.0))
 
 
 def _life(ds: xr.Dataset, body: str) -> Sentence | None:
@@ -81,10 +70,12 @@ def _life(ds: xr.Dataset, body: str) -> Sentence | None:
     if np.isnan(damage).any() or np.isnan(new):
         return None
     life = float(own["life_travel"].min()) if own["life_travel"].notnull().any() else np.nan
-    values = {"body": body, "life": life, "new": new}
+    error = float(own["fatigue_damage_error"].isel(travel=-1).max())
+    values = {"body": body, "life": life, "new": new, "error": error}
     under = f"under the stress of the new groove after {rounded(new)} km"
     if np.isfinite(life):
         text = f"Fatigue of the {body}: the damage sum reaches 1 after {rounded(life)} km, {under}."
     else:
         text = f"Fatigue of the {body}: the damage sum is {rounded(float(damage.max()))} at the end; it is 1 {under}."
+    text += f" The estimated error of the damage sum is {rounded(100 * error, 2)} %."
     return Sentence("wear_life", text, values)
