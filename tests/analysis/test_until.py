@@ -1,5 +1,6 @@
 """A sample grows by doublings until its intervals are narrow, and goes on where it was stopped."""
 
+import itertools
 import json
 import os
 import signal
@@ -15,6 +16,7 @@ import trackroller as tr
 from trackroller.analysis.growing import grow_study
 from trackroller.analysis.looks import looks_of
 from trackroller.analysis.replicates import first_indices, jackknife, log_b10, share
+from trackroller.analysis.table import OUTSIDE
 from trackroller.errors import InputError
 from trackroller.report.words.growth import grown
 from trackroller.study.design.growth import doubled
@@ -154,9 +156,14 @@ def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
         ds = fake_solver.solve(cases, **how)
         return ds.assign(converged=0 * ds["converged"])
 
-    for study in (study_of(), study_of("saltelli"), load_study(UNEQUAL)):
-        found = looks_of(grow(study, tmp_path / study.config.design, solver=outside))
+    def flagged(cases, **how):
+        valid = fake_solver.solve(cases, **how)
+        return valid.assign(validity=valid["converged"].astype("u4").assign_attrs(flag_meanings=OUTSIDE[0]))
+
+    for study, solver in itertools.product((study_of(), load_study(UNEQUAL)), (outside, flagged)):
+        found = looks_of(grow(study, tmp_path / solver.__name__ / study.config.design, solver=solver))
         assert "so nothing is left to decide" in found["stopped"] and len(found["looks"]) == 1
+        assert set(found["looks"][0]["half_width"].values()) == {None}
 
 
 def test_every_solved_case_is_used_again(tmp_path, monkeypatch):
@@ -226,6 +233,8 @@ def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "hours": -1}}, "until.hours = -1"),
         ({"until": {"half_width": 0.1, "of": ["normal_force_1"], "at_most": 100}}, "at least the 128 cases"),
         ({**UNEQUAL, "point_samples": [128, 128]}, "point_samples = .*4 whole numbers from 1 to samples"),
+        ({"until": {"half_width": 0.1, "of": ["b10(normal_force_1)"]}}, "with design sobol: results"),
+        ({**UNEQUAL, "until": {"half_width": 0.1, "of": ["median(normal_force_1)"]}}, "b10 or probability of one"),
         ({"samples": 100}, "samples = 100 .*16 replicates times a power of two.*Write samples: 128"),
         ({"design": "grid", "factors": {"axial_force": {"values": [1, 2]}}}, "design = 'grid'.*remove until"),
         ({"design": "inner_outer", "factors": NORMAL}, "a life, whose log10 B10 counts"),

@@ -40,17 +40,19 @@ def look(results: StudyResults) -> dict[str, Any]:
     dict
         `cases`, and by output `half_width` (None: no interval yet) and `at`, the factor or design point with the widest
         interval; `constant` names outputs that do not vary, so that they have no index, and `empty` those without a
-        value in any case. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
+        valid case. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
     """
     design, until = results.design, results.config.until
     assert until is not None
     seen: dict[str, Any] = {"cases": design.size, "half_width": {}, "at": {}, "constant": [], "empty": []}
     names = _names(results)
     unsure = np.zeros(len(names), dtype=bool)
+    inside = results.view.inside.any() or results.config.analysis.keep != ("rolling",)
     for name in until.of:
         values, widths = (_of_points if design.method == "inner_outer" else _of_indices)(results, name)
-        if np.isnan(values).all():
+        if np.isnan(values).all() or not (inside or statistic(name)[1] in REGIMES):
             seen["empty"].append(name)
+            widths[:] = np.inf
         elif design.method != "inner_outer" and constant(values):
             seen["constant"].append(name)
         widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)

@@ -164,7 +164,8 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.design, status.total)
-    generations = f"these are the first generation; it goes on to {study.config.budget.designs} designs"
+    most = study.config.budget.designs
+    generations = f"these are the first generation; it goes on to {most} design{'s' * (most != 1)}, and checks the best"
     until, where = study.config.until, " at unsure design points" if study.config.design == "inner_outer" else ""
     rows = [
         ("study", f"{study.name} ({study.config.design})"),

@@ -74,19 +74,27 @@ def check_until(config: Any) -> None:
         near = until.replicates << max(0, round(config.samples / until.replicates) - 1).bit_length()
         allowed = f"with until: the {until.replicates} replicates times a power of two, at the first look"
         raise InputError("samples", config.samples, allowed, f"Write samples: {near}, or remove the key.")
-    known = output_names(config.outputs)
     for name in until.of:
-        kind, output = statistic(name) if config.design == "inner_outer" else ("", name)
-        if kind == "probability" and output in (*config.analysis.target, *REGIMES):
-            continue
-        if kind == "probability":
-            remedy = f"Add it to analysis.target, such as {{{output}: {{min: 500}}}}."
-            raise InputError("until.of", name, "the probability of a target or of a regime", remedy)
-        if output not in known:
-            raise unknown_result("until.of", output, known, config.outputs)
-        if config.design == "inner_outer" and (kind not in ("", "b10") or "life" not in output):
-            allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a target or of a regime"
-            raise InputError("until.of", name, allowed, f"For example probability({output}) with analysis.target.")
+        _check_of(config, name, output_names(config.outputs))
+
+
+def _check_of(config: Any, name: str, known: list[str]) -> None:
+    """Check one entry of `until.of`."""
+    points = config.design == "inner_outer"
+    kind, output = statistic(name) if points else ("", name)
+    if kind == "probability" and output in (*config.analysis.target, *REGIMES):
+        return
+    if kind == "probability":
+        remedy = f"Add it to analysis.target, such as {{{output}: {{min: 500}}}}."
+        raise InputError("until.of", name, "the probability of a target or of a regime", remedy)
+    if "(" in output and not points:
+        allowed = f"with design {config.design}: results, whose indices count"
+        raise InputError("until.of", name, allowed, "Statistics such as b10(..) need design: inner_outer.")
+    if output not in known:
+        raise unknown_result("until.of", output, known, config.outputs)
+    if points and (kind not in ("", "b10") or "life" not in output):
+        allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a target or of a regime"
+        raise InputError("until.of", name, allowed, f"For example probability({output}) with analysis.target.")
 
 
 def check_first_look(study: Any) -> None:
