@@ -257,7 +257,7 @@ def test_long_names_of_designs_are_numbered_with_a_key(monkeypatch, longest):
 
 @pytest.mark.parametrize(
     ("force", "said"),
-    [(-12, "One in ten or more of the sampled conditions"), (0, "1.7225-quenched-tempered lasts longest in nine")],
+    [(-12, "For each design one in ten or more"), (0, "1.7225-quenched-tempered lasts longest in nine")],
 )
 def test_no_design_lasts_longest_in_nine_of_ten_conditions_if_none_has_a_life_there(force, said):
     factors = {

@@ -52,7 +52,7 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     what = "nine of ten sampled conditions" if designs.drawn else what
     found = f"{names[0]} lasts longest in {what}."
     if designs.drawn and not table["b10"].max() > 0:
-        found = "One in ten or more of the sampled conditions are not valid for any design."
+        found = "For each design one in ten or more of the sampled conditions are not valid."
     return figure, style.FigureInfo("designs", caption, found)
 
 

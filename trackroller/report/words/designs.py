@@ -164,7 +164,7 @@ def _life(designs: Designs, row: pd.Series) -> str:
         nine += lasting(row["b10"], unit, row["b10_beyond"])
         nine += f" (95 % interval {low} to {high})"
         many = f"one in ten or more of its {count(int(row['cases']))} sampled conditions are not valid"
-        text = f"{nine if row['b10'] > 0 else f'{many}, so nine of ten reach no life'}; {text}"
+        text = f"{nine if row['b10'] > 0 else f'{many}, so there is no life that nine of ten reach'}; {text}"
     return f"{text}; {_validity(designs, row)}{_alone(designs)}"
 
 
