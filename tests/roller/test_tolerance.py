@@ -60,6 +60,20 @@ def test_many_designs_keep_their_tolerances(asked):
     assert within >= 0.975 and missed < 0.2
 
 
+def test_few_elements_leave_no_step_above_a_fifth_of_the_tolerance():
+    """Along friction, where adhesion begins: 12 elements alone make the work jump by more."""
+    cases = [tr.Case(friction_coefficient=mu) for mu in np.linspace(0.136, 0.171, 11)]
+    outputs = ("forces", "contact", "friction_work")
+    ds = tr.solve(cases, outputs=outputs, accuracy={"forces": 0.01})
+    best = tr.solve(cases, outputs=outputs, accuracy="reference")
+    assert float(ds.error_over_tolerance.max()) < 1.0
+    capacity = np.array([case.friction_coefficient for case in cases])[:, None] * best.normal_force
+    for name in ("lateral_force", "driving_force", "friction_energy_per_distance"):
+        of = best[name] if name.startswith("friction") else capacity
+        off = ((ds[name] - best[name]) / of).values
+        assert np.abs(np.diff(off, axis=0)).max() < 0.2 * 0.01, name
+
+
 def test_only_doubtful_cases_are_solved_again(monkeypatch):
     solved, cases = [], random_designs(12, 5)
     meet = by_case.meet

@@ -28,7 +28,7 @@ LEAP = 2  # rungs that a case goes up at once at most: a large estimate is a rou
 REACH = 4.0  # an error is not worth the next rung above this many times what the order promises there
 # Factors on the errors that the stages estimate themselves, on the first rung, where nothing can be compared, and on
 # later ones. With them 99 % of the forces and peaks of random designs lie within the tolerance.
-FIRST_FORCES, FIRST_PEAKS = 2.5, 5.0
+FIRST_FORCES, FIRST_PEAKS = 2.8, 5.0
 LATER_FORCES, LATER_PEAKS = 1.5, 0.4
 
 

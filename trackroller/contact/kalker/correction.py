@@ -43,6 +43,10 @@ LIGHT_ERROR, LIGHT_FACTOR = 1e-2, 3
 # take over by and by, so that the forces have no step. Beyond the second value they serve alone, which keeps the
 # estimated error of the friction forces below 5 % of mu F_N.
 TABLE_SERVES = 0.03, 0.039
+# Distance of the forces of table and few elements over the estimated error of the elements, on the first rung of a
+# tolerance. Up to the first value both agree, and the table serves, because the forces of few elements jump where an
+# element begins to slide. From there on the elements take over by and by.
+AGREED = 1.0, 2.5
 # Elements across patches that serve for the table. A patch takes the first number that promises the error of F_N.
 SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.02
 
@@ -115,20 +119,39 @@ class Correction:
         if pick.size:
             own, side, part = rows[pick], _side(slip)[pick], share[pick]
             before = self._corrected(forces[pick], place[pick], own, side)
-            exact = self._elements(patch.take(pick), slip.take(pick), friction[pick], own, place[pick])
-            exact = forces[pick] + part[:, None] * (exact - forces[pick])
-            self.error[own, side] = np.fmax(self.error[own, side], (1.0 - part) * table.stored().force_error("p99"))
-            self._learn(exact - forces[pick], place[pick], own, side)
-            change[pick] = np.max(np.abs(exact - before), axis=1)
+            offset = self._elements(patch.take(pick), slip.take(pick), friction[pick], own, place[pick]) - forces[pick]
+            if self.trusts_table:
+                table_error = (1.0 - part) * table.stored().force_error("p99")
+                self.error[own, side] = np.fmax(self.error[own, side], table_error)
+            elif not self.settings.refines and self.settings.elements < SERVING[0]:
+                apart = self._apart(patch.take(pick), slip.take(pick), friction[pick], own, forces[pick], offset)
+                part = np.where(held[pick], _rise(apart / np.maximum(self.error[own, side], 1e-12), AGREED), 1.0)
+                self.share[own, side] = part
+            offset *= part[:, None]
+            self._learn(offset, place[pick], own, side)
+            change[pick] = np.max(np.abs(forces[pick] + offset - before), axis=1)
         return np.where(held, change, OUTSIDE * change)
+
+    def _apart(self, patch: Patch, slip: Slip, friction, rows: np.ndarray, forces, offset: np.ndarray) -> np.ndarray:
+        """Return how far the elements are from the table's `forces` (m, 3), (m,).
+
+        This is the largest `offset` (m, 3), or the change of the friction work over itself.
+        """
+        solution, scale = self.store.get(_slots(rows, _side(slip))), _scale(patch, friction)
+
+        def work(values: np.ndarray) -> np.ndarray:
+            f = values * scale
+            return np.asarray(solution.pressure_work - slip.longitudinal * f[:, 1] - slip.spin * f[:, 2])
+
+        with np.errstate(divide="ignore", invalid="ignore"):
+            off = np.abs(work(forces + offset) * (1.0 + solution.energy_residual) / work(forces) - 1.0)
+        return np.fmax(np.abs(offset).max(axis=1), off)
 
     def _share(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the share of the elements in the forces of patches inside the table, (m,), see `TABLE_SERVES`."""
-        first, last = TABLE_SERVES
         with np.errstate(divide="ignore", invalid="ignore"):
             error = table.stored().force_error("p99") * friction * patch.normal_force / self._turned(patch, slip, rows)
-        part = np.clip((np.nan_to_num(error) - first) / (last - first), 0.0, 1.0)
-        return part**2 * (3.0 - 2.0 * part)
+        return _rise(np.nan_to_num(error), TABLE_SERVES)
 
     def _turned(self, patch: Patch, slip: Slip, rows: np.ndarray) -> np.ndarray:
         """Return the change of F_T in patches that changes F_N of the other contact by all of it, (m,) [N]."""
@@ -256,7 +279,7 @@ class Correction:
             return solution.works
         r = self.law(patch, slip, friction, rows)
         work = solution.pressure_work - slip.longitudinal * r.driving_force - slip.spin * r.spin_moment
-        lost = 0.0 if self.trusts_table else solution.energy_residual
+        lost = 0.0 if self.trusts_table else self.share[rows, _side(slip)] * solution.energy_residual
         return Works(work * (1.0 + lost), solution.pressure_work)
 
     def forget(self, rows: np.ndarray) -> None:
@@ -269,6 +292,12 @@ class Correction:
         """Return the larger residual of the friction law in both patches of n rollers, and whether it is met, (n,)."""
         residual, converged = self.store.state()
         return residual.reshape(n, 2).max(axis=1), np.logical_and.reduce(converged.reshape(n, 2), axis=1)
+
+
+def _rise(value: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """Return a smooth step of `value` from 0 at the first limit to 1 at the second."""
+    t = np.clip((value - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
+    return t**2 * (3.0 - 2.0 * t)
 
 
 def _side(slip: Slip) -> np.ndarray:
