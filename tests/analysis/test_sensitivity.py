@@ -12,6 +12,7 @@ from trackroller.analysis.givendata import first_order, given_data, prcc
 from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
+from trackroller.report.words import indices as words
 from trackroller.report.words.indices import caveat
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
@@ -387,6 +388,15 @@ def test_advice_on_sample_size_follows_the_width():
     """Half width 0.1 against 0.05 wants 4 times the samples; 0.04 is converged."""
     assert convergence.take_times(np.array([0.4]), np.array([0.6]), 0.05) == 4
     assert convergence.take_times(np.array([0.46]), np.array([0.54]), 0.05) == 1
+    coords = {"output": ["life"], "factor": ["velocity"], "factor_name": ("factor", ["speed"]), "sample_size": [64]}
+    for times, said in (
+        (1, "have converged."),
+        (4, "take 4 times as many samples."),
+        (np.nan, "too few usable samples"),
+    ):
+        bounds = {f"first{end}": (("output", "factor"), [[v]]) for end, v in (("", 0.5), ("_low", 0.4), ("_high", 0.6))}
+        table = xr.Dataset(bounds | {"take_times": ("output", [float(times)])}, coords, {"method": "lhs"})
+        assert said in words.convergence(table, "life").text
 
 
 def test_rows_of_another_study_are_refused():
