@@ -65,14 +65,20 @@ export function pictureView({ again }) {
   const verdict = el("p", { class: "verdict", role: "status", "aria-live": "polite" });
   const stage = el("span", { class: "stage" });
   const warnings = el("ul", { class: "warnings" });
-  const full = el("button", { type: "button", class: "mini full", hidden: true, "aria-pressed": "false", onclick: () => fold(full.getAttribute("aria-pressed") === "true") });
-  function fold(short = full.getAttribute("aria-pressed") !== "true") {
+  const full = el("button", { type: "button", class: "mini full", hidden: true, "aria-pressed": "false", onclick: () => fold(full.getAttribute("aria-pressed") !== "true") });
+  // Warnings stand in full where the screen has room for them, or on request.
+  function fold(all = full.getAttribute("aria-pressed") === "true") {
     const items = [...warnings.children];
-    full.setAttribute("aria-pressed", String(!short));
-    warnings.classList.toggle("short", short);
-    items.forEach((item, i) => (item.hidden = short && i >= FEW));
+    const shorten = (short) => {
+      warnings.classList.toggle("short", short);
+      items.forEach((item, i) => (item.hidden = short && i >= FEW));
+    };
+    shorten(false);
+    const tight = matchMedia("(min-width: 60rem)").matches && document.documentElement.scrollHeight > innerHeight;
+    shorten(tight && !all);
+    full.hidden = !tight;
+    full.setAttribute("aria-pressed", String(all));
     full.textContent = items.length > FEW ? `all ${items.length} warnings in full` : "warnings in full";
-    full.hidden = short && items.length <= FEW && items.every((item) => item.scrollWidth <= item.clientWidth);
   }
   const drawing = el("div", { class: "drawing-place" });
   const map = maps();
@@ -118,7 +124,6 @@ export function pictureView({ again }) {
       node.classList.toggle("preview", picture.accuracy === "preview");
       const said = [...picture.flags.map((flag) => [flag.sentence, flag.remedy]), ...picture.doubts.map((text) => ["Doubtful.", text])];
       replace(warnings, said.map(([head, text]) => el("li", { title: text }, el("strong", {}, head), " ", text)));
-      fold();
       replace(drawing, drawn(picture.drawing));
       replace(tables, picture.lines.length ? lines(picture.lines) : el("p", {}, picture.reason || "No values: a contact has lifted off."));
       replace(limits, margins(picture.margins, picture.complete));
@@ -126,6 +131,7 @@ export function pictureView({ again }) {
       replace(whole, whole.firstChild, rows(picture.whole));
       replace(unchecked, unchecked.firstChild, el("ul", {}, [...picture.not_checked, ...picture.guesses].map((text) => el("li", {}, text))));
       draw();
+      fold();
     },
     refuse(errors) {
       verdict.textContent = "Not solved. Mend the marked field.";
