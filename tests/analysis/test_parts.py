@@ -16,7 +16,7 @@ from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import level_indices
 from trackroller.study.design.saltelli import pairs_sharing
 from trackroller.study.design.sampling import sample
-from trackroller.study.file.load import parse_study
+from trackroller.study.file.load import parse_study, without_former
 from validation.benchmarks.known_indices import functions
 
 G = functions()["g-function"]
@@ -84,6 +84,8 @@ def test_groups_of_ishigami_and_single_factors_have_their_known_indices():
     design = sample(spec, "saltelli", 1024, 1, groups=single)
     y = f.evaluate(design.unit)
     alone = of_groups(y, design, single)
+    with pytest.raises(InputError, match="Run the study again"):
+        of_groups(y, sample(spec, "saltelli", 1024, 1), single)
     plain = sobol(y, 3, True)
     np.testing.assert_allclose(alone["group_S1"], plain["S1"], atol=1e-12)
     np.testing.assert_allclose(alone["group_ST"], plain["ST"], atol=1e-12)
@@ -196,6 +198,13 @@ def test_groups_reach_analysis_table_and_summary(tmp_path):
     text = " ".join(s.text for head, said in in_short(view_of(ds, sens), []) for s in said)
     assert "By groups, roller material accounts for" in text and "load" in text
     assert text.index("By groups") < text.index("explains")
+
+
+def test_the_key_exchange_of_earlier_versions_is_ignored_aloud():
+    with pytest.warns(UserWarning, match=r"Ignored: exchange\."):
+        assert without_former(FILE | {"exchange": "groups", "analysis": {"scale": "log10"}}) == FILE | {
+            "analysis": {"scale": "log10"}
+        }
 
 
 def test_levels_reach_analysis_table_and_summary():

@@ -12,6 +12,7 @@ from trackroller.analysis.givendata import firsts
 from trackroller.analysis.indices import Estimates, complete_part, variance_share
 from trackroller.analysis.labels import factor_name, stacked
 from trackroller.analysis.sobol import closed_indices, with_bounds
+from trackroller.errors import InputError
 from trackroller.study.design.factors import label
 from trackroller.study.design.saltelli import all_groups
 from trackroller.study.design.sampling import SampledDesign
@@ -79,7 +80,9 @@ def of_groups(y: np.ndarray, design: SampledDesign, groups: Mapping[str, Sequenc
         places = [tuple(names.index(name) for name in members) for members in groups.values()]
         first, total, _ = _grid_indices(y.reshape(design.meta["shape"]), places)
         return {"group_S1": first, "group_ST": total}
-    second, exchanged = bool(design.meta["second_order"]), design.meta["groups"]
+    second, exchanged = bool(design.meta["second_order"]), design.meta.get("groups")
+    if exchanged is None:  # of an earlier version
+        raise InputError("analysis.groups", list(groups), "a design drawn by group", "Run the study again.")
     columns, sets = len(exchanged), [1 << exchanged.index(name) for name in groups]
     block = design.blocks(y)
     block = block[np.isfinite(block).all(axis=1)]

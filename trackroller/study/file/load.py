@@ -54,12 +54,14 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
 def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return a study file without keys of earlier versions that chose nothing else; a warning names them."""
     given = _mapping(data.get("analysis"))
-    former = [key for key in FORMER if key in given]
+    former = [f"analysis.{key}" for key in FORMER if key in given] + [key for key in ("exchange",) if key in data]
     if not former:
         return data
-    words = " and ".join(f"analysis.{key}" for key in former)
-    warnings.warn(f"Ignored: {words}. Every analysis takes all its measures, and 300 resamples.", stacklevel=4)
-    return {**data, "analysis": {key: value for key, value in given.items() if key not in former}}
+    now = "Every analysis takes all its measures, and 300 resamples; saltelli exchanges the groups of analysis.groups"
+    warnings.warn(f"Ignored: {' and '.join(former)}. {now}.", stacklevel=4)
+    kept = {key: value for key, value in data.items() if key != "exchange"}
+    own = {key: value for key, value in given.items() if key not in FORMER}
+    return kept | ({"analysis": own} if given else {})
 
 
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
