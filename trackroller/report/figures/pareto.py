@@ -46,10 +46,10 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
 
     Returns
     -------
-    Figure and what it shows; None for fewer than two designs, or without a Pareto set.
+    Figure and what it shows; None for fewer than two goals or designs, or without a Pareto set.
     """
     goals = goals_of(front)
-    if not (front["optimal"].values == 1).any() or front.sizes["row"] < 2:
+    if not (front["optimal"].values == 1).any() or min(front.sizes["row"], len(goals)) < 2:
         return None
     others = goals[1:4]
     figure = style.new_figure(78)
