@@ -29,9 +29,8 @@ class Frame:
         self._process.wait()
 
     def _repr_html_(self) -> str:
-        address = escape(self.address, quote=True)
         style = f'width="100%" height="{self.height}" style="border: 0"'
-        return f'<iframe src="{address}" title="trackroller" allow="clipboard-write" {style}></iframe>'
+        return f'<iframe src="{escape(self.address)}" title="trackroller" allow="clipboard-write" {style}></iframe>'
 
 
 def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Frame:

@@ -78,5 +78,4 @@ def slider(parameter: Parameter) -> tuple[float, float] | None:
         return USUAL.get(parameter.name, (parameter.lower, parameter.upper))
     if parameter.lower < 0 < parameter.upper and not parameter.nonzero:
         return -SPAN * abs(example), SPAN * abs(example)
-    low, high = sorted((example / SPAN, example * SPAN))
-    return low, high
+    return min(example / SPAN, example * SPAN), max(example / SPAN, example * SPAN)

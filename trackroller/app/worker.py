@@ -44,8 +44,7 @@ class Progress:
 
     def advanced(self, count: int, failed: int) -> None:
         """Record solved cases, of which some failed."""
-        told = self.told
-        self.say(at_once=False, done=told.get("done", 0) + count, failed=told.get("failed", 0) + failed)
+        self.say(at_once=False, done=self.told["done"] + count, failed=self.told["failed"] + failed)
 
 
 def is_held(path: Path) -> bool:
