@@ -7,6 +7,8 @@ import pytest
 
 import trackroller as tr
 from trackroller.contact.cross_sections import Gap, parabola
+from trackroller.contact.normal.family import Family
+from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.wearing import WearingPatch, evened_at_rims, on_cells, smoothed
 from trackroller.damage.wear import wear_depth
 from trackroller.errors import InputError
@@ -58,6 +60,13 @@ def test_a_long_step_follows_the_pressure_and_keeps_the_load():
     # wear without end makes the depth uniform up to the gap and the elastic approach
     middle = depth[np.abs(wears.edges[:-1]) < 0.2]
     assert 0 < closing < 0.5 and depth.min() >= 0 and np.ptp(middle) < 0.1 * closing
+
+
+def test_a_similar_patch_beyond_the_end_of_the_groove_starts_no_search():
+    gap = patch()[0]
+    beyond = Box(gap.limits[1] + 1.0, gap.limits[1] + 2.0, 0.3)
+    one, two = (Family(gap, 12, near=near).node(-16) for near in (beyond, None))
+    np.testing.assert_array_equal(one.shares, two.shares)
 
 
 def test_cells_keep_the_volume():

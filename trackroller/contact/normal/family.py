@@ -153,8 +153,9 @@ class Family:
 
     def _start(self, load: float) -> Box:
         """Return a first box by Hertz's theory, with the mean curvature of the gap over the width of the patch."""
-        if self._near is not None:
-            return self._clipped(self._near.low, self._near.high, self._near.half)
+        near = self._near and self._clipped(self._near.low, self._near.high, self._near.half)
+        if near and near.low < near.high:  # a groove that became steep may end before the place of the similar patch
+            return near
         centre = float(self._samples[np.argmin(self._lateral)])
         lowest = float(self._lateral.min())
         k_y = float(self.gap.curvature(np.array(centre)))
