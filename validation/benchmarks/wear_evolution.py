@@ -14,7 +14,7 @@ from trackroller.roller import wearing
 from validation.benchmarks.command import run
 
 OUTPUTS = ("forces", "contact", "friction_work")
-FINER = 16.0  # divides the error that a step of the finer run may have
+FINER = {"sliding": 16.0, "kalker": 4.0}  # divide the error that a step of the finer run may have
 STATES = 400  # limit of the finer run
 PENCIL = {"motor_force": 60.0, "guide_overrollings_per_hour": 100.0}
 
@@ -54,22 +54,18 @@ def goal(case: dict[str, Any], elastic: float) -> float:
     return elastic * approach / float(new.wear_depth_per_km.max())
 
 
-def depths(ds: Any, places: np.ndarray) -> np.ndarray:
-    """Return the worn depth of contacts and bodies at the end of a run, at `places` [mm]."""
-    depth = ds.worn_depth.isel(travel=-1).values
-    return np.array([[np.interp(places, ds.place.values, own) for own in both] for both in depth])
-
-
-def of_error(case: dict[str, Any], travel: float, accuracy: str, finer: str) -> dict[str, Any]:
-    """Return stated and true error of the deepest depth [um] of one roller, and the true mean error over the width."""
-    options = {"contact_model": "sliding", "accuracy": accuracy}
+def of_error(case: dict[str, Any], travel: float, model: str, accuracy: str, finer: str) -> dict[str, Any]:
+    """Return stated and true error of the deepest depth [um] of one roller, and of the pressure of its states [1]."""
+    options = {"contact_model": model, "accuracy": accuracy}
     ds = tr.wear(case, travel, OUTPUTS, **options)
-    reached = float(ds.travel[-1])
+    reached, part = float(ds.travel[-1]), FINER[model]
     with patch.multiple(
-        wearing, TOLERANCE=wearing.TOLERANCE / FINER, SHARE=wearing.SHARE / FINER, STEPS=STATES, FIRST=0.01
+        wearing, TOLERANCE=wearing.TOLERANCE / part, SHARE=wearing.SHARE / part, STEPS=STATES, FIRST=0.01
     ):
         true = tr.wear(case, reached, OUTPUTS, **options | {"accuracy": finer})
     one, two = (float(run.groove_depth.isel(travel=-1).max()) for run in (ds, true))
+    common = ds.sel(travel=slice(1e-12, float(true.travel[-1])))
+    pressure = true.max_pressure.interp(travel=common.travel)
     return {
         "end": str(ds.attrs["end"]),
         "finer_end": str(true.attrs["end"]),
@@ -79,6 +75,25 @@ def of_error(case: dict[str, Any], travel: float, accuracy: str, finer: str) -> 
         "stated_um": 1e3 * float(ds.groove_depth_error.isel(travel=-1)),
         "of_steps_um": 1e3 * float(ds.groove_step_error.isel(travel=-1)),
         "true_um": 1e3 * abs(one - two) if float(true.travel[-1]) == reached else math.nan,
+        "pressure_stated": common.pressure_error.values.ravel(),
+        "pressure_true": np.abs(common.max_pressure / pressure - 1.0).values.ravel(),
+    }
+
+
+def coverage(errors: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return the share of rollers and of states whose true errors the stated ones cover, and their quantiles."""
+    known = [e for e in errors if math.isfinite(e["true_um"]) and e["depth_um"] > 0.0]
+    ratios = np.array([e["true_um"] / e["stated_um"] for e in known])
+    stated, true = (np.concatenate([e[f"pressure_{name}"] for e in known]) for name in ("stated", "true"))
+    return {
+        "rollers": errors,
+        "compared": len(known),
+        "covered": float(np.mean(ratios <= 1.0)),
+        "ratio": np.quantile(ratios, [0.5, 0.9, 0.95, 1.0]),
+        "states": len(true),
+        "pressure_covered": float(np.mean(true <= stated)),
+        "pressure_true": np.quantile(true, [0.5, 0.95, 1.0]),
+        "pressure_stated": np.quantile(stated, [0.5, 0.95, 1.0]),
     }
 
 
@@ -115,31 +130,26 @@ def of_pencil() -> dict[str, float]:
 
 
 def measure(
-    cases: int = 40, balanced: int = 10, seed: int = 27, finer: str = "standard", accuracy: str = "preview"
+    cases: int = 20, exact: int = 6, balanced: int = 10, seed: int = 27, accuracy: str = "preview"
 ) -> dict[str, Any]:
     """Return errors, conservation and the pencil.
 
     Parameters
     ----------
-    cases : int
-        Random rollers whose stated error is compared with a finer run.
+    cases, exact : int
+        Random rollers whose stated errors are compared with finer runs: of full sliding, and of `kalker`.
     balanced : int
         Random rollers whose volume is compared with the friction energy.
     seed : int
         Seed of the random rollers.
-    finer, accuracy : str
-        Accuracy of the finer run and of the runs under test.
+    accuracy : str
+        Accuracy of the runs under test.
     """
     rng = np.random.default_rng(seed)
     drawn = [(case, goal(case, float(rng.uniform(0.3, 4.0)))) for case in rollers(max(cases, balanced), seed)]
-    errors = [of_error(*pair, accuracy, finer) for pair in drawn[:cases]]
-    known = [e for e in errors if math.isfinite(e["true_um"]) and e["depth_um"] > 0.0]
-    ratios = np.array([e["true_um"] / e["stated_um"] for e in known])
     return {
-        "rollers": errors,
-        "compared": len(known),
-        "covered": float(np.mean(ratios <= 1.0)) if known else math.nan,
-        "ratio": np.quantile(ratios, [0.5, 0.9, 0.95, 1.0]) if known else [],
+        "sliding": coverage([of_error(*pair, "sliding", accuracy, "standard") for pair in drawn[:cases]]),
+        "kalker": coverage([of_error(*pair, "kalker", accuracy, "reference") for pair in drawn[:exact]]),
         "volumes": [of_volume(*pair) for pair in drawn[:balanced]],
         "pencil": of_pencil(),
     }
