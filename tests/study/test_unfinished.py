@@ -15,6 +15,7 @@ import trackroller as tr
 from trackroller.report.words.in_short import in_short
 from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study, parse_study
+from trackroller.study.progress import progress_bar
 from trackroller.study.run import run_study
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.seal import recorded
@@ -169,3 +170,11 @@ def test_an_unfinished_study_asks_for_no_more_samples_than_its_file(tmp_path):
     part = dataclasses.replace(whole, attrs={**whole.attrs, "missing_cases": 900})
     assert "Enough samples?" in dict(in_short(whole, []))
     assert "Enough samples?" not in dict(in_short(part, []))
+
+
+def test_a_bar_counts_the_cases_beyond_the_budget_of_a_search_into_its_total():
+    with progress_bar("search", shown=False) as bar:
+        bar.started(64, 0)
+        bar.advanced(60, 1)
+        bar.advanced(6, 0)
+        assert (bar.shown.tasks[0].completed, bar.shown.tasks[0].total, bar.failed) == (66, 66, 1)

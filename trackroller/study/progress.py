@@ -35,8 +35,11 @@ class Bar:
         self.shown.update(self.task, total=total, completed=done)
 
     def advanced(self, count: int, failed: int) -> None:
-        """Add solved cases, of which some failed."""
+        """Add solved cases, of which some failed; a search solves more than its budget: polish and checks."""
         self.shown.advance(self.task, count)
+        bar = self.shown.tasks[0]
+        if bar.total is not None and bar.completed > bar.total:
+            self.shown.update(self.task, total=bar.completed)
         self.failed += failed
         self.shown.update(self.task, failed=f"{self.failed} failed" if self.failed else "")
         self.shown.update(self.task, rate=f"{self.shown.tasks[0].speed or 0:.0f}")
