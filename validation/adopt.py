@@ -5,7 +5,8 @@
 Targets are those of `validation/Snakefile`; without a target, all that FOLDER (default `results`) holds. What was not
 measured again stays. `tradeoff` also writes the ladders of settings of the package. The presets follow from the
 ladders, so numbers of solutions may change. Studies solve their cases anew by themselves then, because the ladders are
-part of the solver's digest. `kalker_table` also writes the table of the package.
+part of the solver's digest. `benchmarks` also writes the costs that `plan` uses, and `kalker_table` the table of the
+package.
 """
 
 from __future__ import annotations
@@ -20,13 +21,15 @@ from pathlib import Path
 from PIL import Image
 
 from trackroller.contact.table import spline
+from trackroller.parameters import contact_models
 from trackroller.roller import accuracy
-from validation.benchmarks import groove, programs, scaling
+from validation.benchmarks import groove, programs, scaling, trade
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 DATA, FIGURES = DOCS / "data", DOCS / "figures"
 LADDERS = Path(accuracy.__file__).with_name("accuracy.json")
 TABLE = Path(spline.__file__).with_name(spline.TABLE)
+COSTS = contact_models.FILE
 TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "kalker_table", "benchmarks")
 # figures that the pages show, by target: pattern of their names, and colours of the reduced palette, if it is reduced
 PICTURES = {
@@ -46,6 +49,16 @@ def ladders() -> str:
         "ladders": summary["ladders"],
     }
     return json.dumps(content, indent=1) + "\n"
+
+
+def costs() -> str:
+    """Return the text of the file of costs from the stored data: those of forces, and of peaks in addition."""
+    models: dict[str, dict[str, list[float]]] = {}
+    for row in json.loads((DATA / "trade.json").read_text(encoding="utf-8"))["rows"]:
+        forces, complete = row["forces"], max(row["complete"], row["forces"])
+        models.setdefault(row["model"], {})[str(row["accuracy"])] = [round(forces, 4), round(complete - forces, 4)]
+    made_by = "python -m validation.adopt benchmarks, from validation.benchmarks.trade"
+    return json.dumps({"made_by": made_by, "models": models}, indent=1) + "\n"
 
 
 def copy_figures(folder: Path, pattern: str, colours: int) -> None:
@@ -81,6 +94,8 @@ def adopt(target: str, results: Path) -> None:
                 shutil.copy(folder / f"{name}.json", DATA)
         measured = json.loads((DATA / "scaling.json").read_text(encoding="utf-8"))
         scaling.draw(measured["by_size"], measured["by_accuracy"], FIGURES)
+        trade.draw(json.loads((DATA / "trade.json").read_text(encoding="utf-8")), FIGURES)
+        COSTS.write_text(costs(), encoding="utf-8")
         groove.draw(json.loads((DATA / "groove.json").read_text(encoding="utf-8")), FIGURES)
         return
     data = folder / f"{target}.json"

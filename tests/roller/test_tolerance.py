@@ -9,6 +9,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.errors import InputError
+from trackroller.parameters.contact_models import Cost
 from trackroller.roller import tolerance as by_case
 from trackroller.roller.accuracy import BY_CASE_ELEMENTS, PRESETS, Tolerance
 from trackroller.roller.dataset import validity_bit
@@ -172,6 +173,14 @@ def test_the_expected_cost_grows_with_the_accuracy():
         1 / rate({"accuracy": asked, "outputs": OUTPUTS}) for asked in (0.1, 0.01, {"forces": 1e-3, "peak": 3e-3})
     ]
     assert seconds == sorted(seconds) and seconds[2] > 2 * seconds[1]
+
+
+def test_the_expected_cost_goes_through_the_measured_ones():
+    """Between two measured tolerances a power law, above the largest one nothing is gained."""
+    cost = Cost((1, 2, 3), (1, 2, 3), ((0.1, 1.0, 4.0), (0.01, 10.0, 4.0)))
+    assert cost.at("standard") == (2, 2) and cost.at(0.1) == cost.at(0.5) == (1.0, 4.0)
+    np.testing.assert_allclose(cost.at(0.1**1.5), (10**0.5, 4.0))
+    np.testing.assert_allclose(cost.at(1e-3), (100.0, 4.0))
 
 
 def test_a_study_file_takes_tolerances_by_quantity(tmp_path):

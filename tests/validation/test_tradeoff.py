@@ -218,3 +218,7 @@ def test_wrong_sizes_are_refused(tmp_path, text):
 
 def test_the_ladders_of_the_package_are_those_of_the_kept_data():
     assert adopted.LADDERS.read_text(encoding="utf-8") == adopted.ladders(), "run: python -m validation.adopt tradeoff"
+
+
+def test_the_costs_of_the_package_are_those_of_the_kept_data():
+    assert adopted.COSTS.read_text(encoding="utf-8") == adopted.costs(), "run: python -m validation.adopt benchmarks"

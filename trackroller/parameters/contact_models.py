@@ -8,9 +8,18 @@ its declaration in its class, see `trackroller.contact.models.register`.
 
 from __future__ import annotations
 
+import json
+import math
 from dataclasses import dataclass
+from pathlib import Path
 
 from trackroller.errors import InputError
+
+LEVELS = ("preview", "standard", "reference")
+FILE = Path(__file__).with_name("costs.json")
+# Seconds of one core of a complete case in sliding at standard, on a quiet machine of two cores. The measured costs are
+# ratios to this case.
+YARDSTICK = 1.9e-3
 
 
 @dataclass(frozen=True)
@@ -23,10 +32,38 @@ class Cost:
         For the balance of the roller.
     peaks : tuple of float
         For the search of the peak stresses, in addition.
+    tolerances : tuple of (float, float, float)
+        Measured tolerances from large to small, each with its seconds for forces and peaks.
     """
 
     forces: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
     peaks: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
+    tolerances: tuple[tuple[float, float, float], ...] = ()
+
+    @classmethod
+    def measured(cls, name: str) -> Cost:
+        """Return the cost of a built-in model from the ratios of `validation.benchmarks.trade`."""
+        ratios = json.loads(FILE.read_text(encoding="utf-8"))["models"][name]
+        spent = {word: [YARDSTICK * ratio for ratio in both] for word, both in ratios.items()}
+        forces, peaks = zip(*(spent[level] for level in LEVELS), strict=True)
+        tolerances = sorted((float(word), *both) for word, both in spent.items() if word not in LEVELS)
+        return cls(forces, peaks, tuple(tolerances[::-1]))
+
+    def at(self, accuracy: str | float) -> tuple[float, float]:
+        """Return the seconds for forces and peaks at a preset or tolerance; a power law joins measured tolerances."""
+        if accuracy in LEVELS:
+            return self.forces[LEVELS.index(accuracy)], self.peaks[LEVELS.index(accuracy)]
+        tolerance = float(accuracy)
+        if len(self.tolerances) < 2:
+            level = 1 if tolerance >= 1e-3 else 2
+            return self.forces[level], self.peaks[level]
+        tolerance = min(tolerance, self.tolerances[0][0])
+        last = len(self.tolerances) - 2
+        k = next((i for i in range(last) if tolerance >= self.tolerances[i + 1][0]), last)
+        (rough, *dear), (fine, *dearer) = self.tolerances[k : k + 2]
+        share = math.log(rough / tolerance) / math.log(rough / fine)
+        forces, peaks = (a * (b / a) ** share for a, b in zip(dear, dearer, strict=True))
+        return forces, peaks
 
 
 @dataclass(frozen=True)
@@ -101,10 +138,7 @@ class ModelDeclaration:
             raise InputError(option, value, f"contact_model: {self.name} takes {words} only", self.remedy)
 
 
-# The processor time of one process was measured on `random_designs` of `validation/benchmarks/samples.py`: 100 designs,
-# 20 to 100 of them at reference, 2 to 8 of them on grids. It was divided by that of a complete case in sliding at
-# standard, measured beside it, and multiplied by the 1.9 ms that this case takes on a quiet 2-core machine. Ordinary
-# designs take 60 to 90 % of these times.
+# The costs of the built-in models are measured on random designs, see `validation.benchmarks.trade`.
 _BUILT_IN = (
     ModelDeclaration(
         "sliding",
@@ -118,7 +152,7 @@ _BUILT_IN = (
         remedy="Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no force, it only "
         "lengthens slip and friction work.",
         ladder="forces",
-        cost=Cost((8e-4, 8e-4, 8e-4), (6e-4, 1.1e-3, 3.8e-3)),
+        cost=Cost.measured("sliding"),
     ),
     ModelDeclaration(
         "fastsim",
@@ -128,7 +162,7 @@ _BUILT_IN = (
         slip_terms=("profile", "curve"),
         friction_laws=True,
         ladder="fastsim",
-        cost=Cost((2.6e-3, 0.013, 0.045), (1.1e-3, 1e-3, 7.5e-3)),
+        cost=Cost.measured("fastsim"),
     ),
     ModelDeclaration(
         "kalker",
@@ -143,7 +177,7 @@ _BUILT_IN = (
         by_case=True,
         interpolates=True,
         cheaper="kalker_table",
-        cost=Cost((5e-4, 3e-3, 0.016), (1.5e-3, 3.3e-3, 5e-3)),
+        cost=Cost.measured("kalker"),
     ),
     ModelDeclaration(
         "kalker_table",
@@ -156,7 +190,7 @@ _BUILT_IN = (
         own_errors=True,
         interpolates=True,
         rough_peaks=True,
-        cost=Cost((4e-4, 4e-4, 1e-3), (1.2e-3, 1.7e-3, 4e-3)),
+        cost=Cost.measured("kalker_table"),
     ),
 )
 # Cost of solved patches (`normal: halfspace`) by kalker; other models take less.

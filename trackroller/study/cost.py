@@ -14,7 +14,6 @@ from trackroller.study.design.sampling import ARRAYS
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-_LEVELS = ("preview", "standard", "reference")
 _TRACTIONS, _SUBSURFACE = 1e-3, 0.1
 START = 3.0  # seconds of one core: to import, plan and load the compiled solver
 PAGES_OF_ARRAY, PAGES_OF_SAMPLE = 3.0, 5.0  # seconds: figures and page; a random sample has given-data measures
@@ -34,33 +33,22 @@ _PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}  # s; th
 
 def rate(options: Mapping[str, Any]) -> float:
     """Return the expected cases a second on one core for keyword arguments of `solve`."""
-    accuracy = options.get("accuracy", "standard")
+    accuracy, groups = options.get("accuracy", "standard"), set(options.get("outputs", ("forces",)))
     model = options.get("contact_model", OPTIONS["contact_model"].default)
-    by_case = DECLARED[model].by_case and accuracy not in _LEVELS
-    if accuracy in _LEVELS:
-        level = _LEVELS.index(accuracy)
-    else:
-        level = 1 if by_case or accuracy >= 1e-3 else 2
-    groups = set(options.get("outputs", ("forces",)))
-    cost = SOLVED_PATCHES if options.get("normal") == "halfspace" else DECLARED[model].cost
-    seconds = cost.forces[level]
     peaks = bool(groups & {"peak_stress", "life", "subsurface"})
+    cost = SOLVED_PATCHES if options.get("normal") == "halfspace" else DECLARED[model].cost
+    seconds, searched = cost.at(_smallest(accuracy, peaks) if isinstance(accuracy, Mapping) else accuracy)
     if peaks:  # one search serves all
-        seconds += cost.peaks[level]
-    if by_case:
-        seconds *= _by_case(accuracy, peaks)
+        seconds += searched
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
     seconds += sum(_PATCH_LIMITS.get(group, 0.0) for group in groups)
     return 1.0 / seconds
 
 
-def _by_case(accuracy: float | Mapping[str, float], peaks: bool) -> float:
-    """Return the cost of a tolerance that is met case by case over that of `standard`, measured on random designs."""
-    asked = accuracy if isinstance(accuracy, Mapping) else {"forces": accuracy, "peak": accuracy}
+def _smallest(asked: Mapping[str, float], peaks: bool) -> float:
+    """Return the smallest of the tolerances by quantity that count; that of a life is one of the peak over 10."""
     smallest = asked.get("forces", 1.0)
-    if peaks:
-        smallest = min(smallest, asked.get("peak", 1.0), 0.1 * asked.get("life", 10.0))
-    return float(max(1.9 * (1e-2 / smallest) ** 0.45, 0.5))
+    return min(smallest, asked.get("peak", 1.0), 0.1 * asked.get("life", 10.0)) if peaks else smallest
 
 
 def study_rate(study: Study) -> float:

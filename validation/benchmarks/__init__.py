@@ -15,6 +15,7 @@ TIMED = (
     "scaling",
     "shortcuts",
     "speed",
+    "trade",
 )
 
 

@@ -15,13 +15,13 @@ from trackroller.roller.accuracy import (
     GRID_ELEMENTS,
     PROMISES,
     accuracy_settings,
-    preset_rungs,
-    read_ladders,
     rounded_up,
 )
 from trackroller.roller.stages import ellipse_stresses
-from validation.tradeoff.summary import yardstick
+from trackroller.study.cost import rate
+from validation.benchmarks.trade import COMPLETE, QUANTITIES
 
+PLANNED = ("preview", 0.1, 0.03, 0.01, 0.003, "standard", "reference")
 MODELS = ("sliding", "fastsim", "kalker")
 TOLERANCES = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
 
@@ -32,20 +32,18 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
     Parameters
     ----------
     data : mapping
-        With `validation.tradeoff.summary.summary` under `tradeoff`, and the index of its figures.
+        With `validation.tradeoff.summary.summary` under `tradeoff`, the index of its figures, and `trade`.
 
     Returns
     -------
     dict
-        `tolerances` and `preset_rows`, rows of tables; `counts`, `promises` and `limits` in words; `life`;
-        `cost_figures`.
+        `tolerances` and others, rows of tables; `counts`, `promises` and `limits` in words; `life`; `cost_figures`.
     """
     summary = data["tradeoff"]
     sample = summary["sample"]
-    return {
+    return _trade(data["trade"]) | {
         "counts": ", ".join(f"{sample[f'designs_{m}']:,} for `{m}`" for m in MODELS if f"designs_{m}" in sample),
         "tolerances": [(f"{t:g}", *(_settings(t, model) for model in MODELS)) for t in TOLERANCES],
-        "preset_rows": _presets(summary),
         "promises": ". ".join(
             f"`{name}` allows {peak:g} of the peak and {force:g} of the forces, with {ELEMENTS[name]} elements in "
             f"`kalker` and {GRID_ELEMENTS[name]} in `fastsim`"
@@ -75,20 +73,38 @@ def _settings(tolerance: float, model: str) -> str:
     return f"{size}, {p.scan}/{p.climb}/{p.polish}/{p.summit}, {p.seeds} seeds"
 
 
-def _presets(summary: dict[str, Any]) -> list[tuple[str, ...]]:
-    measured, rows, one = read_ladders(summary["ladders"]), [], yardstick(summary["ladders"])
-    for name in summary["presets"]:
-        forces, peak = preset_rungs(name, measured)
-        pairs = {"sliding": (peak, forces)}
-        for model in ("fastsim", "kalker"):
-            own = [r for r in measured[model] if r.settings == summary["presets"][name][model]]
-            pairs |= {model: (own[0], own[0])} if own else {}
-        for model, (whole, part) in pairs.items():
-            p, f, n = whole.errors["peak_stress"], part.errors["friction_force"], whole.errors["life"]
-            errors = map(_error, (p.median, p.p95, p.p99, f.median, f.p99, n.p99))
-            rows.append((f"`{name}`", f"`{model}`", f"{whole.cost / one:.2g}", *errors))
-    return rows
+def _trade(measured: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the tables of `validation.benchmarks.trade`, and what `plan` expects by its costs."""
+    rows = [
+        (
+            f"`{row['model']}`",
+            f"`{row['accuracy']}`",
+            f"{row['complete']:.2g}",
+            f"{row['forces']:.2g}",
+            *(_error(float(row["errors"][name][1])) for name in QUANTITIES),
+            f"{100 * row['missed']:.2g} %",
+        )
+        for row in measured["rows"]
+    ]
+    columns = [*next(iter(measured["by_sample"].values()))]
+    samples = [(name, *(f"{own[word]:.2g}" for word in columns)) for name, own in measured["by_sample"].items()]
+    parts = [(name, *(f"{part['0.01']:.2g}" for part in own)) for name, own in measured["by_part"].items()]
+    plan = []
+    for model in dict.fromkeys(row["model"] for row in measured["rows"]):
+        served = [row["accuracy"] for row in measured["rows"] if row["model"] == model]
+        expected = {a: 1e5 / 3600 / rate({"contact_model": model, "accuracy": a, "outputs": COMPLETE}) for a in served}
+        plan.append((f"`{model}`", *(f"{expected[a]:.2g}" if a in expected else "refused" for a in PLANNED)))
+    return {
+        "trade_rows": rows,
+        "columns": ["what varies", *(f"`{word}`" for word in columns)],
+        "sample_rows": samples,
+        "part_rows": parts,
+        "plan_columns": ["model", *(f"`{accuracy}`" for accuracy in PLANNED)],
+        "plan_rows": plan,
+    }
 
 
 def _error(value: float) -> str:
+    if value == 0.0:
+        return "–"
     return "< 1e-15" if value < 1e-15 else f"{rounded_up(value):.1e}"
