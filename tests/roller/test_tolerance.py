@@ -165,7 +165,7 @@ def test_tolerances_are_read_by_quantity():
     assert Tolerance.read(0.01, OUTPUTS) == Tolerance(0.01, 0.01) and Tolerance.read(0.01, ["forces"]) == Tolerance(
         0.01
     )
-    assert [rung.elements for rung in Tolerance(0.01).rungs] == [12, 28, 56, 80]
+    assert [rung.elements for rung in Tolerance(0.01).rungs] == [12, 28, 56, 112]
 
 
 def test_the_expected_cost_grows_with_the_accuracy():

@@ -7,6 +7,7 @@ contact frame are those of `trackroller.contact.common`.
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
@@ -129,6 +130,13 @@ class ContactModel:
         None if the model does not refine patches.
         """
         return None
+
+    def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Iterator[Any]:
+        """Return an iterator over `shares` of one patch with ever finer elements around its adhesion area.
+
+        With each come the number of elements in this area. A model without such elements gives none.
+        """
+        return iter(())
 
     def power(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -72,6 +73,8 @@ class Accuracy:
         Elements of the tractions from which a model finds the peak stress; 0: as many as `elements`.
     refines : bool
         Whether patches with large estimated errors are solved again on twice the elements.
+    peak_goal : float
+        Largest relative error of a peak, which finer elements around the adhesion area shall reach; inf: none.
     """
 
     name: str
@@ -85,6 +88,7 @@ class Accuracy:
     grid_elements: int = 0
     peak_elements: int = 0
     refines: bool = True
+    peak_goal: float = math.inf
 
     @property
     def on_grids(self) -> int:

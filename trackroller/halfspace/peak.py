@@ -14,7 +14,18 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement, unit_rule
-from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, Target, lengths, scan, standing, stress_at, sweep
+from trackroller.halfspace.peak_climb import (
+    PROPORTIONS,
+    Climbs,
+    Target,
+    climb_from_line,
+    has_ridges,
+    lengths,
+    scan,
+    standing,
+    stress_at,
+    sweep,
+)
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, ridge_points, scan_points, spike
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.numerics.compiled import compiled
@@ -23,7 +34,6 @@ from trackroller.numerics.threads import share_rows
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
-RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
 # The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than 18.
 LEAST_WAVES = 8
 MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion beyond those below the surface
@@ -93,6 +103,7 @@ class Effort(NamedTuple):
     gridded: bool
     adhesion: bool
     quick: bool
+    close: bool
 
 
 @dataclass(frozen=True)
@@ -164,13 +175,15 @@ def _search(fine, rough, points, rules, effort, out):
         summit = stress_at(fine, body, climbs.u[best], rules.summit)
         out[body, 0], out[body, 1:4] = summit, climbs.u[best]
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
+    if effort.close:
+        climb_from_line(fine, ridge_points(fine.field), rules.climb, rules.ridge, rules.summit, out)
 
 
 @compiled
 def _seeded(fine, rough, points, rules, effort):
     """Scan the patch and return climbs from the highest places, below few elements at first."""
     count, values = effort.seeds, scan(rough, points, rules.scan)
-    if effort.adhesion and _has_ridges(fine, points, values):
+    if effort.adhesion and has_ridges(fine, points, values):
         line = ridge_points(fine.field)
         points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
     steps = 0.12 * PROPORTIONS * np.ones((2 * count, 3))
@@ -185,21 +198,6 @@ def _seeded(fine, rough, points, rules, effort):
             along_turn(fine.patch, u[k], climbs.along[k])
             k += 1
     return climbs
-
-
-@compiled
-def _has_ridges(target, points, values):
-    """Return whether a stress at the surface is not far below the largest in one of the bodies."""
-    if target.patch.friction <= LITTLE_FRICTION:
-        return False
-    for body in range(2):
-        surface = 0.0
-        for k in range(len(points)):
-            if points[k, 2] == 0.0:
-                surface = max(surface, values[body, k])
-        if surface > RIDGE_WORTH * values[body].max():
-            return True
-    return False
 
 
 def _rough(fields: np.ndarray) -> np.ndarray:
@@ -227,6 +225,7 @@ def find_peaks(
     fields: np.ndarray | None = None,
     coarse: np.ndarray | None = None,
     quick: bool = False,
+    close: bool = False,
 ) -> Peak:
     """Find the peak von Mises stress of roller and guide below n ellipses.
 
@@ -246,6 +245,8 @@ def find_peaks(
     quick : bool
         Polish the best seeds at once, without climbs below few elements. On 12 elements across, whose own error is
         larger, the peaks err as much as after climbs.
+    close : bool
+        Climb from the line where sliding begins too; the elements must resolve it.
 
     Returns
     -------
@@ -284,6 +285,7 @@ def find_peaks(
             fields is not None,
             adhesion,
             quick,
+            close,
         )
         out.put(group, _found(some, rules, effort))
     out.error[:] += _hidden_error(patches, settings, out.stress, fields is None)

@@ -12,10 +12,17 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.halfspace.ellipse import Room, near_parts
+from trackroller.halfspace.peak_seeds import best_seeds
 from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
 from trackroller.numerics.compiled import compiled
 
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
+RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
+# Climbs from the line where sliding begins: seeds of each body, most points of the line, and over the size of the line
+# the distance of the seeds, the first step, and the last.
+LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 3, 200, 0.2, 0.08, 0.004
+OUTSIDE = 0.02, 0.05, 0.1  # distances of more points outside the line, over its size: a cusp may lie beside it
+LEAST_LINE = 0.01  # size of a line of few points
 
 
 class Target(NamedTuple):
@@ -216,3 +223,61 @@ def standing(climbs, share, gap, most):
         if not stand[k]:
             climbs.f[k] = -1.0
     return stand
+
+
+@compiled
+def climb_from_line(target, line, first, rules, summit, out):
+    """Replace the peaks of both bodies in `out` (2, 6) by higher ones near the points `line` (m, 3) on the surface.
+
+    The steps of the climbs follow from the size of the line, so that an adhesion area far smaller than the patch is
+    searched as closely as a large one. `first`, `rules` and `summit` are quadrature rules.
+    """
+    if len(line) > LINE_POINTS:
+        line = line[:: len(line) // LINE_POINTS + 1].copy()
+    if len(line) == 0:
+        return
+    size, centre = LEAST_LINE, np.zeros(3)
+    for d in range(2):
+        size, centre[d] = max(size, line[:, d].max() - line[:, d].min()), line[:, d].mean()
+    out_of = line - centre
+    line = np.concatenate((line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of, line + OUTSIDE[2] * out_of))
+    values = scan(target, line, first)
+    count = LINE_SEEDS
+    steps = LINE_STEP * size * PROPORTIONS * np.ones((2 * count, 3))
+    places, heights, gained, along = (
+        np.zeros((2 * count, 3)),
+        np.full(2 * count, -1.0),
+        np.zeros(2 * count),
+        np.zeros((2 * count, 2)),
+    )
+    climbs = Climbs(places, heights, gained, steps, along)
+    climbs.along[:, 1] = 1.0
+    for body in range(2):
+        k = body * count
+        for best in best_seeds(line, values[body], count, LINE_APART * size):
+            climbs.u[k] = line[best]
+            climbs.f[k] = stress_at(target, body, line[best], rules)
+            for sweeps in range(24):
+                if not sweep(target, climbs, k, rules, LINE_SMALLEST * size, sweeps > 0):
+                    break
+            k += 1
+        best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
+        top = stress_at(target, body, climbs.u[best], summit)
+        if top > out[body, 0]:
+            out[body, 0], out[body, 1:4] = top, climbs.u[best]
+            out[body, 4] = 4.0 * (abs(top - climbs.f[best]) + climbs.gained[best]) / top
+
+
+@compiled
+def has_ridges(target, points, values):
+    """Return whether a stress at the surface is not far below the largest in one of the bodies."""
+    if target.patch.friction <= LITTLE_FRICTION:
+        return False
+    for body in range(2):
+        surface = 0.0
+        for k in range(len(points)):
+            if points[k, 2] == 0.0:
+                surface = max(surface, values[body, k])
+        if surface > RIDGE_WORTH * values[body].max():
+            return True
+    return False

@@ -29,8 +29,9 @@ PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
 FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whose cost is low
 LIKELY_EXPONENT = 10.0  # of an S-N curve, for the search of the peak where the life has a tolerance
 PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
-BY_CASE_ELEMENTS = (12, 28, 56, 80)  # across a patch, on the rungs of a tolerance that is met case by case
-SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 80 elements keep in all but a few per cent of designs
+BY_CASE_ELEMENTS = (12, 28, 56, 112)  # across a patch, on the rungs of a tolerance that is met case by case
+WINDOWS_BELOW = 0.015  # tolerance of peaks up to which adhesion areas of few elements get finer ones
+SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 112 elements keep in all but a few per cent of designs
 
 
 @dataclass(frozen=True)
@@ -176,6 +177,7 @@ class Tolerance:
             replace(
                 _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements),
                 refines=False,
+                peak_goal=peak if peak <= WINDOWS_BELOW else math.inf,
             )
             for elements in BY_CASE_ELEMENTS
         )

@@ -25,11 +25,11 @@ if TYPE_CHECKING:
 ORDER = 1.3  # of convergence of forces and peaks, the lowest that was seen while elements double
 SAFETY = 2.0  # factor on the extrapolated change
 LEAP = 2  # rungs that a case goes up at once at most: a large estimate is a rough one
-REACH = 4.0  # an error is not worth the next rung above this many times what the order promises there
+REACH = 8.0  # an error is not worth the next rung above this many times what the order promises there
 # Factors on the errors that the stages estimate themselves, on the first rung, where nothing can be compared, and on
 # later ones. With them 99 % of the forces and peaks of random designs lie within the tolerance.
 FIRST_FORCES, FIRST_PEAKS = 2.8, 5.0
-LATER_FORCES, LATER_PEAKS = 1.5, 0.4
+LATER_FORCES, LATER_PEAKS = 1.0, 0.4
 
 
 def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options], Block]) -> Block:
@@ -75,6 +75,7 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
         place = np.arange(len(block))
         place[rows] = len(block) + np.arange(rows.size)
         block = join([block, finer]).take(place)
+    block.values.pop("peak_resolved", None)
     block.values["error_over_tolerance"] = np.where(block.converged == 1, over, np.nan)
     block.bits |= np.where(over > 1.0, validity_bit("tolerance_missed"), 0).astype(block.bits.dtype)
     return block
@@ -114,6 +115,8 @@ def _changes(friction: np.ndarray, before: Block, after: Block) -> dict[str, np.
     scale: dict[str, np.ndarray] = {
         name: new[name] for name in ("normal_force", "friction_energy_per_distance", "peak_stress") if name in new
     }
+    if "peak_resolved" in new:  # finer elements around the adhesion area tell their own error
+        scale["peak_stress"] = np.where(new["peak_resolved"][:, :, None] == 1, np.inf, new["peak_stress"])
     scale |= {"lateral_force": capacity, "driving_force": capacity}
     scale["spin_moment"] = capacity * np.sqrt(new["semi_axis_lateral"] * new["semi_axis_rolling"])
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
+from trackroller.contact.kalker import window
 from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.kalker.patch import shares, to_tractions
@@ -55,6 +58,15 @@ class KalkerModel(ContactModel):
         coarse = self._solution(ellipse, slip, friction, rows)
         finer = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
         return (*shares(ellipse, finer, parts), finer.converged)
+
+    def windows(self, ellipse, slip, friction, rows):
+        if self.correction is None:
+            return iter(())
+        correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)
+        elastic = correction.elastic.take(rows)
+        bound = friction * ellipse.max_pressure / elastic.shear_modulus
+        settings = replace(correction.settings, tolerance=correction.traction_tolerance)
+        return window.fields(ellipse, coarse, elastic.poisson_ratio[0], bound[0], settings)
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

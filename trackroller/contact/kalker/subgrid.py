@@ -22,8 +22,8 @@ PARTS = 3  # points along each side of an element
 RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
-@lru_cache(maxsize=16)
-def _spline(n: int, parts: int) -> np.ndarray:
+@lru_cache(maxsize=32)
+def spline(n: int, parts: int) -> np.ndarray:
     """Return the matrix (parts n, n) of the cubic spline through the centres, constant beyond the outer ones."""
     from scipy.interpolate import make_interp_spline  # heavy: it doubles the start of a command without kalker
 
@@ -95,7 +95,7 @@ class Fields(NamedTuple):
         """Return the factor of the friction on `parts` times the elements, (n, 1, ., .)."""
         if self.factor.shape[1:] == (1, 1):
             return self.factor[:, None]
-        matrix = _spline(self.factor.shape[-1], parts)
+        matrix = spline(self.factor.shape[-1], parts)
         finer = np.matmul(np.matmul(matrix, _filled(self.factor[:, None], self.height)), matrix.T)
         low, high = (reduce(self.factor, axis=(1, 2))[:, None, None, None] for reduce in (np.min, np.max))
         return np.clip(finer, low, high)
@@ -121,6 +121,14 @@ def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndar
     return _between(z, fields, parts), _between(_of_four(z), twice, parts)
 
 
+def shares_of(z: np.ndarray, across: int, along: int) -> np.ndarray:
+    """Return the traction over mu p from z (n, 2, ny, nx), with `across` and `along` points a side of each element."""
+    out = np.matmul(np.matmul(spline(z.shape[-2], along), z), spline(z.shape[-1], across).T)
+    for field in out:
+        _shorten(field)
+    return out
+
+
 def _of_four(field: np.ndarray) -> np.ndarray:
     """Return the means (..., m/2, m/2) of 2 x 2 elements of a field (..., m, m)."""
     m = field.shape[-1] // 2
@@ -134,7 +142,7 @@ def _between(z: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
 
 def _finer(z: np.ndarray, parts: int) -> np.ndarray:
     """Interpolate z (n, 2, m, m) to `parts` times the elements by cubic splines."""
-    matrix = _spline(z.shape[-1], parts)
+    matrix = spline(z.shape[-1], parts)
     return np.matmul(np.matmul(matrix, z), matrix.T)
 
 

@@ -80,6 +80,7 @@ class Results:
     surface : tractions of the existing patches, once computed
     share : traction of the existing patches over its bound, once computed
     refined : patches whose peak was searched on twice the elements of the contact model, (2 n,)
+    resolved : patches whose peak was searched with finer elements around the adhesion area, (2 n,)
     """
 
     scene: Scene
@@ -96,6 +97,7 @@ class Results:
     surface: SurfaceTractions | None = None
     share: np.ndarray | None = None
     refined: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
+    resolved: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
@@ -120,6 +122,7 @@ class Results:
             np.where(balance.jamming, JAMMING, 0).astype(np.int32),
             np.zeros(scene.n, bool),
             refined=np.zeros(2 * scene.n, bool),
+            resolved=np.zeros(2 * scene.n, bool),
         )
         out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out

@@ -69,6 +69,10 @@ def peak_stress(results: Results, options: Options) -> None:
         if options.stress_bodies == "published":
             full = np.repeat(full[:, :, :1], 2, axis=2)
         results.values[name] = full
+    if np.isfinite(options.settings.peak_goal):
+        flat = np.zeros(2 * results.scene.n, bool)
+        flat[good] = mirror.spread(good, results.resolved[asked], 1.0)
+        results.values["peak_resolved"] = results.by_contact(flat)
 
 
 def subsurface(results: Results, options: Options) -> None:
