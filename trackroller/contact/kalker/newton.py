@@ -111,7 +111,7 @@ def _state(law, work, traction, slip):
     """Compute bounds and residual at a traction and slip; return the residual's largest component and its norm."""
     if law.falls:
         row_means(reals(slip), work.columns.first, work.columns.loaded, work.room.mean)
-    law_of_slip(work.room.mean, law.height, law.scale, law.knots, law.factors, work.room.bound, work.room.slope)
+        law_of_slip(work.room.mean, law.height, law.scale, law.knots, law.factors, work.room.bound, work.room.slope)
     return residual(reals(traction), reals(slip), work.room.bound, law.rho, reals(work.room.value))
 
 
@@ -214,6 +214,8 @@ def newton(problem, room, traction, tolerance, limit):
     functions, rho, falls = problem.influence, 1.0 / problem.influence.own, problem.knots.size > 1
     first, loaded = column_ranges(problem.height)
     room.mean[:] = 0.0
+    # constant friction needs the bounds once; a friction law overwrites them with those of its slips
+    law_of_slip(room.mean, problem.height, problem.scale, problem.knots, problem.factors, room.bound, room.slope)
     work = Work(
         room,
         Derivative(room.projection, room.turn, falls, rho),
