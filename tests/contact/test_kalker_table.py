@@ -196,7 +196,7 @@ def test_beside_a_nearly_lifted_contact_the_elements_serve():
     assert by_table.max() > 0.2 and float(ds.normal_force_error_estimate.max()) < 0.05
     assert float(ds.force_error_estimate.max()) < 0.05
     off = abs(ds.normal_force / exact.normal_force - 1).values[by_table > 0.04]
-    assert off.max() < 0.03  # 0.08 by the table alone
+    assert off.max() < 0.05  # 0.4 by the table alone
     np.testing.assert_allclose(
         ds.friction_energy_per_distance[:, 1], exact.friction_energy_per_distance[:, 1], rtol=0.02
     )

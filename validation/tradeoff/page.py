@@ -105,6 +105,4 @@ def _trade(measured: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _error(value: float) -> str:
-    if value == 0.0:
-        return "–"
     return "< 1e-15" if value < 1e-15 else f"{rounded_up(value):.1e}"

@@ -48,7 +48,7 @@ TABLE_SERVES = 0.03, 0.039
 # element begins to slide. From there on the elements take over by and by.
 AGREED = 1.0, 2.5
 # Elements across patches that serve for the table. A patch takes the first number that promises the error of F_N.
-SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.02
+SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.03
 
 
 def refined_above(elements: int) -> float:
