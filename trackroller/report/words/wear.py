@@ -50,10 +50,11 @@ def _pressure(ds: xr.Dataset) -> Sentence:
     pressure, wide = own["max_pressure"].values, own["semi_axis_lateral"].values
     most, travel = int(np.argmax(pressure)), own["travel"].values
     between = f", {rounded(pressure[most])} MPa at {rounded(travel[most])} km" if 0 < most < len(travel) - 1 else ""
+    wider = rounded(wide[-1] / wide[0])
+    grown = "" if wider == "1" else f"{wider} times "
     text = (
         f"The largest pressure of contact {int(own['contact'])} is {rounded(pressure[0])} MPa at first{between} and "
-        f"{rounded(pressure[-1])} MPa at the end, where the patch is {rounded(wide[-1] / wide[0])} times as wide as at "
-        "first."
+        f"{rounded(pressure[-1])} MPa at the end, where the patch is {grown}as wide as at first."
     )
     error = float(own["pressure_error"].max())
     text += f" Its estimated error is {rounded(100 * error, 2)} % at most."
