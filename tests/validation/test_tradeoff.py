@@ -174,7 +174,7 @@ def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
     found = json.loads((out / "tradeoff.json").read_text(encoding="utf-8"))
     orders = {(o["stage"], o["method"], o["quantity"]): o["order"] for o in found["orders"]}
     assert 1.0 < orders["tractions", "grid", "friction_force"] < 3.0
-    assert orders["stress", "bilinear elements", "stress"] > orders["stress", "constant elements", "stress"] > 0.4
+    assert orders["stress", "bilinear elements", "stress"] > 0.4
     published = next(r for r in found["settings"] if r["stage"] == "ellipse" and r["label"] == "published")
     assert published["errors"]["semi_axes"][0] > 1e-4, "linear interpolation in the printed table"
     paper = {r["what"]: r for r in found["paper_table"]}

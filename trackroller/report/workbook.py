@@ -4,18 +4,17 @@ from __future__ import annotations
 
 import csv
 import re
+import zipfile
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from openpyxl import Workbook
-from openpyxl.cell import WriteOnlyCell
-from openpyxl.cell.cell import ILLEGAL_CHARACTERS_RE
 
 from trackroller.errors import InputError
 from trackroller.files import write_whole
+from trackroller.report import html
 from trackroller.report.tables.table import Table, cell
 
 
@@ -80,18 +79,28 @@ def _inert(value: Any) -> Any:
 
 
 def _save(path: Path, tables: Sequence[Table]) -> None:
-    """Write a workbook with one sheet a table; a text stays a text, also one that looks like a formula."""
-    book = Workbook(write_only=True)
-    for table in tables:
-        sheet = book.create_sheet(re.sub(r"[\[\]:*?/\\]", " ", table.name)[:31])
-        for row in (table.heads, *table.rows):
-            sheet.append([_xlsx_cell(sheet, value) for value in row])
-    book.save(path)
+    """Write a workbook with one sheet a table."""
+    names = [re.sub(r"[\[\]:*?/\\]", " ", table.name)[:31] for table in tables]
+    parts: dict[str, tuple[str, list[Any]]] = {
+        "[Content_Types].xml": ("types", []),
+        "_rels/.rels": ("root", []),
+        "xl/workbook.xml": ("book", []),
+        "xl/_rels/workbook.xml.rels": ("links", []),
+    }
+    for i, table in enumerate(tables, 1):
+        parts[f"xl/worksheets/sheet{i}.xml"] = "sheet", [table.heads, *table.rows]
+    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        for name, (part, rows) in parts.items():
+            content = {"part": part, "names": names, "rows": rows}
+            text = html.render("workbook.xml.j2", content, figure=_figure, printable=_printable)
+            file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
 
 
-def _xlsx_cell(sheet: Any, value: Any) -> Any:
-    if isinstance(value, (int, float, np.number)) and np.isfinite(value):
-        return value
-    text = WriteOnlyCell(sheet, ILLEGAL_CHARACTERS_RE.sub(" ", cell(value)))
-    text.data_type = "s"
-    return text
+def _figure(value: Any) -> str | None:
+    """Return a finite number with all its figures, None for anything else."""
+    return repr(float(value)) if isinstance(value, (int, float, np.number)) and np.isfinite(value) else None
+
+
+def _printable(value: Any) -> str:
+    """Return a text without the characters that XML forbids."""
+    return re.sub(r"[\x00-\x08\x0b\x0c\x0e-\x1f]", " ", value if isinstance(value, str) else cell(value))

@@ -41,7 +41,6 @@ CONVERGENCE = {
     ("tractions", "sliding", "grid", "friction_force"): "friction force summed over a grid",
     ("stress", "sliding", "plane waves", "stress"): "stress: waves and chords",
     ("stress", "sliding", "bilinear elements", "stress"): "stress: bilinear elements",
-    ("stress", "sliding", "constant elements", "stress"): "stress: constant elements",
     ("peak", "sliding", "grid", "peak_stress"): "peak as the highest grid point",
     ("elements", "fastsim", "elements", "friction_force"): "FASTSIM: friction force",
     ("elements", "kalker", "elements", "friction_force"): "Kalker: friction force",

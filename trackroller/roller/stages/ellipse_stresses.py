@@ -38,6 +38,10 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # error over the last change of a peak with so many elements and with fewer, over the error of the search, and from the
 # tractions outside.
 ENOUGH, LEVELS, CHANGED, UNRESOLVED, SEARCHED, OUTSIDE = 250, 6, 1.0, 4.0, 0.25, 2e-3
+# Fewer elements in the area suffice if the peak then changes by less than this share of the tolerance. Of 260 random
+# designs, finer elements moved 23 peaks by more than 1 %. Twenty of these contacts were steeper than 49 degrees; the
+# others had large adhesion areas. So flat contacts get finer elements only for a strict tolerance, or if in doubt.
+FEW, STEADY, STEEP, STRICT = 40, 0.1, np.sin(np.radians(45.0)), 5e-3
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
 
@@ -185,7 +189,8 @@ class EllipseStresses(PatchStresses):
         sticks: Any = results.scene.model.stick(patch, slip, friction, rows)
         elements = 0.25 * np.pi * self.options.settings.elements**2 * sticks
         pole = np.abs(results.slip.pole_lateral[flat]) < patch.semi_axis_lateral
-        doubt = (peak.error.max(axis=1) > goal) | ((elements < ENOUGH) & pole & (friction > LITTLE_FRICTION))
+        few = (elements < ENOUGH) & pole & (friction > LITTLE_FRICTION)
+        doubt = (peak.error.max(axis=1) > goal) | (few & ((np.abs(slip.sine) > STEEP) | (goal <= STRICT)))
         for i in np.flatnonzero(doubt & (results.slides_along[flat] == 0) & (friction > 0.0)).tolist():
             one = slice(i, i + 1)
             of = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
@@ -200,7 +205,8 @@ class EllipseStresses(PatchStresses):
                 finer.error[:] = changed + SEARCHED * (finer.error - finer.change) + OUTSIDE
                 peak.put(one, finer)
                 results.resolved[flat[i]] = True
-                if resolved >= ENOUGH and finer.error.max() <= goal:
+                steady = resolved >= FEW and changed.max() <= STEADY * factor * goal
+                if (steady or resolved >= ENOUGH) and finer.error.max() <= goal:
                     break
 
     def _search(self, patches: np.ndarray, ratios: np.ndarray) -> Peak:
