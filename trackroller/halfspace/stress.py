@@ -133,10 +133,9 @@ def stress_on_grid(
 
     Notes
     -----
-    The field is that of `stress_from_tractions` . It is a discrete convolution of the
-    tractions with the influence of one node's hat load; zero padding prevents periodic images. The computation needs
-    about 3 kB of memory per node of one plane besides the result. Rounding errors grow with (patch / spacing)^2: 1e-11
-    of the tractions at 200 nodes.
+    The field is that of `stress_from_tractions`. It is a discrete convolution of the tractions with the influence of
+    one node's hat load; zero padding prevents periodic images. The computation needs about 3 kB of memory per node of
+    one plane besides the result. Rounding errors grow with (patch / spacing)^2: 1e-11 of the tractions at 200 nodes.
 
     References
     ----------

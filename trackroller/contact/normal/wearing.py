@@ -146,20 +146,23 @@ def on_cells(edges: np.ndarray, depth: np.ndarray, cells: np.ndarray) -> np.ndar
 
 
 def evened_at_rims(depth: np.ndarray, loaded: np.ndarray) -> np.ndarray:
-    """Return depths (2, m) of a step with differences of neighbours halved near the ends of the `loaded` columns (m,).
+    """Halve the differences between neighbouring depths (2, m) near both ends of the `loaded` columns (m,).
 
-    The patch ends within a column, which takes all or nothing of its load. The next patch has other columns, and sees
-    the difference as a pressure that the following steps make larger. The volume does not change.
+    A patch ends within a column, but a column is loaded as a whole or not at all. This leaves a false edge in the
+    depths. The next patch has other columns: they press on this edge, and further steps would make it larger. The
+    volume does not change.
     """
     inside, face = np.flatnonzero(loaded), np.arange(1, depth.shape[1])
-    within = np.minimum(face - inside[0], inside[-1] + 1 - face)  # columns between a face and the nearer end
+    within = np.minimum(
+        face - inside[0], inside[-1] + 1 - face
+    )  # columns from each face to the nearer end of the patch
     flow = np.zeros((depth.shape[0], depth.shape[1] + 1))
     flow[:, 1:-1] = 0.25 * np.clip((2.0 * RIM - within) / RIM, 0.0, 1.0) * np.diff(depth, axis=1)
     return depth + np.diff(flow, axis=1)
 
 
 def smoothed(depth: np.ndarray, width: float) -> np.ndarray:
-    """Return depths (m,) of cells, smoothed to what columns of elements of a `width` in cells resolve.
+    """Smooth the depths (m,) of cells over the `width` of a column of elements, in cells.
 
     The patch grows while it wears, and its columns with it. Their centres would see details of narrower cells at
     random, and wear would turn these details into noise. Means of neighbouring cells keep the volume.

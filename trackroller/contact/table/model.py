@@ -110,7 +110,7 @@ class TableModel(ContactModel):
         return self.served.state(n)
 
     def force_error(self, n: int) -> np.ndarray:
-        """Return the estimated error of the contacts that the exact solver serves; NaN of the others, (n, 2)."""
+        """Return the estimated errors of contacts solved by elements, (n, 2); NaN where the table gives the forces."""
         return np.where((self.used(n) == self.exact.name)[:, None], self.served.force_error(n), np.nan)
 
     def used(self, n: int) -> np.ndarray:

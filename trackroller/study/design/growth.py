@@ -44,7 +44,9 @@ def check_point_samples(given: Any, samples: int, points: int) -> list[int]:
     sizes = list(given) or [samples] * points
     if len(sizes) != points or any(not isinstance(size, int) or not 0 < size <= samples for size in sizes):
         allowed = f"{points} whole numbers from 1 to samples ({samples}), one for each design point"
-        raise InputError("point_samples", sizes, allowed, "Remove the key: until finds them.")
+        raise InputError(
+            "point_samples", sizes, allowed, "Remove the key. The key until sets it while the sample grows."
+        )
     return sizes
 
 
