@@ -176,7 +176,7 @@ def goal_column(results: StudyResults, goal: str) -> Column:
     values = judged.values[:, list(goals_of_search(results)).index(goal)]
     if kind == "probability":
         if output in REGIMES:
-            return values, "1", f"probability of {REGIME_LABELS[REGIMES.index(output)].replace('_', ' ')}"
+            return values, "1", f"probability of {REGIME_LABELS[REGIMES.index(output)]}"
         return values, "1", f"probability that the {results.quantity(output)[2]} meets its target"
     _, units, words = results.quantity(output)
     if output in results.design.meta["outer"] or results.design.meta["inner_samples"] == 1:

@@ -59,17 +59,17 @@ class CornerLoads(NamedTuple):
     reach: float
 
 
-def _difference(q: Array, axis: int, order: int) -> Array:
+def _second_difference(q: Array, axis: int) -> Array:
     pad = [(0, 0)] * q.ndim
-    pad[axis] = (order, order)
-    return np.diff(np.pad(q, pad), n=order, axis=axis)
+    pad[axis] = (2, 2)
+    return np.diff(np.pad(q, pad), n=2, axis=axis)
 
 
 def _moment_corrected(q: Array, axis: int, second_moment: float) -> Array:
     """Return nodal forces with the total, centre and second moment of the loads; one node more at each end."""
     pad = [(0, 0)] * q.ndim
     pad[axis] = (1, 1)
-    return np.pad(q, pad) + 0.5 * second_moment * _difference(q, axis, 2)
+    return np.pad(q, pad) + 0.5 * second_moment * _second_difference(q, axis)
 
 
 def _kept(x: Array, y: Array, weights: Array, kind: int) -> Loads:
@@ -92,7 +92,7 @@ def corner_loads(x: Array, y: Array, tractions: Array) -> CornerLoads:
     hx, hy = (x[-1] - x[0]) / (x.size - 1), (y[-1] - y[0]) / (y.size - 1)
     length = float(max(hx, hy))
     gx, gy = hx / length, hy / length
-    near = _difference(_difference(tractions, 0, 2), 1, 2) / (gx * gy)
+    near = _second_difference(_second_difference(tractions, 0), 1) / (gx * gy)
     moment = 1.0 / 6.0  # second moment of a hat of unit area over h^2
     far = _moment_corrected(_moment_corrected(tractions, 0, moment), 1, moment) * gx * gy
     across, along = (v[0] / length + g * (np.arange(v.size + 2) - 1.0) for g, v in ((gx, x), (gy, y)))

@@ -11,7 +11,9 @@ from __future__ import annotations
 import json
 import math
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
+from typing import Any
 
 from trackroller.errors import InputError
 
@@ -20,6 +22,12 @@ FILE = Path(__file__).with_name("costs.json")
 # Seconds of one core of a complete case in sliding at standard, on a quiet machine of two cores. The measured costs are
 # ratios to this case.
 YARDSTICK = 1.9e-3
+
+
+@cache
+def _ratios() -> Any:
+    """Return the measured costs of forces and of peaks over the yardstick, by model and accuracy."""
+    return json.loads(FILE.read_text(encoding="utf-8"))["models"]
 
 
 @dataclass(frozen=True)
@@ -43,8 +51,7 @@ class Cost:
     @classmethod
     def measured(cls, name: str) -> Cost:
         """Return the cost of a built-in model from the ratios of `validation.benchmarks.trade`."""
-        ratios = json.loads(FILE.read_text(encoding="utf-8"))["models"][name]
-        spent = {word: [YARDSTICK * ratio for ratio in both] for word, both in ratios.items()}
+        spent = {word: [YARDSTICK * ratio for ratio in both] for word, both in _ratios()[name].items()}
         forces, peaks = zip(*(spent[level] for level in LEVELS), strict=True)
         tolerances = sorted((float(word), *both) for word, both in spent.items() if word not in LEVELS)
         return cls(forces, peaks, tuple(tolerances[::-1]))

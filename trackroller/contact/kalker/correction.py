@@ -140,8 +140,7 @@ class Correction:
         solution, scale = self.store.get(_slots(rows, _side(slip))), _scale(patch, friction)
 
         def work(values: np.ndarray) -> np.ndarray:
-            f = values * scale
-            return np.asarray(solution.pressure_work - slip.longitudinal * f[:, 1] - slip.spin * f[:, 2])
+            return _work(solution, slip, *(values * scale).T[1:])
 
         with np.errstate(divide="ignore", invalid="ignore"):
             off = np.abs(work(forces + offset) * (1.0 + solution.energy_residual) / work(forces) - 1.0)
@@ -278,7 +277,7 @@ class Correction:
         if self.settings.profile_slip:
             return solution.works
         r = self.law(patch, slip, friction, rows)
-        work = solution.pressure_work - slip.longitudinal * r.driving_force - slip.spin * r.spin_moment
+        work = _work(solution, slip, r.driving_force, r.spin_moment)
         lost = 0.0 if self.trusts_table else self.share[rows, _side(slip)] * solution.energy_residual
         return Works(work * (1.0 + lost), solution.pressure_work)
 
@@ -292,6 +291,11 @@ class Correction:
         """Return the larger residual of the friction law in both patches of n rollers, and whether it is met, (n,)."""
         residual, converged = self.store.state()
         return residual.reshape(n, 2).max(axis=1), np.logical_and.reduce(converged.reshape(n, 2), axis=1)
+
+
+def _work(solution: PatchSolution, slip: Slip, driving: np.ndarray, moment: np.ndarray) -> np.ndarray:
+    """Return the work that F_A, M_R and the pressures do per distance travelled, (m,) [N]."""
+    return np.asarray(solution.pressure_work - slip.longitudinal * driving - slip.spin * moment)
 
 
 def _rise(value: np.ndarray, limits: tuple[float, float]) -> np.ndarray:

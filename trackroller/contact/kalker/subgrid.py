@@ -23,7 +23,7 @@ RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
 @lru_cache(maxsize=32)
-def spline(n: int, parts: int) -> np.ndarray:
+def _spline(n: int, parts: int) -> np.ndarray:
     """Return the matrix (parts n, n) of the cubic spline through the centres, constant beyond the outer ones."""
     from scipy.interpolate import make_interp_spline  # heavy: it doubles the start of a command without kalker
 
@@ -95,10 +95,8 @@ class Fields(NamedTuple):
         """Return the factor of the friction on `parts` times the elements, (n, 1, ., .)."""
         if self.factor.shape[1:] == (1, 1):
             return self.factor[:, None]
-        matrix = spline(self.factor.shape[-1], parts)
-        finer = np.matmul(np.matmul(matrix, _filled(self.factor[:, None], self.height)), matrix.T)
         low, high = (reduce(self.factor, axis=(1, 2))[:, None, None, None] for reduce in (np.min, np.max))
-        return np.clip(finer, low, high)
+        return np.clip(interpolated(_filled(self.factor[:, None], self.height), parts, parts), low, high)
 
 
 def fields_of(patch: Any, solution: Any) -> Fields:
@@ -123,10 +121,7 @@ def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndar
 
 def shares_of(z: np.ndarray, across: int, along: int) -> np.ndarray:
     """Return the traction over mu p from z (n, 2, ny, nx), with `across` and `along` points a side of each element."""
-    out = np.matmul(np.matmul(spline(z.shape[-2], along), z), spline(z.shape[-1], across).T)
-    for field in out:
-        _shorten(field)
-    return out
+    return _bounded(interpolated(z, across, along))
 
 
 def _of_four(field: np.ndarray) -> np.ndarray:
@@ -137,20 +132,25 @@ def _of_four(field: np.ndarray) -> np.ndarray:
 
 def _between(z: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
     """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction of the fields."""
-    return _by_law(_finer(z, parts), fields, parts)
+    return _by_law(interpolated(z, parts, parts), fields, parts)
 
 
-def _finer(z: np.ndarray, parts: int) -> np.ndarray:
-    """Interpolate z (n, 2, m, m) to `parts` times the elements by cubic splines."""
-    matrix = spline(z.shape[-1], parts)
-    return np.matmul(np.matmul(matrix, z), matrix.T)
+def interpolated(field: np.ndarray, across: int, along: int) -> np.ndarray:
+    """Interpolate a field (..., ny, nx) by cubic splines, with `across` and `along` points a side of each element."""
+    ny, nx = field.shape[-2:]
+    return np.matmul(np.matmul(_spline(ny, along), field), _spline(nx, across).T)
+
+
+def _bounded(fine: np.ndarray) -> np.ndarray:
+    """Shorten z (n, 2, ny, nx) to the traction over its bound, in place."""
+    for field in fine:
+        _shorten(field)
+    return fine
 
 
 def _by_law(fine: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
     """Turn z on `parts` times the elements into the traction over mu p at rest, in place."""
-    for field in fine:
-        _shorten(field)
-    return np.multiply(fine, fields.finer_factor(parts), out=fine)
+    return np.multiply(_bounded(fine), fields.finer_factor(parts), out=fine)
 
 
 @compiled
@@ -197,7 +197,7 @@ def integrals(
     tractions therefore grows as less of the bound is used.
     """
     height, share = finer
-    fine = _finer(fields.before_law(), PARTS)
+    fine = interpolated(fields.before_law(), PARTS, PARTS)
     within = np.broadcast_to(share, (len(fine), *share.shape[-2:]))
     adhesion = np.array([_adhesion(z, own) for z, own in zip(fine, within, strict=True)])
     between = _by_law(fine, fields, PARTS)

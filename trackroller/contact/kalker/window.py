@@ -111,8 +111,7 @@ def _solved(
     height = _heights(first, start.shape[1:], of)
     start = (start[0] + 1j * start[1]) * height
     finer = influence(hx / kx, hy / ky, poisson_ratio, *height.shape)
-    rigid = subgrid.spline(j1 - j0, ky) @ known @ subgrid.spline(i1 - i0, kx).T
-    rigid -= finer.product(start * (1.0 - _weights(spans, grid, parts)))
+    rigid = subgrid.interpolated(known, kx, ky) - finer.product(start * (1.0 - _weights(spans, grid, parts)))
     problem = Problem(finer, rigid, height, 1.0, np.zeros(1), np.ones(1))
     at, residual, *_ = newton(
         problem, room_for(*height.shape, settings.krylov), start, settings.tolerance, settings.steps
