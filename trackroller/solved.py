@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import tempfile
 from collections.abc import Iterable, Mapping
+from contextlib import nullcontext
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -204,12 +205,11 @@ def run(
     checked = study if isinstance(study, Study) else load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
         told: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
-        if results is not None:
-            return open_study(run_any(checked, results, **told).folder.root)
-        if decides(checked):  # its cases follow from stored results
-            with tempfile.TemporaryDirectory() as place:
-                return open_study(run_any(checked, place, **told).folder.root)
-        return Solved(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
+        if results is None and not decides(checked):
+            return Solved(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
+        # the cases of a study that decides follow from stored results
+        with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
+            return open_study(run_any(checked, place, **told).folder.root)
 
 
 def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = None) -> Solved:

@@ -16,17 +16,15 @@ def decides(study: Study) -> bool:
     return bool(searches or study.config.until is not None)
 
 
-def run_any(study: Study, results: Path | str = "results", *, rerun_failed: bool = False, **how: Any) -> Plan:
+def run_any(study: Study, results: Path | str = "results", **how: Any) -> Plan:
     """Run a study; see `trackroller.study.run.run_study` for the arguments.
 
-    With `rerun_failed` the failed cases of a search are solved again before it goes on.
+    The failed cases of a search that are to be solved again are solved before it goes on.
     """
     if study.config.until is not None:
-        from trackroller.analysis.growing import grow_study  # heavy: scipy.stats, as below
-
-        return grow_study(study, results, rerun_failed=rerun_failed, **how)
-    if not decides(study):
-        return run_study(study, results, rerun_failed=rerun_failed, **how)
-    from trackroller.analysis.optimum import search_designs  # heavy: scipy.stats, which no job of a workflow needs
-
-    return search_designs(study, results, rerun_failed=rerun_failed, **how)
+        from trackroller.analysis.growing import grow_study as run  # heavy: scipy.stats, as below
+    elif decides(study):
+        from trackroller.analysis.optimum import search_designs as run  # heavy: no job of a workflow needs it
+    else:
+        run = run_study
+    return run(study, results, **how)

@@ -7,24 +7,20 @@ study whose cases go through plan and chunks. A run that was stopped therefore r
 
 from __future__ import annotations
 
-import contextlib
 import json
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 from trackroller.analysis.looks import UNTIL, look
 from trackroller.analysis.stored_study import solved_results
-from trackroller.files import interrupts_wait_for_files
 from trackroller.study.cost import duration
 from trackroller.study.design.growth import doubled
 from trackroller.study.file.study import Study
-from trackroller.study.run import executing
-from trackroller.study.solve import Solver, solve_chunk
-from trackroller.study.store.folder import Tell, locked
+from trackroller.study.run import Runner
+from trackroller.study.store.folder import StudyFolder, Tell
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.inventory import forget_failed, take_inventory
+from trackroller.study.store.inventory import take_inventory
 from trackroller.study.store.plan import Plan, study_folder
 from trackroller.study.store.planning import working_plan
 
@@ -36,17 +32,16 @@ class Growing:
     ----------
     study : Study
         The checked study with the key `until`, at its first look.
-    results : path
-        Parent of the study's folder.
+    folder : StudyFolder
+        Its folder.
     tell : callable
         Receives a line for each look.
     """
 
-    def __init__(self, study: Study, results: Path | str, tell: Tell) -> None:
+    def __init__(self, study: Study, folder: StudyFolder, tell: Tell) -> None:
         assert study.config.until is not None
         self.study, self.until, self.tell = study, study.config.until, tell
-        self.folder = study_folder(study.name, results).create()
-        self.found = take_inventory(self.folder)
+        self.folder, self.found = folder, take_inventory(folder)
         self.looks: list[dict[str, Any]] = []
 
     @property
@@ -108,26 +103,17 @@ def _text(seen: dict[str, Any], name: str) -> str:
     return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
 
 
-@interrupts_wait_for_files()
-def grow_study(
-    study: Study,
-    results: Path | str = "results",
-    *,
-    rerun_failed: bool = False,
-    scheduler: str | None = None,
-    tell: Tell | None = None,
-    started: Callable[[int, int], None] | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    solver: Solver | None = None,
-) -> Plan:
+def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Plan:
     """Let the sample of a study grow until its intervals are narrow, and gather the cases.
 
     Parameters
     ----------
     study : Study
         The checked study with the key `until`.
-    results, rerun_failed, scheduler, tell, started, progress, solver
-        As for `trackroller.study.run.run_study`.
+    results : path
+        Parent of the study's folder.
+    **how
+        Other fields of `trackroller.study.run.Runner`.
 
     Returns
     -------
@@ -141,23 +127,13 @@ def grow_study(
     WorkError
         If the work cannot be completed; every finished chunk is kept.
     """
-    tell = tell or (lambda line: None)
-    with contextlib.ExitStack() as stack:
-        growing = Growing(study, results, tell)
-        folder = growing.folder
-        stack.enter_context(locked(folder.lock.with_name(".search"), tell=tell))
-        if rerun_failed:
-            forget_failed(folder, take_inventory(folder))
-        executor = None
+    with Runner(results, **how) as runner, runner.deciding(study) as folder:
+        growing = Growing(study, folder, runner.tell)
         while not (why := growing.advance()):
-            with working_plan(growing.study, results, tell=tell) as plan:
-                if started is not None:
-                    started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in plan.open))
-                executor = executor or stack.enter_context(executing(scheduler, solver))
-                for name in plan.open:
-                    tell(solve_chunk(folder, name, study.materials, executor=executor, tell=tell, progress=progress))
-        with working_plan(growing.study, results, tell=tell) as plan:
-            gather(plan, tell, growing.record(why))
+            with runner.solved(growing.study):
+                pass
+        with runner.solved(growing.study) as plan:
+            gather(plan, runner.tell, growing.record(why))
     return plan
 
 
@@ -169,7 +145,7 @@ def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
     dict
         `stopped`, why the study stops ('' if it goes on), and `chunks`, the names of the chunks that are not solved.
     """
-    growing = Growing(study, results, tell)
+    growing = Growing(study, study_folder(study.name, results).create(), tell)
     if why := growing.advance():
         return {"stopped": why, "chunks": []}
     with working_plan(growing.study, results, tell=tell) as plan:

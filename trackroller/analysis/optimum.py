@@ -11,10 +11,9 @@ optimum is solved again with the accuracy `reference`.
 
 from __future__ import annotations
 
-import contextlib
 import dataclasses
 import json
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -25,21 +24,19 @@ from trackroller.analysis.judging import OPTIMUM, Judged, goals_of_search, judge
 from trackroller.analysis.stored_study import solved_results
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
-from trackroller.files import interrupts_wait_for_files, sha256, write_text
+from trackroller.files import sha256, write_text
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.draws import genes_of
 from trackroller.study.design.evolution import first_generation, next_generation, nondominated_ranks, survivors
 from trackroller.study.design.factors import Factor
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
-from trackroller.study.run import executing
-from trackroller.study.solve import Executor, Solver, solve_chunk
-from trackroller.study.store.folder import StudyFolder, Tell, locked
+from trackroller.study.run import Runner
+from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
-from trackroller.study.store.plan import Plan, study_folder
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.inventory import Inventory, take_inventory
+from trackroller.study.store.plan import Plan
 
 TABLE, ELEMENTS = "kalker_table", "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front
@@ -54,9 +51,7 @@ class _Search:
 
     study: Study
     folder: StudyFolder
-    results: Path | str
-    executor: Callable[[], Executor]
-    progress: Callable[[int, int], None]
+    runner: Runner
     found: Inventory = field(init=False)
 
     def __post_init__(self) -> None:
@@ -85,23 +80,15 @@ class _Search:
         one = self.of(study, genes)
         cases = Cases(one)
         if not self.stored(cases):
-            with self.planned(one):
+            with self.runner.solved(one):
                 self.found = take_inventory(self.folder)
         else:
-            self.progress(len(cases.fingerprints), 0)
+            self.runner.progress(len(cases.fingerprints), 0)
         return judge(self.collected(one, cases), genes)
 
     def collected(self, study: Study, cases: Cases) -> StudyResults:
         """Return the results of solved cases of a study."""
         return solved_results(study, cases, self.found, self.found.find(cases.fingerprints), self.folder)
-
-    @contextlib.contextmanager
-    def planned(self, study: Study) -> Iterator[Plan]:
-        """Plan a study and solve its cases."""
-        with working_plan(study, self.results) as plan:
-            for name in plan.open:
-                solve_chunk(plan.folder, name, study.materials, executor=self.executor(), progress=self.progress)
-            yield plan
 
 
 def cheaper(study: Study) -> Study:
@@ -120,26 +107,17 @@ def _with(study: Study, **values: str) -> Study:
     return dataclasses.replace(other, inputs=study.inputs)
 
 
-@interrupts_wait_for_files()
-def search_designs(
-    study: Study,
-    results: Path | str = "results",
-    *,
-    rerun_failed: bool = False,
-    scheduler: str | None = None,
-    tell: Tell | None = None,
-    started: Callable[[int, int], None] | None = None,
-    progress: Callable[[int, int], None] | None = None,
-    solver: Solver | None = None,
-) -> Plan:
+def search_designs(study: Study, results: Path | str = "results", **how: Any) -> Plan:
     """Search for the best designs of a study and gather the designs among which its model decided.
 
     Parameters
     ----------
     study : Study
         The checked study, with `design: optimise`.
-    results, rerun_failed, scheduler, tell, started, progress, solver
-        As for `trackroller.study.run.run_study`.
+    results : path
+        Parent of the study's folder.
+    **how
+        Other fields of `trackroller.study.run.Runner`.
 
     Returns
     -------
@@ -153,22 +131,10 @@ def search_designs(
     WorkError
         If the work cannot be completed; every finished chunk is kept.
     """
-    tell = tell or (lambda line: None)
-    folder = study_folder(study.name, results).create()
-    with contextlib.ExitStack() as stack:
-        stack.enter_context(locked(folder.lock.with_name(".search"), tell=tell))
-        kept: list[Executor] = []
-
-        def executor() -> Executor:
-            if not kept:  # workers start with the first case that is not solved
-                kept.append(stack.enter_context(executing(scheduler, solver)))
-            return kept[0]
-
-        if started is not None:
-            started(study.config.budget.designs * study.drawn.meta["inner_samples"], 0)
-        if rerun_failed:
-            forget_failed(folder, take_inventory(folder))
-        search = _Search(study, folder, results, executor, progress or (lambda *counts: None))
+    with Runner(results, **how) as runner, runner.deciding(study) as folder:
+        tell = runner.tell
+        runner.started(study.config.budget.designs * study.drawn.meta["inner_samples"], 0)
+        search = _Search(study, folder, dataclasses.replace(runner, tell=unheard, started=unheard))
         known, facts = _evolve(search, cheaper(study), tell)
         if cheaper(study) is study:
             decided = known
@@ -251,7 +217,7 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
             for (name, step, _), values, violation in zip(around, moved.values, moved.violation, strict=True)
         ],
     }
-    with search.planned(final) as plan:
+    with search.runner.solved(final) as plan:
         gather(plan, tell, {OPTIMUM: json.dumps(result)})
     return plan
 

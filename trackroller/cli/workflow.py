@@ -20,7 +20,7 @@ from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
-from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.plan import Plan, read_plan, study_folder
 from trackroller.study.store.planning import working_plan
@@ -74,7 +74,7 @@ def _check_braces(key: str, path: str) -> None:
         raise InputError(key, path, "a path without braces, as Snakemake reads braces as wildcards", remedy)
 
 
-def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], None] | None = None) -> Plan:
+def workflow_plan(config: Mapping[str, str], main: bool, tell: Tell = unheard) -> Plan:
     """Return the plan of the workflow's study.
 
     The main process plans, and keeps other processes from changing the plan until it ends. Its jobs read the plan.
@@ -85,7 +85,7 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Callable[[str], N
         What `workflow_config` returned.
     main : bool
         True in Snakemake's main process, False in its jobs.
-    tell : callable, optional
+    tell : callable
         Receives one line for each event that the user should read.
 
     Returns

@@ -14,7 +14,7 @@ import xarray as xr
 from trackroller.errors import InputError, ShapeError, WorkError
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import StudyFolder, Tell, locked
+from trackroller.study.store.folder import Count, StudyFolder, Tell, locked, unheard
 from trackroller.study.store.identity import solver_and_materials
 from trackroller.study.store.inputs import check_inputs
 
@@ -110,7 +110,7 @@ def solve_chunk(
     *,
     executor: Executor = solve_here,
     tell: Tell = log.warning,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Count = unheard,
 ) -> str:
     """Solve the cases of a chunk and write its file. A killed process loses the chunk that it works on.
 
@@ -126,7 +126,7 @@ def solve_chunk(
         Solves the cases of a list and yields blocks: `solve_here`, or the dask workers of `cluster`.
     tell : callable
         Receives one line for each event that the user should read.
-    progress : callable, optional
+    progress : callable
         Receives the number of cases of each finished block, and how many of them failed.
 
     Returns
@@ -150,8 +150,7 @@ def solve_chunk(
             blocks = []
             for block in executor(cases, database):
                 blocks.append(block)
-                if progress is not None:
-                    progress(*chunks.counts(block))
+                progress(*chunks.counts(block))
             spent = time.perf_counter() - started
             chunk = chunks.join(blocks).sel(case=cases["case"].values)
             chunks.write(folder.chunk(name), chunk, packed=True)

@@ -19,8 +19,13 @@ from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
 
 Tell = Callable[[str], None]
+Count = Callable[[int, int], None]
 STORE_FORMAT = 1  # raise it when a file of the store gets another meaning; other formats are refused by name
 NO_FOLDER = (errno.ENOTDIR, errno.EEXIST, errno.ENAMETOOLONG, errno.ELOOP)
+
+
+def unheard(*facts: object) -> None:
+    """Take what a run tells or counts where nobody listens."""
 
 
 class StudyFolder:

@@ -16,7 +16,7 @@ from trackroller.errors import WorkError
 from trackroller.files import reserve, sha256, write_whole
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import Tell, reporting
+from trackroller.study.store.folder import Tell, reporting, unheard
 from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan
@@ -35,14 +35,14 @@ def write_design(plan: Plan) -> None:
         write_whole(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
 
 
-def gather(plan: Plan, tell: Tell | None = None, attrs: Mapping[str, str] | None = None) -> Path:
+def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = None) -> Path:
     """Gather the solved cases of a plan into `study.nc`, and write `design.nc` if it is missing.
 
     Parameters
     ----------
     plan : Plan
         A plan whose chunks are solved.
-    tell : callable, optional
+    tell : callable
         Receives one line when the file is complete.
     attrs : mapping, optional
         Further attributes of the file, such as the optima of a search.
@@ -84,8 +84,7 @@ def gather(plan: Plan, tell: Tell | None = None, attrs: Mapping[str, str] | None
         write_whole(folder.gathered, save)
         if sha256(folder.gathered) not in before.values():
             forget_report(folder.root)
-    if tell is not None:
-        tell(f"gathered {count} cases into {folder.gathered}")
+    tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered
 
 

@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from trackroller.errors import InputError, WorkError
 from trackroller.files import try_lock
 from trackroller.study.design.grown_lhs import with_history
-from trackroller.study.store.folder import StudyFolder, Tell, sweep, wait_for_lock
+from trackroller.study.store.folder import StudyFolder, Tell, sweep, unheard, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder, unused_cases
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
 @contextlib.contextmanager
 def working_plan(
-    study: Study, results: Path | str = "results", *, tell: Tell | None = None, rerun_failed: bool = False
+    study: Study, results: Path | str = "results", *, tell: Tell = unheard, rerun_failed: bool = False
 ) -> Iterator[Plan]:
     """Plan a study and keep other processes from changing the plan.
 
@@ -36,7 +36,7 @@ def working_plan(
         The checked study.
     results : path
         Parent of the study's folder.
-    tell : callable, optional
+    tell : callable
         Receives one line for each event that the user should read, such as a damaged file.
     rerun_failed : bool
         Remove the failed cases, so that they are solved again.
@@ -56,7 +56,7 @@ def working_plan(
     """
     folder = study_folder(study.name, results).create()
     with open(folder.lock, "rb+") as lock:
-        plan = _make_plan(study, folder, tell or (lambda line: None), rerun_failed) if try_lock(lock) else None
+        plan = _make_plan(study, folder, tell, rerun_failed) if try_lock(lock) else None
         wait_for_lock(lock, shared=True)
         if plan is None and not rerun_failed:  # another process has planned
             plan = read_plan(study, folder)
