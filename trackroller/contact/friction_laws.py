@@ -10,7 +10,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cache, cached_property
 from typing import Any, NamedTuple, NoReturn
 
 import numpy as np
@@ -84,6 +84,7 @@ class FrictionLaw:
         return dict(self.form) or {"kind": "table", "speed": self.speed.tolist(), "friction": self.factor.tolist()}
 
 
+@cache
 def constant() -> FrictionLaw:
     """Return Coulomb's law, with the factor 1 at every speed."""
     return FrictionLaw(np.zeros(1), np.ones(1), {"kind": "constant"})

@@ -99,11 +99,10 @@ def axis_ratio(curvature_ratio: np.ndarray) -> np.ndarray:
     step = 1e-5
     done = np.zeros(target.shape, dtype=bool)
     for _ in range(60):
-        f = mismatch(x)
+        f, ahead, behind = mismatch(np.stack((x, x + step, x - step)))
         high = np.where(f > 0, np.minimum(high, x), high)
         low = np.where(f <= 0, np.maximum(low, x), low)
-        slope = (mismatch(x + step) - mismatch(x - step)) / (2 * step)
-        new = x - f / slope
+        new = x - f / ((ahead - behind) / (2 * step))
         new = np.where((new > low) & (new < high), new, np.where(f == 0, x, (low + high) / 2))
         new = np.where(done, x, new)  # the last digit of a solved ratio must not depend on the other rows
         done |= np.abs(new - x) <= 2e-15 * np.maximum(1.0, np.abs(x))

@@ -81,15 +81,12 @@ def integrals(
     """
     n = np.size(friction)
     law = constant() if law is None or law.is_constant else law  # a law that stays at 1 is constant
-    given = (*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)
-    columns = np.empty((len(given), n))
-    for column, values in zip(columns, given, strict=True):
-        column[:] = values
-    patches = Patches(*columns)
-    out = Sums(*(np.empty(n) for _ in range(4)))
+    patches = Patches(*np.array((*_geometry(ellipse, slip), travel_speed / slip.rolling_radius)))
+    sums = np.empty((4, n))
+    out = Sums(*sums)
     model, table, rule = spin_model_index(spin_model), law.knots, Rule(*clustered_rule(nodes))
     share_rows(lambda first, last: integrate(first, last, patches, model, table, rule, out), n, 32)
-    f_t, f_a, m_r, power = (friction * ellipse.max_pressure * part for part in out)
+    f_t, f_a, m_r, power = friction * ellipse.max_pressure * sums
     return Integrals(Resultants(f_t, f_a, m_r), power)
 
 
