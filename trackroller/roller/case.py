@@ -193,24 +193,26 @@ def _checked_word(name: str, value: Any) -> Any:
     return str(value) if isinstance(value, DefaultName) else value
 
 
-def _as_columns(cases: Any) -> tuple[dict[str, np.ndarray], int]:
-    """Return columns of raw values, object arrays (n,), and n, from any form of cases that `solve` accepts."""
-    if hasattr(cases, "data_vars"):
-        return _columns_of_dataset(cases)
+def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return the raw values of cases, object arrays (n,), and their numbers, (n,), which each `Case` has checked."""
     if isinstance(cases, (Case, Mapping)):
         cases = [cases]
     if not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)) or getattr(cases, "ndim", 1) == 0:
         raise InputError("cases", cases, "a Case, a mapping, a list of them or an xarray.Dataset")
     rows = [c if isinstance(c, Case) else Case.from_dict(c) for c in cases]
-    columns = {}
+    columns, numbers = {}, {}
     for name in FIELDS:
-        column = np.empty(len(rows), dtype=object)
-        column[:] = [getattr(row, name) for row in rows]
-        columns[name] = column
-    return columns, len(rows)
+        values = [getattr(row, name) for row in rows]
+        if name in PARAMETERS:
+            numbers[name] = np.array([math.nan if isinstance(v, str) else v for v in values], dtype=float)  # or None
+        if name not in numbers or name == "friction_coefficient":
+            columns[name] = np.empty(len(rows), dtype=object)
+            columns[name][:] = values
+    return columns, numbers
 
 
-def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
+def _of_dataset(design: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
+    """Return the raw values of a design, object or float arrays (n,), and its checked numbers, (n,)."""
     n = design.sizes.get("case", 1)
     columns = {}
     check_names("design variable", design.data_vars, FIELDS)
@@ -226,7 +228,11 @@ def _columns_of_dataset(design: Any) -> tuple[dict[str, np.ndarray], int]:
             if name == "friction_coefficient" and "friction_law" in design.data_vars:
                 values = own_frictions(design["friction_law"].values)
         columns[name] = np.broadcast_to(values if values.dtype == float else values.astype(object), (n,))
-    return columns, n
+    numbers = _checked_numbers(columns, n)
+    problem = geometry_problem(numbers) if n else None
+    if problem is not None:
+        raise problem
+    return columns, numbers
 
 
 def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.ndarray]:
@@ -286,11 +292,7 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     database = load_database() if database is None else database
     if not isinstance(database, MaterialDatabase):
         raise InputError("database", database, "a MaterialDatabase", "`tr.load_database(path)` reads one.")
-    columns, n = _as_columns(cases)
-    numbers = _checked_numbers(columns, n)
-    problem = geometry_problem(numbers) if n else None
-    if problem is not None:
-        raise problem
+    columns, numbers = (_of_dataset if hasattr(cases, "data_vars") else _of_cases)(cases)
     roller, guide = (once_each(database.material, columns[name]) for name in MATERIAL_FIELDS)
     friction = numbers["friction_coefficient"].copy()
     for i in np.flatnonzero(np.isnan(friction)):

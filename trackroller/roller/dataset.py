@@ -153,14 +153,17 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
 }
 
 
-def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, dict[str, Any]]:
-    """Return dimensions, values and attributes of a flag variable."""
+def _attributes(name: str) -> dict[str, Any]:
+    """Return the attributes of a result variable or a flag."""
+    comment = {"comment": COMMENTS[name]} if name in COMMENTS else {}
+    if name in VARIABLES:
+        v = VARIABLES[name]
+        return {"units": v.units, "long_name": v.long_name} | ({"symbol": v.symbol} if v.symbol else {}) | comment
     if name in FLAGS:
         meaning, words = FLAGS[name]
         attrs = {"long_name": meaning, "units": "1", "flag_values": np.arange(len(words), dtype=np.int8)}
-        attrs |= {"comment": COMMENTS[name]} if name in COMMENTS else {}
-        return ("case", "body")[: values.ndim], values.astype(np.int8), attrs | {"flag_meanings": " ".join(words)}
-    attrs = {
+        return attrs | comment | {"flag_meanings": " ".join(words)}
+    return {
         "long_name": "validity flags: where an assumption of the model does not hold"
         + (" for a body" if name == "validity_body" else ""),
         "units": "1",
@@ -168,7 +171,6 @@ def _flag(name: str, values: np.ndarray) -> tuple[tuple[str, ...], np.ndarray, d
         "flag_meanings": " ".join(VALIDITY),
         "comment": "; ".join(f"{name}: {flag.criterion}" for name, flag in VALIDITY.items()),
     }
-    return ("case", "body")[: values.ndim], values.astype(np.int32), attrs
 
 
 @cache
@@ -210,57 +212,42 @@ def build(
     xarray.Dataset
         With the coordinates `contact` and `body`.
     """
-    import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
-
-    variables: dict[str, Any] = {}
-    for name, array in values.items():
-        v = VARIABLES[name]
-        meta = {"units": v.units, "long_name": v.long_name}
-        if v.symbol:
-            meta["symbol"] = v.symbol
-        if name in COMMENTS:
-            meta["comment"] = COMMENTS[name]
-        variables[name] = (("case", *v.dims), array, meta)
-    variables |= {name: _flag(name, array) for name, array in flags.items()}
-    further: dict[str, Any] = {}
-    if "utilisation" in values:
-        further["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
-    if any(name.startswith("stress_") for name in values):
-        further["component"] = (
-            "component",
-            np.array(["xx", "yy", "zz", "xy", "yz", "zx"]),
-            {"long_name": "stress component"},
-        )
-    if single:
-        return _single(variables, further, attrs)
-    made = {name: xr.Variable(*parts) for name, parts in variables.items()}
-    ds = xr.Dataset(made, coords=_sides().copy(), attrs=dict(attrs))
-    return ds.assign_coords(further) if further else ds
+    data = dict(values) | {name: array.astype(np.int8 if name in FLAGS else np.int32) for name, array in flags.items()}
+    if not single:
+        return _labelled(data, attrs)
+    # xarray aligns and merges all variables anew for each data set, which takes longer than a simple solution. A result
+    # with the same variables and shapes is therefore copied with the new numbers.
+    one = {name: array[0] for name, array in data.items()}
+    key = tuple((name, values.shape, values.dtype) for name, values in one.items()), str(attrs.get("limits"))
+    if key not in _LIKE:
+        if len(_LIKE) >= MOST_LIKE:
+            _LIKE.clear()
+        _LIKE[key] = _labelled(data, attrs).isel(case=0).copy(deep=True)
+    ds = _LIKE[key].copy(data=one)
+    ds.attrs = dict(attrs)  # `assign_attrs` would copy all variables once more
+    return ds
 
 
 _LIKE: dict[Any, xr.Dataset] = {}  # one result of each kind of call for a single case
 MOST_LIKE = 32  # kinds of calls that are kept
 
 
-def _single(variables: Mapping[str, Any], further: Mapping[str, Any], attrs: Mapping[str, Any]) -> xr.Dataset:
-    """Return the data set of a single case, without the dimension `case`.
-
-    xarray aligns and merges all variables anew for each data set, which takes longer than a simple solution. A result
-    with the same variables, attributes and shapes is therefore copied with the new numbers.
-    """
+def _labelled(data: Mapping[str, np.ndarray], attrs: Mapping[str, Any]) -> xr.Dataset:
+    """Return the data set of several cases, see `build`."""
     import xarray as xr  # heavy, and modules that only read `VARIABLES` do not need it
 
-    data = {name: array[0] for name, (_, array, _) in variables.items()}
-    key = tuple((name, values.shape, values.dtype) for name, values in data.items()), str(attrs.get("limits"))
-    like = _LIKE.get(key)
-    if like is None:
-        made = {name: xr.Variable(dims[1:], data[name], meta) for name, (dims, _, meta) in variables.items()}
-        if len(_LIKE) >= MOST_LIKE:
-            _LIKE.clear()
-        like = _LIKE[key] = xr.Dataset(made, coords=_sides().copy()).assign_coords(further).copy(deep=True)
-    ds = like.copy(data=data)
-    ds.attrs = dict(attrs)  # `assign_attrs` would copy all variables once more
-    return ds
+    made = {}
+    for name, array in data.items():
+        dims = VARIABLES[name].dims if name in VARIABLES else ("body",)[: array.ndim - 1]
+        made[name] = xr.Variable(("case", *dims), array, _attributes(name))
+    ds = xr.Dataset(made, coords=_sides().copy(), attrs=dict(attrs))
+    further: dict[str, Any] = {}
+    if "utilisation" in data:
+        further["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
+    if any(name.startswith("stress_") for name in data):
+        components = np.array(["xx", "yy", "zz", "xy", "yz", "zx"])
+        further["component"] = ("component", components, {"long_name": "stress component"})
+    return ds.assign_coords(further) if further else ds
 
 
 def united(parts: Sequence[Mapping[str, Any]], context: Any = None) -> dict[str, Any]:
