@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import math
 import re
 from typing import Any
@@ -167,6 +168,7 @@ def all_equal(values: np.ndarray) -> bool:
     return bool(np.all(same))
 
 
+@functools.lru_cache(maxsize=256)
 def rounded_up(value: float) -> float:
     """Return a number > 0 rounded up to two figures."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)

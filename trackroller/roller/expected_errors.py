@@ -90,7 +90,7 @@ def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
 def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
-    constant = all(law_of(text).is_constant for text in np.unique(table.friction_law.astype(str)))
+    constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
     cheaper = DECLARED[options.contact_model].cheaper
     model = options.contact_model
     if cheaper and np.any(ds.variables["contact_model_used"].values == CONTACT_MODELS.index(cheaper)):

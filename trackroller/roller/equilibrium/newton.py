@@ -91,19 +91,17 @@ def bracketed(
     for _ in range(sweeps):
         f = _following(roller, w, normal, fine, active)
         t = roller.torque(f, active)
-        up = t > 0
-        w_low[active] = np.where(up, w[active], w_low[active])
-        w_high[active] = np.where(up, w_high[active], w[active])
-        same = np.where(up, 1.0, -1.0) == side[active]
-        t_high[active] = np.where(up, np.where(same, t_high[active] / 2, t_high[active]), t)
-        t_low[active] = np.where(up, t, np.where(same, t_low[active] / 2, t_low[active]))
-        side[active] = np.where(up, 1.0, -1.0)
-        lo, hi, tl, th = w_low[active], w_high[active], t_low[active], t_high[active]
+        up, at = t > 0, w[active]
+        sign = np.where(up, 1.0, -1.0)
+        share = np.where(sign == side[active], 0.5, 1.0)
+        lo, hi = np.where(up, at, w_low[active]), np.where(up, w_high[active], at)
+        tl, th = np.where(up, t, share * t_low[active]), np.where(up, share * t_high[active], t)
+        w_low[active], w_high[active], t_low[active], t_high[active], side[active] = lo, hi, tl, th, sign
         with np.errstate(divide="ignore", invalid="ignore"):
             new = (lo * th - hi * tl) / (th - tl)
         new = np.where(np.isfinite(new) & (new > lo) & (new < hi), new, (lo + hi) / 2)
-        new = np.where(t == 0.0, w[active], new)  # a root, beside which a steep law would lead Newton's method away
-        moved = np.abs(new - w[active])
+        new = np.where(t == 0.0, at, new)  # a root, beside which a steep law would lead Newton's method away
+        moved = np.abs(new - at)
         w[active] = new
         # Newton's method refines rollers whose torque is balanced already
         unmet = np.abs(t) > (settled(roller) if fine else 0.0) * roller.torque_scale[active]

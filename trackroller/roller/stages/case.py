@@ -44,7 +44,7 @@ def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options)
     names = [field.name for field in dataclasses.fields(table.roller) if field.name not in TEXTS]
     return SolvedRollers(
         {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
-        {name: np.stack([getattr(body, name) for body in (table.roller, table.guide)], axis=1) for name in names},
+        {name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T for name in names},
         values,
         rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)),
         vars(options),

@@ -9,7 +9,6 @@ from itertools import islice
 from typing import Any
 
 import numpy as np
-from numpy.lib.recfunctions import structured_to_unstructured
 
 from trackroller.contact import sliding
 from trackroller.contact.slip import Slip
@@ -215,7 +214,7 @@ class EllipseStresses(PatchStresses):
         patches, length = normalised_patches(patches)
         first = number = np.arange(len(patches))
         if self.options.shortcuts:
-            first, number = distinct_rows(np.hstack([structured_to_unstructured(patches), ratios]))
+            first, number = distinct_rows(np.hstack([patches.view((float, patches.itemsize // 8)), ratios]))
         peak = find_peaks(patches[first], ratios[first], settings).take(number)
         scale = length[:, None]
         return replace(peak, x=peak.x * scale, y=peak.y * scale, z=peak.z * scale)
