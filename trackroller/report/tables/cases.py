@@ -19,44 +19,36 @@ from trackroller.report.words.regimes import occurrence
 
 def regime_table(view: StudyView) -> Table | None:
     """Count the cases in each regime; In short says where each regime occurs."""
-    if "regime" not in view.table or not len(view.table):
+    if "regime" not in view.table:
         return None
-    rows = []
-    for code, name in enumerate(REGIME_LABELS):
-        hit = view.regime == code
-        if hit.any():
-            rows.append([name, int(hit.sum()), share(int(hit.sum()), len(hit))])
-    return Table("regimes", "Regimes", ["Regime", "Cases", "Share"], rows)
+    counts = {name: int((view.regime == code).sum()) for code, name in enumerate(REGIME_LABELS)}
+    rows = [{"Regime": name, "Cases": n, "Share": share(n, len(view.table))} for name, n in counts.items() if n]
+    return Table.of("regimes", "Regimes", rows)
 
 
 def validity_table(view: StudyView) -> Table | None:
     """Count the rolling cases that carry each validity flag, by body where it is known, and say where they occur."""
-    rows = []
-    for flag in view.flags:
-        for body in bodies_of(flag, view.by_body):
-            hit = view.flagged(flag, body) & view.rolling
-            if not hit.any():
-                continue
-            said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
-            cases, rolls = int(hit.sum()), int(view.rolling.sum())
-            meaning = VALIDITY[flag].criterion if flag in VALIDITY else words_of(flag)
-            rows.append([plain(flag), body or "either", meaning, cases, share(cases, rolls), said.text if said else ""])
-    if not rows:
-        return None
-    heads = ["Flag", "Body", "Meaning", "Cases", "Share of the rolling", "Where"]
-    return Table("validity", "Validity flags of the rolling cases", heads, rows)
+    rows, rolling = [], int(view.rolling.sum())
+    for flag, body in [(name, body) for name in view.flags for body in bodies_of(name, view.by_body)]:
+        hit = view.flagged(flag, body) & view.rolling
+        said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
+        if said is not None:
+            row = {"Flag": plain(flag), "Body": body or "either"}
+            row |= {"Meaning": VALIDITY[flag].criterion if flag in VALIDITY else words_of(flag)}
+            cases = int(hit.sum())
+            rows.append(row | {"Cases": cases, "Share of the rolling": share(cases, rolling), "Where": said.text})
+    return Table.of("validity", "Validity flags of the rolling cases", rows)
 
 
 def reason_table(ds: xr.Dataset) -> Table | None:
     """List why cases failed or miss their tolerance, the most frequent reason first, with the first case of each."""
     if "reason" not in ds:
         return None
-    every = ds["reason"].values.astype(str).ravel()
-    texts, first, counts = np.unique(every, return_index=True, return_counts=True)
-    rows = [[int(c), t, int(i)] for t, i, c in zip(texts, first, counts, strict=True) if t]
-    heads = ["Cases", "Reason", "First case"]
-    rows.sort(key=lambda r: -r[0])
-    return Table("reasons", "Why cases failed or miss their tolerance", heads, rows[:8]) if rows else None
+    texts, first, counts = np.unique(ds["reason"].values.astype(str).ravel(), return_index=True, return_counts=True)
+    known = zip(counts.tolist(), texts.tolist(), first.tolist(), strict=True)
+    rows = [{"Cases": cases, "Reason": text, "First case": case} for cases, text, case in known if text]
+    rows.sort(key=lambda row: -row["Cases"])
+    return Table.of("reasons", "Why cases failed or miss their tolerance", rows[:8])
 
 
 def first_limit_table(view: StudyView) -> Table | None:
@@ -71,17 +63,18 @@ def first_limit_table(view: StudyView) -> Table | None:
     if not factors:
         return None
     first, *others = factors
-    across = [(level, view.table[others[0]] == level) for level in view.levels(others[0])] if others else []
+    across = {"All valid cases": view.valid}
+    for other in others:
+        across = {level_text(other, v): view.valid & (view.table[other] == v).to_numpy() for v in view.levels(other)}
     rows = []
     for level in view.levels(first):
-        mine = (view.table[first] == level).to_numpy() & view.valid
-        parts = [mine & own.to_numpy() for _, own in across] or [mine]
-        rows.append([factor_cell(first, level), *(_counts(names[part]) for part in parts)])
-    heads = [level_text(others[0], level) for level, _ in across] or ["All valid cases"]
+        own = (view.table[first] == level).to_numpy()
+        counts = {head: _counts(names[own & rows_there]) for head, rows_there in across.items()}
+        rows.append({heading(first): factor_cell(first, level)} | counts)
     note = "Number of valid cases that each limit of the pair ends first."
     if others:
         note += f" {capital(long_name(others[0]))} across."
-    return Table("first_limits", "Which limit comes first", [heading(first), *heads], rows, note)
+    return Table.of("first_limits", "Which limit comes first", rows, note)
 
 
 def _counts(names: np.ndarray) -> str:

@@ -14,19 +14,12 @@ def looks_table(view: StudyView) -> Table | None:
     found = looks_of(view.solved) if view.results is not None else None
     if found is None:
         return None
-    names = list(found["looks"][0]["half_width"])
-    heads = ["Cases", *(capital(quantity_words(name, view.solved.design.method)) for name in names)]
-    rows = [
-        [
-            one["cases"],
-            *(
-                "–" if one["half_width"][n] is None else f"± {rounded(one['half_width'][n], 2)} ({one['at'][n]})"
-                for n in names
-            ),
-        ]
-        for one in found["looks"]
-    ]
-    note = (
-        f"Widest 95 % interval at each look and where; wanted: ± {found['half_width']:g}. Stopped: {found['stopped']}."
-    )
-    return Table("looks", "Intervals as the sample grew", heads, rows, note)
+    rows = []
+    for one in found["looks"]:
+        row = {"Cases": one["cases"]}
+        for name, width in one["half_width"].items():
+            text = "–" if width is None else f"± {rounded(width, 2)} ({one['at'][name]})"
+            row[capital(quantity_words(name, view.solved.design.method))] = text
+        rows.append(row)
+    note = f"Widest 95 % interval at each look and where; wanted: ± {found['half_width']:g}."
+    return Table.of("looks", "Intervals as the sample grew", rows, f"{note} Stopped: {found['stopped']}.")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -29,25 +30,24 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     best = best[np.argsort(front[first].values[best] * (-1 if way == "max" else 1), kind="stable")]
     spread = np.linspace(0, len(best) - 1, min(MAX_DESIGNS, len(best))).astype(int)
     shown = best[np.union1d(spread, np.flatnonzero(np.isin(best, end_places(front))))]  # the sentence names the ends
-    names = [n for n, _ in goals] + [
-        str(n) for n in front.data_vars if n not in (*dict(goals), "optimal") and not str(n).startswith("beyond_")
-    ]
-    arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
-    columns = [_column(front, name, shown) for name in names]
-    rows: list[list[Any]] = [list(row) for row in zip(front["row"].values[shown].tolist(), *columns, strict=True)]
     kind = str(front.attrs.get("kind", "design"))
-    heads = [capital(kind), *(goal_heading(front, n) + arrows.get(n, "") for n in names)]
+    head = capital(kind) if kind == "design point" else "Worst case" if front.attrs.get("judged") else "Case"
+    columns: dict[str, Sequence[Any]] = {head: front["row"].values[shown].tolist()}
+    arrows = {name: " ↑" if way == "max" else " ↓" for name, way in goals}
+    further = [n for n in map(str, front.data_vars) if n not in (*arrows, "optimal") and not n.startswith("beyond_")]
+    for name in (*arrows, *further):
+        columns[goal_heading(front, name) + arrows.get(name, "")] = _column(front, name, shown)
     if kind != "design point":
-        heads = ["Worst case" if front.attrs.get("judged") else "Case", *heads[1:], "Model"]
-        rows = [[*row, "inside" if view.valid[row[0]] else "outside"] for row in rows]
+        columns["Model"] = ["inside" if view.valid[row] else "outside" for row in columns[head]]
     wishes = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     note = f"{capital('; '.join(wishes))}."
     note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
-    if len(best) > len(rows):
-        note += f" The table shows {len(rows)} of the {len(best)} {kind}s, spread evenly along the first goal, and the"
+    if len(best) > len(shown):
+        note += f" The table shows {len(shown)} of the {len(best)} {kind}s, spread evenly along the first goal, and the"
         note += " best of each goal."
     note += f" {error.text}" if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
-    return Table("pareto", f"Pareto-optimal {kind}s", heads, rows, note)
+    rows = list(zip(*columns.values(), strict=True))
+    return Table("pareto", f"Pareto-optimal {kind}s", list(columns), rows, note)
 
 
 def _column(front: xr.Dataset, name: str, shown: np.ndarray) -> list[Any]:

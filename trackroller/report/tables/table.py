@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -26,6 +26,11 @@ class Table:
     rows: Sequence[Sequence[Any]]
     note: str = ""
     marks: frozenset[tuple[int, int]] = frozenset()
+
+    @classmethod
+    def of(cls, name: str, title: str, rows: Sequence[Mapping[str, Any]], note: str = "") -> Table | None:
+        """Return a table of rows that map each head to a cell; None without a row."""
+        return cls(name, title, list(rows[0]), [list(row.values()) for row in rows], note) if rows else None
 
 
 def cell(value: Any) -> str:
