@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import signal
 
 import pytest
 from hypothesis import settings
@@ -15,6 +16,10 @@ if "PYTEST_XDIST_WORKER" in os.environ:
 # what the developer's terminal says about itself must not fold the lines that tests read
 for name in ("COLUMNS", "LINES", "FORCE_COLOR", "TTY_COMPATIBLE"):
     os.environ.pop(name, None)
+
+# in the background of a shell, pytest ignores Ctrl-C, and the programs that tests interrupt would inherit that
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 # a busy machine must not fail a test: the benchmarks in validation/ measure what an example costs
 settings.register_profile("trackroller", deadline=None)
