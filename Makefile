@@ -9,6 +9,9 @@ CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
+# an environment that forbids bytecode would have each process compile each module anew
+unexport PYTHONDONTWRITEBYTECODE
+
 .PHONY: env env-ci lock study validate test test-quick test-browser lint docs explorer explorer-check test-slurm test-long clean-results
 
 env: $(STAMP)
