@@ -203,7 +203,8 @@ def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, 
 
 
 def test_a_life_beyond_the_data_is_marked(tmp_path):
-    light = changed(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
+    more = dict(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
+    light = changed(**more, budget={"designs": 4, "population": 4})
     solved = tr.open_study(search_designs(light, tmp_path).folder.root)
     marked = beyond_data(solved, "pair_life_hours")
     worst = solved.view.column("pair_life_hours").reshape(-1, 2).argmin(axis=1)
@@ -232,7 +233,7 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
     ],
 )
 def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, says):
-    small = {"budget": {"designs": 8, "population": 4}}
+    small = {"budget": {"designs": 4, "population": 4}}
     solved = tr.open_study(search_designs(changed(**keys, **small), tmp_path).folder.root)
     said, table = best_of(solved.view)
     assert says in " ".join(said)

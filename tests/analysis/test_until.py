@@ -197,12 +197,12 @@ def test_an_output_that_does_not_vary_ends_the_growth(tmp_path):
     assert found["stopped"] == "normal_force_1 does not vary, so it has no index" and len(found["looks"]) == 1
 
 
-@pytest.mark.parametrize("design", ["sobol", "lhs", "inner_outer"])
+@pytest.mark.parametrize("design", ["sobol", "lhs"])  # inner_outer: in the test of unequal design points
 def test_a_killed_run_goes_on_to_the_same_bits(design, tmp_path, monkeypatch):
-    study = study_of(design, half_width=1e-6, at_most=1100)
+    study = study_of(design, half_width=1e-6, at_most=512)
     whole = grow(study, tmp_path / "whole")
     monkeypatch.setenv("FAKE_SOLVED", str(tmp_path / "solved.txt"))
-    killed(study, tmp_path / "parts", monkeypatch, (100, 300, 700))
+    killed(study, tmp_path / "parts", monkeypatch, (100, 300))
     parts = grow(study, tmp_path / "parts")
     assert parts.data.drop_attrs().identical(whole.data.drop_attrs()) and looks_of(parts) == looks_of(whole)
     assert status_of(study, tmp_path / "parts").total == whole.data.sizes["case"]

@@ -122,7 +122,7 @@ def test_deep_planes_converge_with_the_fourth_order(a, b):
         fields = [f[None, None] for f in (a * unit, b * unit, p, -0.1 * p, 0.3 * p, 0 * p, 0 * p)]
         return Tractions(*fields, np.zeros(1, bool))
 
-    errors, exact = [], load(168)
+    errors, exact = [], load(112)
     for nodes in (14, 28):
         loads = load(nodes).loads(0, 0)
         ladder, stress = loads.on_ladder(), deep_planes(loads, np.array([0.3, 0.4]))
@@ -131,11 +131,11 @@ def test_deep_planes_converge_with_the_fourth_order(a, b):
         for k, depth in enumerate(min(wide, long) * DEPTHS[4:], 4):
             ny, nx = stress.shape[3:]
             x, y = ladder.step_x * (np.arange(nx) - 0.5 * (nx - 1)), ladder.step_y * (np.arange(ny) - 0.5 * (ny - 1))
-            points = np.stack(np.broadcast_arrays(x[::3], y[:, None], depth), axis=-1)
+            points = np.stack(np.broadcast_arrays(x[::3], y[::2, None], depth), axis=-1)
             for body, (nu, sign) in enumerate(((0.3, 1), (0.4, -1))):
                 q = sign * exact.shear_lateral[0, 0], sign * exact.shear_rolling[0, 0]
                 direct = stress_from_tractions(exact.x[0, 0], exact.y[0, 0], exact.pressure[0, 0], *q, points, nu)
-                worst.append(np.abs(np.moveaxis(stress[body, k][:, :, ::3], 0, -1) - direct).max())
+                worst.append(np.abs(np.moveaxis(stress[body, k][:, ::2, ::3], 0, -1) - direct).max())
         errors.append(max(worst))
     assert errors[1] < 2e-3 and np.log2(errors[0] / errors[1]) > 2.9
 

@@ -68,4 +68,4 @@ def test_a_lifted_roller_still_has_the_axial_force_that_would_hold():
 
 
 def test_a_travel_changes_no_distance_to_lift_off():
-    assert searched.limits(tr.Case(travel=10.0)) == searched.limits(tr.Case())
+    assert searched.limits(tr.Case(travel=10.0), "sliding") == searched.limits(tr.Case(), "sliding")

@@ -49,6 +49,7 @@ def test_files_lie_beside_the_case_or_below_the_working_directory(tmp_path):
     folder.mkdir()
     (folder / "c.csv").write_text(written(";", True), encoding="utf-8")
     case = "guide_profile: {file: c.csv, frame: section}\nnormal: halfspace\naccuracy: preview\noutputs: [forces]\n"
+    case += "contact_model: sliding\n"
     (folder / "c.yaml").write_text(case)
     (folder / "study.yaml").write_text(f"name: s\nbase: {{{case.splitlines()[0]}}}\nnormal: halfspace\n")
     trackroller("solve", "prof/c.yaml", cwd=tmp_path)
