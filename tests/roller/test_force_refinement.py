@@ -90,15 +90,26 @@ def test_weights_are_those_of_the_known_orders():
     assert 1.0 / 3.0 < sticks < extrapolation.weight(np.array([0.7]), np.ones(1), np.zeros(1)) <= 1.0
 
 
-def test_an_error_of_one_contact_loads_the_other(monkeypatch):
-    """Only contact 1 errs: contact 2 gets the change of its F_N by eqs (7), (9), and contact 1 keeps its own error."""
-    own = 0.01
+def test_an_error_of_one_contact_loads_both(monkeypatch):
+    """Only contact 1 errs: both normal forces change as the balance of forces does when its ratio F_T/F_N changes."""
+    own = 1e-4
     monkeypatch.setattr(SlidingModel, "force_error", lambda self, n: np.tile([own, 0.0], (n, 1)))
-    case = tr.Case(axial_force=60.0)
+    case = tr.Case(axial_force=60.0, contact_angle=35.0)
     ds = tr.solve(case, "forces", contact_model="sliding")
     normal, friction = ds.normal_force.values, case.friction_coefficient
+    ratio, alpha = ds.lateral_force.values / normal, np.radians(case.contact_angle)
+
+    def balanced(change):
+        one, two = ratio[0] + change, ratio[1]
+        rows = [
+            [np.sin(alpha) + np.cos(alpha) * one, -np.sin(alpha) + np.cos(alpha) * two],
+            [np.cos(alpha) - np.sin(alpha) * one, np.cos(alpha) + np.sin(alpha) * two],
+        ]
+        return np.linalg.solve(rows, [-case.axial_force, -case.radial_force])
+
+    np.testing.assert_allclose(balanced(0.0), normal, rtol=1e-9)
+    change = np.abs(balanced(own * friction) - balanced(-own * friction)) / 2.0 / normal
+    assert change[0] > 0.2 * change[1] and abs(normal[1] / normal[0] - 1.0) > 0.3, "unequal contacts, not at 45 degrees"
+    np.testing.assert_allclose(ds.normal_force_error_estimate, change, rtol=1e-6)
     used = np.hypot(ds.lateral_force, ds.driving_force).values / (friction * normal)
-    change = own * friction * normal[0] / np.sin(2.0 * np.radians(case.contact_angle))
-    assert abs(normal[1] / normal[0] - 1.0) > 0.3, "unequal contacts tell the error of one from that of the other"
-    expected = [own, np.sqrt(used[1]) * change / normal[1]]
-    np.testing.assert_allclose(ds.force_error_estimate, expected, rtol=1e-12)
+    np.testing.assert_allclose(ds.force_error_estimate, np.array([own, 0.0]) + np.sqrt(used) * change, rtol=1e-6)

@@ -1,6 +1,8 @@
-"""Find intervals between rising knots and interpolate there; compiled."""
+"""Find intervals between rising knots and interpolate there, compiled; and a smooth step."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from trackroller.numerics.compiled import compiled
 
@@ -56,3 +58,9 @@ def polyline(value, knots, values):
     low = interval(value, knots, 0, last)
     slope = (values[low + 1] - values[low]) / (knots[low + 1] - knots[low])
     return values[low] + slope * (value - knots[low]), slope
+
+
+def rise(value: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
+    """Return a smooth step of `value` from 0 at the first limit to 1 at the second."""
+    t = np.clip((value - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
+    return t**2 * (3.0 - 2.0 * t)

@@ -21,6 +21,8 @@ from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, St
 from trackroller.contact.protocol import Patch
 from trackroller.contact.settings import converged_up_to
 from trackroller.contact.slip import Creepage, Slip
+from trackroller.contact.wedge import determinant
+from trackroller.numerics.knots import rise
 
 NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
 LEAST_STEP = 1e-9  # least change of the normalised slip from which a derivative of the difference is taken
@@ -42,13 +44,13 @@ LIGHT_ERROR, LIGHT_FACTOR = 1e-2, 3
 # Relative error of F_N in the other contact that the error of the table may cause. From the first value on the elements
 # take over by and by, so that the forces have no step. Beyond the second value they serve alone, which keeps the
 # estimated error of the friction forces below 5 % of mu F_N.
-TABLE_SERVES = 0.03, 0.039
+TABLE_SERVES = 0.037, 0.047
 # Distance of the forces of table and few elements over the estimated error of the elements, on the first rung of a
 # tolerance. Up to the first value both agree, and the table serves, because the forces of few elements jump where an
 # element begins to slide. From there on the elements take over by and by.
 AGREED = 1.0, 2.5
 # Elements across patches that serve for the table. A patch takes the first number that promises the error of F_N.
-SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.03
+SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.02
 
 
 def refined_above(elements: int) -> float:
@@ -80,7 +82,7 @@ class Correction:
         self.offset, self.slope = np.zeros((n, 2, 3)), np.zeros((n, 2, 3))  # over mu F_N, mu F_N and mu F_N c
         self.limit = np.zeros((n, 2, 3))  # extrapolation to small elements, in the same units
         self.place, self.reach = np.full((n, 2), np.nan), np.zeros((n, 2))
-        self.normal = np.full((n, 2), np.nan)  # F_N at the last balance
+        self.normal, self.ratio = np.full((2, n, 2), np.nan)  # F_N at the last balance, and F_T/F_N by the table
         self.error = np.full((n, 2), np.nan)  # of the friction forces over mu F_N, estimated
         self.share = np.zeros((n, 2))  # of the elements in the forces, from 0 to 1
         self.count = 0  # of solved patches
@@ -113,6 +115,7 @@ class Correction:
         """
         change = np.zeros(len(rows))
         forces, place, held = self._table(patch, slip, friction, rows)
+        self.ratio[rows, _side(slip)] = friction * forces[:, 0]
         share = np.where(held & self.trusts_table, self._share(patch, slip, friction, rows), 1.0)
         share = np.maximum(share, self.share[rows, _side(slip)])  # it only grows, so that the corrections settle
         self.share[rows, _side(slip)], pick = share, np.flatnonzero(share > 0.0)
@@ -125,7 +128,7 @@ class Correction:
                 self.error[own, side] = np.fmax(self.error[own, side], table_error)
             elif not self.settings.refines and self.settings.elements < SERVING[0]:
                 apart = self._apart(patch.take(pick), slip.take(pick), friction[pick], own, forces[pick], offset)
-                part = np.where(held[pick], _rise(apart / np.maximum(self.error[own, side], 1e-12), AGREED), 1.0)
+                part = np.where(held[pick], rise(apart / np.maximum(self.error[own, side], 1e-12), AGREED), 1.0)
                 self.share[own, side] = part
             offset *= part[:, None]
             self._learn(offset, place[pick], own, side)
@@ -150,14 +153,16 @@ class Correction:
         """Return the share of the elements in the forces of patches inside the table, (m,), see `TABLE_SERVES`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             error = table.stored().force_error("p99") * friction * patch.normal_force / self._turned(patch, slip, rows)
-        return _rise(np.nan_to_num(error), TABLE_SERVES)
+        return rise(np.nan_to_num(error), TABLE_SERVES)
 
     def _turned(self, patch: Patch, slip: Slip, rows: np.ndarray) -> np.ndarray:
         """Return the change of F_T in patches that changes F_N of the other contact by all of it, (m,) [N]."""
-        side = _side(slip)
+        side, sign = _side(slip), np.sign(slip.sine)
         self.normal[rows, side] = patch.normal_force
-        other = self.normal[rows, 1 - side]  # of mirror images only one contact is given
-        return 2.0 * np.abs(slip.sine * slip.cosine) * np.where(np.isnan(other), patch.normal_force, other)
+        other, own = self.normal[rows, 1 - side], self.ratio[rows, side]
+        beside = np.where(np.isnan(other), -own, self.ratio[rows, 1 - side])  # of mirror images only one is given
+        wedge = determinant(np.abs(slip.sine), slip.cosine, sign * own, sign * beside)
+        return np.abs(wedge) * np.where(np.isnan(other), patch.normal_force, other)
 
     def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
         """Store the differences `offset` (m, 3) at the places of the slip, and their derivatives if known."""
@@ -296,12 +301,6 @@ class Correction:
 def _work(solution: PatchSolution, slip: Slip, driving: np.ndarray, moment: np.ndarray) -> np.ndarray:
     """Return the work that F_A, M_R and the pressures do per distance travelled, (m,) [N]."""
     return np.asarray(solution.pressure_work - slip.longitudinal * driving - slip.spin * moment)
-
-
-def _rise(value: np.ndarray, limits: tuple[float, float]) -> np.ndarray:
-    """Return a smooth step of `value` from 0 at the first limit to 1 at the second."""
-    t = np.clip((value - limits[0]) / (limits[1] - limits[0]), 0.0, 1.0)
-    return t**2 * (3.0 - 2.0 * t)
 
 
 def _side(slip: Slip) -> np.ndarray:

@@ -14,6 +14,7 @@ import numpy as np
 from trackroller.contact.common import Ellipse, Resultants
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.slip import Slip
+from trackroller.contact.wedge import determinant
 
 LAST_SLIP = 1.0 - 2.0**-53  # largest |w|; beyond it the friction is that of complete slip to the last digit
 TOLERANCE = 0.01  # residual that the solution aims at, over the residual that counts as converged
@@ -141,10 +142,7 @@ class Roller:
         normal forces. Beyond self-locking, mu f = tan(alpha), there is another branch, on which the wrong contact
         carries the lateral load. Without axial force both branches are the same.
         """
-        one, two = f[0] / normal
-        double = 2.0 * self.sin * self.cos
-        det = double * (1.0 + one * two) + (one - two) * (self.cos - self.sin) * (self.cos + self.sin)
-        return (det > 0) | (self.axial_force == 0)
+        return (determinant(self.sin, self.cos, *(f[0] / normal)) > 0) | (self.axial_force == 0)
 
     def residuals(self, normal: np.ndarray, f: np.ndarray, pick=slice(None)) -> np.ndarray:
         """Return the residuals of the lateral, radial and torque balance, (3, m) [N]."""

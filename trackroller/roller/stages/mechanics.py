@@ -15,6 +15,7 @@ from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.normal.patches import Boxes
 from trackroller.contact.slip import pole_rolling, turning_of
+from trackroller.contact.wedge import determinant
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import contact_geometry, lever_arms
@@ -100,8 +101,8 @@ def force_error(results: Results, options: Options) -> None:
 
     Models without an estimate give the measured bound.
 
-    An error of F_T in one contact changes F_N of the other by up to 1/sin(2 alpha) times this error. The relative
-    change is largest in a contact near lift-off.
+    An error of the ratio F_T/F_N of one contact changes F_N of both contacts by eqs (7), (9). The relative change is
+    largest in a contact near lift-off.
     """
     scene, v = results.scene, results.values
     error = scene.model.force_error(scene.n)
@@ -113,13 +114,22 @@ def force_error(results: Results, options: Options) -> None:
     capacity = scene.loads.friction[:, None] * v["normal_force"]
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
-        load = (error * capacity)[:, ::-1] / (2.0 * scene.loads.sine * scene.loads.cosine)[:, None]
-        of_load = load / v["normal_force"]
+        of_load = _load_error(results, error * scene.loads.friction[:, None])
         error = error + np.sqrt(used) * of_load
     known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
     for name, estimate in (("force_error_estimate", error), ("normal_force_error_estimate", of_load)):
         estimate = np.where(known[:, None], 0.0, estimate)
         v[name] = np.where(np.isfinite(v["lateral_force"]), estimate, np.nan)
+
+
+def _load_error(results: Results, of_ratio: np.ndarray) -> np.ndarray:
+    """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7), (9), (n, 2)."""
+    v, loads = results.values, results.scene.loads
+    normal, (one, two) = v["normal_force"], (v["lateral_force"] / v["normal_force"]).T
+    double, turned = 2.0 * loads.sine * loads.cosine, (loads.cosine - loads.sine) * (loads.cosine + loads.sine)
+    own = np.abs(np.stack([turned + double * two, turned - double * one], axis=1))
+    wedge = np.abs(determinant(loads.sine, loads.cosine, one, two))
+    return (own * of_ratio + (of_ratio * normal)[:, ::-1] / normal) / wedge[:, None]
 
 
 def contact(results: Results, options: Options) -> None:

@@ -1,0 +1,19 @@
+"""The balance of both normal forces against radial and axial force, eqs (7), (9)."""
+
+from __future__ import annotations
+
+import numpy as np
+
+
+def determinant(sine: np.ndarray, cosine: np.ndarray, one: np.ndarray, two: np.ndarray) -> np.ndarray:
+    """Return the determinant of eqs (7), (9) for the ratios F_T/F_N of contacts 1 (`one`) and 2 (`two`), (n,).
+
+    An error of F_T in one contact, divided by the determinant, is the
+    error of F_N that it causes in the other.
+
+    Examples
+    --------
+    >>> float(round(determinant(0.5, 0.75**0.5, 0.0, 0.0), 3))  # sin(2 alpha) without friction
+    0.866
+    """
+    return 2.0 * sine * cosine * (1.0 + one * two) + (one - two) * (cosine - sine) * (cosine + sine)
