@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
+from trackroller.numerics.compiled import compiled
 from trackroller.roller.equilibrium.roller import Roller
 
 SMALL = 0.01  # the error of the forces is estimated where rolling radius / size of the patch is below this ratio
@@ -134,15 +136,16 @@ def _following(roller: Roller, w, normal, fine: bool, rows: np.ndarray) -> np.nd
 
 def _jacobian(roller: Roller, w, normal, pick) -> np.ndarray:
     """Return the derivatives of the balances by (F_N1, F_N2, w), (m, 3, 3), as differences of the coarse law."""
-    h = roller.step
-    shift = roller.shift(w, pick)
-    base = roller.contact(shift, normal, False, pick)
-    grown = roller.contact(shift, normal * (1 + h), False, pick)
-    room = 1 - np.abs(w)
-    step = h * room * np.where(w > 0, -1.0, 1.0)
-    moved = roller.contact(roller.shift(w + step, pick), normal, False, pick)
+    h, m = roller.step, w.size
+    step = h * (1 - np.abs(w)) * np.where(w > 0, -1.0, 1.0)
+    slips, normals = np.concatenate((w, w, w + step)), np.concatenate((normal, normal * (1 + h), normal), axis=1)
+    picks, f = np.concatenate((pick, pick, pick)), np.empty((3, 2, 3 * m))
+    # an iterative law starts from the state before; the others take the three states at once
+    for part in np.split(np.arange(3 * m), 1 if roller.goal <= CLOSED else 3):
+        f[:, :, part] = roller.contact(roller.shift(slips[part], picks[part]), normals[:, part], False, picks[part])
+    base, grown, moved = f[:, :, :m], f[:, :, m : 2 * m], f[:, :, 2 * m :]
     r0 = roller.residuals(normal, base, pick)
-    jac = np.empty((w.size, 3, 3))
+    jac = np.empty((m, 3, 3))
     for i in (0, 1):
         f, n = base.copy(), normal.copy()
         f[:, i], n[i] = grown[:, i], normal[i] * (1 + h)
@@ -232,18 +235,27 @@ def _damped(step: np.ndarray, normal: np.ndarray, w: np.ndarray, bounds: Bounds)
     return np.where(sound[:, None], step * damp[:, None], 0.0), sound
 
 
-def _solve3(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+@compiled
+def _solve3(a, b):
     """Solve m systems of three equations by Cramer's rule on scaled rows and columns; singular systems give NaN."""
-    with np.errstate(all="ignore"):
-        a, b = a / (rows := np.max(np.abs(a), axis=2))[:, :, None], b / rows
-        columns = np.max(np.abs(a), axis=1)
-        a = a / columns[:, None, :]
-        # cross products of the columns; numpy.cross takes longer than all other lines of this function
-        one, two = a[:, :, [1, 2, 0]], a[:, :, [2, 0, 1]]
-        cross = one[:, [1, 2, 0]] * two[:, [2, 0, 1]] - one[:, [2, 0, 1]] * two[:, [1, 2, 0]]
-        cross = np.ascontiguousarray(cross.swapaxes(1, 2))
-        x = np.einsum("mij,mj->mi", cross, b) / np.sum(a[:, :, 0] * cross[:, 0], axis=1)[:, None] / columns
-    return np.where(np.isfinite(x), x, np.nan)
+    x, s, c = np.empty_like(b), np.empty((3, 3)), np.empty(3)
+    for m in range(len(b)):
+        for i in range(3):
+            largest = max(abs(a[m, i, 0]), abs(a[m, i, 1]), abs(a[m, i, 2]))
+            s[i], c[i] = a[m, i] / largest, b[m, i] / largest
+        column = [max(abs(s[0, j]), abs(s[1, j]), abs(s[2, j])) for j in range(3)]
+        determinant = np.nan
+        for j in range(3):
+            s[:, j] /= column[j]
+        for j in range(3):
+            u, v = s[:, (j + 1) % 3], s[:, (j + 2) % 3]
+            k0, k1, k2 = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
+            if j == 0:
+                determinant = s[0, 0] * k0 + s[1, 0] * k1 + s[2, 0] * k2
+            x[m, j] = (k0 * c[0] + k2 * c[2] + k1 * c[1]) / determinant / column[j]
+            if not math.isfinite(x[m, j]):
+                x[m, j] = np.nan
+    return x
 
 
 def digits_of_forces(roller: Roller, solution: Solution) -> np.ndarray:
