@@ -177,7 +177,8 @@ class Mirror:
 
     def spread_surface(self, good: np.ndarray, tractions: SurfaceTractions) -> SurfaceTractions:
         """Copy the tractions of the solved patches `asked(good)` to all patches `good`; x rises in each patch."""
-
+        if not self.symmetric.any():
+            return tractions
         out = {}
         for field in fields(SurfaceTractions):
             full, twin = self._copies(good, getattr(tractions, field.name), self.asked(good))

@@ -95,7 +95,8 @@ class Correction:
 
     def _corrected(self, forces: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> np.ndarray:
         reach = self.reach[rows, side]
-        step = np.clip(np.where(reach > 0.0, place - self.place[rows, side], 0.0), -reach, reach)
+        step = np.where(reach > 0.0, place - self.place[rows, side], 0.0)
+        step = np.minimum(np.maximum(step, -reach), reach)
         return forces + self.offset[rows, side] + self.slope[rows, side] * step[:, None]
 
     def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool = True) -> Resultants:

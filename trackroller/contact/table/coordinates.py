@@ -62,27 +62,25 @@ class Rolling(NamedTuple):
         """Return patches as kernels take them; see `table.solve_patch`."""
         a, b, capacity = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling, friction * ellipse.normal_force
         constants = elastic.shear_modulus, elastic.poisson_ratio, elastic.coupling
-        columns = np.empty((9, a.size))
-        for column, value in zip(columns, (a, b, longitudinal, spin, friction, capacity, *constants), strict=True):
-            column[:] = value
-        return cls(*columns)
+        return cls(*np.array((a, b, longitudinal, spin, friction, capacity, *constants)))
 
     @property
     def size(self) -> np.ndarray:
         """Return c = sqrt(a b), (n,) [mm]."""
         return np.sqrt(self.lateral * self.rolling)
 
-    @property
-    def held(self) -> np.ndarray:
-        """Return which patches lie in the table's range, (n,); where there is no patch NaN stays NaN."""
-        g, edge = self.rolling / self.lateral, 1.0 + 1e-9
-        return ((g >= RATIOS[0] / edge) & (g <= RATIOS[1] * edge)) | ~np.isfinite(g)
-
 
 @compiled
 def _limited(value, low, high):
     """Return `value` between its limits; NaN stays NaN."""
     return low if value < low else (high if value > high else value)
+
+
+@compiled
+def in_range(ratio):
+    """Return whether the table holds patches of the axis ratio b/a; True for NaN, where there is no patch."""
+    edge = 1.0 + 1e-9
+    return not (ratio < RATIOS[0] / edge or ratio > RATIOS[1] * edge) or not math.isfinite(ratio)
 
 
 @compiled

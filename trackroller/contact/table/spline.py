@@ -20,7 +20,7 @@ import numpy as np
 from trackroller.contact.common import Elastic, Resultants
 from trackroller.contact.linear import chebyshev
 from trackroller.contact.protocol import Patch
-from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates
+from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates, in_range
 from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import interval
 from trackroller.numerics.threads import share_rows
@@ -168,8 +168,8 @@ def solve_patch(ellipse: Patch, longitudinal, spin, friction, elastic: Elastic) 
     `stored().errors` has the differences from the exact solver.
     """
     patches = Rolling.of(ellipse, longitudinal, spin, friction, elastic)
-    unit, _ = _looked_up(patches)
-    known, capacity = patches.held, patches.capacity
+    unit, _, known = _looked_up(patches)
+    capacity = patches.capacity
     unit[~known] = np.nan
     forces = Resultants(capacity * unit[:, 0], capacity * unit[:, 1], capacity * patches.size * unit[:, 2])
     work = -(patches.longitudinal * forces.driving_force + patches.spin * forces.spin_moment)
@@ -193,28 +193,30 @@ def nearest_forces(
         True for patches in the table's range.
     """
     patches = Rolling.of(ellipse, longitudinal, spin, friction, elastic)
-    unit, place = _looked_up(patches)
-    return unit[:, :3], place, patches.held
+    unit, place, held = _looked_up(patches)
+    return unit[:, :3], place, held
 
 
-def _looked_up(patches: Rolling) -> tuple[np.ndarray, np.ndarray]:
-    """Return the forces and the share of the adhesion area (n, 4) of `_look_up`, and the place of the slip, (n,)."""
+def _looked_up(patches: Rolling) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return what `_look_up` writes: `unit` (n, 4), `place` (n,) and `held` (n,)."""
     n, tables, linear = patches.lateral.size, stored(), chebyshev()
-    unit, place = np.empty((n, 4)), np.empty(n)
-    share_rows(lambda a, b: _look_up(a, b, patches, linear, tables.forces, tables.poisson, unit, place), n, 512)
-    return unit, place
+    out = np.empty((n, 4)), np.empty(n), np.empty(n, bool)
+    share_rows(lambda first, last: _look_up(first, last, patches, linear, tables.forces, tables.poisson, out), n, 512)
+    return out
 
 
 @compiled
-def _look_up(first, last, patches, linear, forces, poisson, unit, place):
+def _look_up(first, last, patches, linear, forces, poisson, out):
     """Write F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area of patches into `unit` (n, 4).
 
     A patch outside the range takes the values at the end of the range. NaN where there is no patch. `place` (n,) takes
-    X/(3 + r).
+    X/(3 + r), and `held` (n,) whether the patch is in the range. `out` are these three arrays.
     """
+    unit, place, held = out
     at, basis, more = np.empty(4), np.empty((4, 4)), np.empty(2 * len(FIELDS))
     line, wide = np.empty(4 * len(FIELDS)), np.empty(8 * len(FIELDS))
     for i in range(first, last):
+        held[i] = in_range(patches.rolling[i] / patches.lateral[i])
         g, x, y, z = coordinates(patches, i, linear)
         r = math.sqrt(x * x + y * y + z * z)
         place[i] = x / (HALF_WAY + r)
