@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from typing import Any
 
 
 class InputError(ValueError):
@@ -119,10 +120,30 @@ class Collector:
             self.errors += error.errors
 
     def check(self) -> None:
-        """Raise the errors that were collected, if there are any; a single one as it is."""
-        self.errors = list({str(error): error for error in self.errors}.values())  # two checks may read one table
-        if self.errors:
-            raise self.errors[0] if len(self.errors) == 1 else InputErrors(self.errors)
+        """Raise the errors that were collected, see `raise_all`."""
+        raise_all(self.errors)
+
+
+def raise_all(errors: Iterable[InputError]) -> None:
+    """Raise errors together, if there are any; a single one as it is, and equal ones once."""
+    different = list({str(error): error for error in errors}.values())  # two checks may read one table
+    if different:
+        raise different[0] if len(different) == 1 else InputErrors(different)
+
+
+def collected(entries: Any, checked: Callable[[Any, Any], Any]) -> Any:
+    """Return the checked value of each entry of a mapping; raise the errors of all of them together.
+
+    What is no mapping is returned as it is: the type of the field refuses it.
+    """
+    if not isinstance(entries, Mapping):
+        return entries
+    out, wrong = {}, Collector()
+    for key, entry in entries.items():
+        with wrong.part():
+            out[key] = checked(key, entry)
+    wrong.check()
+    return out
 
 
 class ShapeError(InputError):
@@ -216,6 +237,11 @@ def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterab
     return InputError(kind, name, allowed, f"Did you mean '{close}'?" if close else remedy)
 
 
+def either(words: Sequence[str]) -> str:
+    """Return words as 'a, b or c'."""
+    return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+
+
 def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> None:
     """Raise the errors `unknown_name` for those of `names` that are not among `options`.
 
@@ -233,9 +259,5 @@ def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> N
     InputError
         If a name is unknown.
     """
-    known, wrong = tuple(options), Collector()
-    for name in names:
-        with wrong.part():
-            if name not in known:
-                raise unknown_name(kind, str(name), known)
-    wrong.check()
+    known = tuple(options)
+    raise_all(unknown_name(kind, str(name), known) for name in names if name not in known)

@@ -24,7 +24,7 @@ from ruamel.yaml.nodes import MappingNode, ScalarNode, SequenceNode
 from ruamel.yaml.representer import SafeRepresenter
 from ruamel.yaml.resolver import BaseResolver
 
-from trackroller.errors import Collector, InputError
+from trackroller.errors import InputError, raise_all
 from trackroller.files import read_text
 
 MAX_VALUES = 200_000  # with aliases counted in full
@@ -215,9 +215,7 @@ def errors_by_line(
         for one in error.errors:
             if one.file is None:  # an error of another file has its line already
                 one.file, one.line = file, _line_of(one, lines, elsewhere)
-        wrong = Collector()
-        wrong.errors = sorted(error.errors, key=lambda one: (one.file or "", one.line or 0))
-        wrong.check()
+        raise_all(sorted(error.errors, key=lambda one: (one.file or "", one.line or 0)))
 
 
 def _parts(text: str) -> tuple[str, ...]:

@@ -221,7 +221,7 @@ def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
 @pytest.mark.parametrize(
     ("keys", "named"),
     [
-        ({"until": [1]}, "until = .*half_width, of, at_most and hours"),
+        ({"until": [1]}, "until = .*half_width, of, at_most"),
         ({"until": {"half_width": 0.03}}, "until.of.*every study needs|until.of"),
         ({"until": {"half_width": 0, "of": ["normal_force_1"]}}, "until.half_width = 0"),
         ({"until": {"half_width": 0.1, "of": 3}}, "until.of = 3 .*a list of at least one output"),

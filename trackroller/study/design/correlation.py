@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, either, unknown_name
 from trackroller.study.design.factors import Factor
 
 KEY = "rank_correlations"
@@ -62,7 +62,7 @@ def check_entries(value: Any) -> tuple[Entry, ...]:
 def check_design(entries: Sequence[Entry], method: str) -> None:
     """Refuse rank correlations in a design that cannot have them; the message says what to take instead."""
     if entries and method not in DESIGNS:
-        allowed = f"design {', '.join(DESIGNS[:-1])} or {DESIGNS[-1]}, not {method}"
+        allowed = f"design {either(DESIGNS)}, not {method}"
         raise InputError(KEY, [list(e) for e in entries], allowed, REFUSALS.get(method, REFUSAL))
 
 

@@ -8,19 +8,15 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, collected, unknown_name
 from trackroller.parameters import ROLE_OF, ROLES, expressions
 from trackroller.study.design.entries import OPTION_FACTORS, choice
 from trackroller.study.design.factors import Factor
 
-EXAMPLE = "For example {friction_coefficient: condition, roller_profile_radius: choice}."
 
-
-def check_words(value: Any) -> dict[str, str]:
+def check_words(value: Any) -> Any:
     """Check the key `roles` of a study file: factors, each with `choice` or `condition`."""
-    if not isinstance(value, Mapping):
-        raise InputError("roles", value, "factors, each with choice or condition", EXAMPLE)
-    return {str(name): choice(role, f"roles.{name}", ROLES) for name, role in value.items()}
+    return collected(value, lambda name, role: choice(role, f"roles.{name}", ROLES))
 
 
 def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: str) -> None:

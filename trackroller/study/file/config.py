@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
 from functools import partial
 from typing import Annotated, Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
 
-from trackroller.errors import Collector, InputError
+from trackroller.errors import InputError, collected
 from trackroller.parameters import OPTIONS
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.stop import parse_condition
@@ -19,8 +18,8 @@ from trackroller.study.design.entries import base_value, choice, factor
 from trackroller.study.design.roles import check_words
 from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.goals import Analysis, comparisons, directions
-from trackroller.study.file.search import Budget, budget_keys
-from trackroller.study.file.until import Until, until_keys
+from trackroller.study.file.search import Budget
+from trackroller.study.file.until import Until
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
@@ -41,22 +40,12 @@ def check_name(name: Any) -> str:
     return name
 
 
-def collected(entries: Mapping[Any, Any], checked: Callable[[Any, Any], Any]) -> dict[Any, Any]:
-    """Return the checked value of each entry; raise the errors of all of them together."""
-    out, wrong = {}, Collector()
-    for key, entry in entries.items():
-        with wrong.part():
-            out[key] = checked(key, entry)
-    wrong.check()
-    return out
-
-
 Name = Annotated[str, BeforeValidator(check_name)]
 Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
 Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
 Goals = Annotated[dict[str, str], BeforeValidator(directions)]
 Duty = Annotated[dict[str, float] | None, BeforeValidator(checked_duty)]
-Comparisons = Annotated[tuple[str, ...], BeforeValidator(comparisons)]
+Comparisons = Annotated[tuple[str, ...], AfterValidator(comparisons)]
 
 
 class _Design(BaseModel):
@@ -126,10 +115,10 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     goals: Annotated[dict[str, str], BeforeValidator(partial(directions, key="goals", least=1))] = Field(
         {}, description="optimise: results or choices, each max or min; worst (default), mean, b10, probability of one"
     )
-    budget: Annotated[Budget, BeforeValidator(budget_keys)] = Field(
+    budget: Budget = Field(
         default_factory=lambda: Budget.model_validate({}), description="optimise: how long the search goes on"
     )
-    until: Annotated[Until | None, BeforeValidator(until_keys)] = Field(
+    until: Until | None = Field(
         None, description="the sample grows by doublings until intervals are narrow, or cases or hours are spent"
     )
     pareto: Goals = Field({}, description="goals of the Pareto set: outputs or factors, each max or min")
@@ -167,13 +156,9 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     @field_validator("base", "not_given", mode="before")
     @classmethod
     def _base(cls, value: Any, info: Any) -> Any:
-        if not isinstance(value, Mapping):
-            raise InputError(info.field_name, value, "a mapping of parameters to values")
         return collected(value, lambda key, entry: base_value(key, entry, info.field_name))
 
     @field_validator("factors", mode="before")
     @classmethod
     def _factors(cls, value: Any) -> Any:
-        if not isinstance(value, Mapping):
-            raise InputError("factors", value, "a mapping of factors to their values")
         return collected(value, lambda key, spec: factor(key, spec, value))

@@ -16,14 +16,14 @@ These keys are not part of the identity of a case, so changing them solves no ca
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
 
 from trackroller.damage import judged
-from trackroller.errors import InputError, unknown_name
+from trackroller.errors import InputError, collected, either, raise_all, unknown_name
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity, without_units
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
@@ -44,22 +44,26 @@ STATISTICS_OF = {  # by the key of a study file
 TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table", "optimise")
 
 
-def targets(value: Any) -> dict[str, dict[str, float]]:
+def without_spaces(value: Any) -> Any:
+    """Return a mapping from outputs with their names as they are stored; the type of the field refuses other values."""
+    return {str(name).replace(" ", ""): own for name, own in value.items()} if isinstance(value, Mapping) else value
+
+
+def targets(value: Any) -> Any:
     """Check the key `analysis.target`: outputs, each with `min` or `max` or both; {min: 500} is `DEFAULT_TARGET`'s."""
-    example = "For example {roller_life_hours: {min: 500}}."
-    if not isinstance(value, Mapping):
-        raise InputError("analysis.target", value, "outputs, each with min or max", example)
-    if value and set(value) <= {"min", "max"}:
-        value = {DEFAULT_TARGET: value}
-    numbers: dict[str, dict[str, float]] = {}
-    for name, limits in value.items():
-        where, allowed = f"analysis.target.{name}", "min, max or both, each a number"
-        if not isinstance(limits, Mapping) or not limits or not set(limits) <= {"min", "max"}:
-            raise InputError(where, limits, allowed, example)
-        numbers[name] = {str(key): _limit(str(name), given, f"{where}.{key}") for key, given in limits.items()}
-        if numbers[name].get("min", -math.inf) >= numbers[name].get("max", math.inf):
-            raise InputError(where, dict(limits), "min below max")
-    return {str(name).replace(" ", ""): limits for name, limits in numbers.items()}
+    short = isinstance(value, Mapping) and value and set(value) <= {"min", "max"}
+    return collected(without_spaces({DEFAULT_TARGET: value} if short else value), _limits)
+
+
+def _limits(name: str, given: Any) -> dict[str, float]:
+    """Return the numbers of the ends of one target."""
+    where = f"analysis.target.{name}"
+    if not isinstance(given, Mapping) or not given or not set(given) <= {"min", "max"}:
+        raise InputError(where, given, "min, max or both, each a number", "For example {min: 500}.")
+    limits = collected(given, lambda end, number: _limit(name, number, f"{where}.{end}"))
+    if limits.get("min", -math.inf) >= limits.get("max", math.inf):
+        raise InputError(where, dict(given), "min below max")
+    return dict(limits)
 
 
 def _limit(name: str, given: Any, where: str) -> float:
@@ -143,19 +147,17 @@ class Analysis(BaseModel):
         return value
 
 
-def directions(value: Any, key: str = "pareto", least: int = 2) -> dict[str, str]:
+def directions(value: Any, key: str = "pareto", least: int = 2) -> Any:
     """Check the key `pareto` or `goals`: at least so many outputs or factors, each with `max` or `min`."""
-    if not isinstance(value, Mapping) or 0 < len(value) < least:
-        allowed = f"{'two or more ' if least > 1 else ''}outputs or factors, each with max or min"
+    if isinstance(value, Mapping) and 0 < len(value) < least:
+        allowed = "two or more outputs or factors, each with max or min"
         raise InputError(key, value, allowed, "For example {pair_life_hours: max, friction_power: min}.")
-    return {str(name).replace(" ", ""): choice(way, f"{key}.{name}", DIRECTIONS) for name, way in value.items()}
+    return collected(without_spaces(value), lambda name, way: choice(way, f"{key}.{name}", DIRECTIONS))
 
 
-def comparisons(value: Any) -> list[str]:
-    """Check the key `constraints`: a list of comparisons."""
-    if not isinstance(value, (list, tuple)) or not all(isinstance(text, str) for text in value):
-        raise InputError("constraints", value, "a list of comparisons", "For example ['max_pressure < 1500'].")
-    plain = [without_units(text, unit_of, "constraints") for text in value]
+def comparisons(texts: Sequence[str]) -> tuple[str, ...]:
+    """Check the comparisons of the key `constraints`, and return them without units."""
+    plain = tuple(without_units(text, unit_of, "constraints") for text in texts)
     for text in plain:
         names_in(text)
     return plain
@@ -218,12 +220,16 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     known = output_names(config.outputs)
     scale = config.analysis.scale
-    for name in (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())):
-        if name.replace(" ", "") not in known:
-            raise unknown_result("analysis.outputs", name, known, config.outputs)
-    for name in config.analysis.target:
-        if name not in known:
-            raise unknown_result("analysis.target", name, known, config.outputs)
+    asked = {
+        "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
+        "analysis.target": config.analysis.target,
+    }
+    raise_all(
+        unknown_result(where, name, known, config.outputs)
+        for where, names in asked.items()
+        for name in names
+        if name.replace(" ", "") not in known
+    )
     if config.analysis.target and config.design not in TARGET_DESIGNS:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
@@ -284,7 +290,7 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
 def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
     """Return the error for a name that is no result of these groups; it gives the nearest one."""
     if kinds := STATISTICS_OF.get(where) if "(" in name else None:
-        allowed = f"a result, or {', '.join(kinds[:-1])} or {kinds[-1]} of one"
+        allowed = f"a result, or {either(kinds)} of one"
         return InputError(where, name, allowed, f"For example {kinds[0]}({name.partition('(')[2].rstrip(') ')}).")
     variable = name.split("[")[0].strip()
     name_of = DEFAULTS[variable][0] if variable in DEFAULTS else variable

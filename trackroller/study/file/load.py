@@ -26,6 +26,18 @@ from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
+EXAMPLES = {  # of keys that are mappings or lists
+    "base": "{radial_force: -200}",
+    "factors": "{friction_coefficient: {values: [0.1, 0.2]}}",
+    "roles": "{friction_coefficient: condition, roller_profile_radius: choice}",
+    "goals": "{pair_life_hours: max}",
+    "pareto": "{pair_life_hours: max, friction_power: min}",
+    "constraints": "[max_pressure < 1500]",
+    "budget": "{designs: 640, hours: 2}",
+    "until": "{half_width: 0.03, of: [roller_life_hours], at_most: 20000}",
+    "analysis.target": "{roller_life_hours: {min: 500}}",
+}
+ROOMS = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
 FORMER = ("measures", "resamples")  # keys of `analysis` that studies of earlier versions hold
 
 
@@ -37,18 +49,20 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
     where = ".".join(str(part) for part in detail["loc"]) or "study"
     if detail["type"] == "extra_forbidden":
         place, name = str(detail["loc"][0]), str(detail["loc"][-1])
-        rooms = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
-        if len(detail["loc"]) > 1 and place in rooms:
-            return unknown_name(place, name, rooms[place])
+        if len(detail["loc"]) > 1 and place in ROOMS:
+            return unknown_name(place, name, ROOMS[place])
         return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
         needs = f"{room[-1] if room else 'every study'} needs this key"
         return InputError(where, None, needs, f"Add {key}: ... to {room[-1]}." if room else f"Add a line '{key}: ...'.")
     allowed = detail["msg"].replace("Input should be ", "it must be ")
+    if detail["type"] == "model_type":
+        allowed = f"a mapping with {', '.join(ROOMS[where])}"
     for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):
         allowed = allowed.replace(f"valid {word}", plain)
-    return InputError(where, detail.get("input"), allowed)
+    remedy = f"For example {where}: {EXAMPLES[where]}." if where in EXAMPLES else ""
+    return InputError(where, detail.get("input"), allowed, remedy)
 
 
 def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -40,13 +40,6 @@ class Budget(BaseModel):
         return min(self.designs, self.population or min(max(self.designs // 20, 8), 32))
 
 
-def budget_keys(value: Any) -> Any:
-    """Refuse a key `budget` that is no mapping."""
-    if not isinstance(value, (Mapping, Budget)):
-        raise InputError("budget", value, "designs, population and hours", "For example {designs: 640, hours: 2}.")
-    return value
-
-
 def judged_by(goal: str) -> tuple[str, str]:
     """Split a goal of a search into its statistic over the conditions and its result; a plain name is its `worst`."""
     kind, output = statistic(goal, JUDGED_BY)

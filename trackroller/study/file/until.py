@@ -5,19 +5,17 @@ until: {half_width: 0.03, of: [roller_life_hours], at_most: 200000, hours: 8}
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, either
 from trackroller.parameters import REGIMES
 from trackroller.study.file.goals import output_names, statistic, unknown_result
 
 FIRST_LOOK = {"morris": 2}  # samples of a replicate at the first look, unless the study file names `samples`
 USUAL_FIRST_LOOK = 8
 GROWING = ("sobol", "lhs", "saltelli", "morris", "inner_outer")  # designs whose samples grow by doublings
-EXAMPLE = "For example {half_width: 0.03, of: [roller_life_hours], at_most: 20000}."
 
 
 class Until(BaseModel):
@@ -44,18 +42,11 @@ class Until(BaseModel):
         listed = [value] if isinstance(value, str) else value
         if isinstance(listed, (list, tuple)) and listed and all(isinstance(name, str) for name in listed):
             return tuple(dict.fromkeys(name.replace(" ", "") for name in listed))
-        raise InputError("until.of", value, "a list of at least one output", EXAMPLE)
+        raise InputError("until.of", value, "a list of at least one output", "For example of: [roller_life_hours].")
 
     def first_look(self, design: str) -> int:
         """Return the number of samples of the first look."""
         return self.replicates * FIRST_LOOK.get(design, USUAL_FIRST_LOOK)
-
-
-def until_keys(value: Any) -> Any:
-    """Refuse a key `until` that is no mapping."""
-    if not isinstance(value, (Mapping, Until)):
-        raise InputError("until", value, "half_width, of, at_most and hours", EXAMPLE)
-    return value
 
 
 def check_until(config: Any) -> None:
@@ -64,7 +55,7 @@ def check_until(config: Any) -> None:
     if until is None:
         return
     if config.design not in GROWING:
-        allowed = f"with until: {', '.join(GROWING[:-1])} or {GROWING[-1]}, which grow by more samples"
+        allowed = f"with until: {either(GROWING)}, which grow by more samples"
         raise InputError("design", config.design, allowed, "Choose one of them, or remove until.")
     if config.design == "saltelli" and config.analysis.groups:
         groups = list(config.analysis.groups)
