@@ -26,41 +26,24 @@ _WHERE = {
     "principal_stresses": "trackroller.halfspace.stress",
     "max_shear": "trackroller.halfspace.stress",
 }
-__all__ = [
-    "Case",
-    "InputError",
-    "__version__",
-    "app",
-    "load_database",
-    "load_study",
-    "max_shear",
-    "open_study",
-    "principal_stresses",
-    "report",
-    "run",
-    "solve",
-    "stress_from_tractions",
-    "stress_on_grid",
-    "von_mises",
-    "wear",
-]
+__all__ = ["__version__", "app", "report", *_WHERE]
 
 if TYPE_CHECKING:
-    from trackroller import app, report
-    from trackroller.errors import InputError
-    from trackroller.halfspace.stress import (
-        max_shear,
-        principal_stresses,
-        stress_from_tractions,
-        stress_on_grid,
-        von_mises,
-    )
-    from trackroller.materials import load_database
-    from trackroller.roller.case import Case
-    from trackroller.roller.solver import solve
-    from trackroller.roller.wear import wear
-    from trackroller.solved import open_study, run
-    from trackroller.study.file.load import load_study
+    from trackroller import app as app
+    from trackroller import report as report
+    from trackroller.errors import InputError as InputError
+    from trackroller.halfspace.stress import max_shear as max_shear
+    from trackroller.halfspace.stress import principal_stresses as principal_stresses
+    from trackroller.halfspace.stress import stress_from_tractions as stress_from_tractions
+    from trackroller.halfspace.stress import stress_on_grid as stress_on_grid
+    from trackroller.halfspace.stress import von_mises as von_mises
+    from trackroller.materials import load_database as load_database
+    from trackroller.roller.case import Case as Case
+    from trackroller.roller.solver import solve as solve
+    from trackroller.roller.wear import wear as wear
+    from trackroller.solved import open_study as open_study
+    from trackroller.solved import run as run
+    from trackroller.study.file.load import load_study as load_study
 
 
 def __getattr__(name: str) -> Any:

@@ -343,3 +343,16 @@ def test_a_case_names_its_unknown_materials_with_all_other_errors(tmp_path):
     told = trackroller("solve", "c.yaml", cwd=tmp_path, code=2).stderr.splitlines()
     starts = ("line 1: friction_coefficient", "line 2: guide_material", "line 3: outer_radius", "line 4: groove_depth")
     assert all(start in line for start, line in zip(starts, told, strict=True))
+
+
+def test_unknown_results_stand_with_the_errors_of_other_keys(tmp_path):
+    text = (
+        "name: x\nbase: {radial_force: 3}\noutputs: [forces]\nanalysis:\n  target: {slop: {min: 3}, lift: {max: 2}}\n"
+    )
+    (tmp_path / "s.yaml").write_text(text)
+    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
+    assert told == [
+        "line 2: base.radial_force = 3",
+        "line 5: analysis.target = 'slop'",
+        "line 5: analysis.target = 'lift'",
+    ]

@@ -88,6 +88,16 @@ def is_lhs(config: Any) -> bool:
     return bool(config.design == "lhs" or (config.design == "inner_outer" and config.inner in (None, "lhs")))
 
 
+def earlier_config(study: Study, folder: StudyFolder) -> Any:
+    """Return what the study file of a folder said, None unless the sample of the study can have grown from its own."""
+    try:
+        old = type(study.config).model_validate(folder.earlier())
+    except ValueError:
+        return None
+    until = (old.until is None) == (study.config.until is None)
+    return old if until and all(getattr(old, key) == getattr(study.config, key) for key in SAME) else None
+
+
 def with_history(study: Study, folder: StudyFolder) -> Study:
     """Add the earlier sizes of the sample to a study.
 
@@ -104,11 +114,7 @@ def with_history(study: Study, folder: StudyFolder) -> Study:
     config = study.config
     if not is_lhs(config) or config.grown_from or config.until is not None:
         return study
-    try:
-        old = type(config).model_validate(folder.earlier())
-        earlier = check_sizes([s for s in (*(old.grown_from or ()), old.samples) if s < config.samples], config.samples)
-    except ValueError:
-        return study
-    if not earlier or old.until is not None or any(getattr(old, key) != getattr(config, key) for key in SAME):
-        return study
-    return dataclasses.replace(study, config=config.model_copy(update={"grown_from": earlier}))
+    old = earlier_config(study, folder)
+    sizes = () if old is None else (*(old.grown_from or ()), old.samples)
+    earlier = tuple(size for size in sizes if size < config.samples)
+    return dataclasses.replace(study, config=config.model_copy(update={"grown_from": earlier})) if earlier else study

@@ -7,7 +7,7 @@ from collections.abc import Collection
 from typing import TYPE_CHECKING, Any
 
 from trackroller.errors import InputError
-from trackroller.study.design.grown_lhs import SAME, is_lhs, with_history
+from trackroller.study.design.grown_lhs import earlier_config, is_lhs, with_history
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -54,11 +54,7 @@ def as_planned(study: Study, folder: StudyFolder) -> Study:
     """Return a study with the number of samples to which the key `until` has grown it; see also `with_history`."""
     if study.config.until is None:
         return with_history(study, folder)
-    try:
-        old = type(study.config).model_validate(folder.earlier())
-    except ValueError:
-        return study
-    if old.until is None or any(getattr(old, key) != getattr(study.config, key) for key in SAME):
+    if (old := earlier_config(study, folder)) is None:
         return study
     times, rest = divmod(old.samples, study.config.samples)
     if rest or times & (times - 1):

@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, unknown_name
+from trackroller.errors import Collector, InputError, either, raise_all, unknown_name
 from trackroller.numerics.numbers import number_or_nan
-from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.accuracy import accuracy_settings
 from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_pairs, check_spin_model
@@ -27,7 +27,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.file.until import check_first_look, check_until
 
 if TYPE_CHECKING:
-    from trackroller.materials import MaterialDatabase
+    from trackroller.materials import Material, MaterialDatabase
     from trackroller.study.design.factors import Factor
 
 
@@ -125,7 +125,7 @@ def _check_groups(
 ) -> None:
     names, seen = list(free), set()
     if config.design not in GROUPED:
-        allowed = f"design {' or '.join(GROUPED)}, not {config.design}"
+        allowed = f"design {either(GROUPED)}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
     for group, members in groups.items():
         where = f"analysis.groups.{group}"
@@ -148,7 +148,7 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     by_group = config.design == "saltelli" and bool(config.analysis.groups)
     if config.design not in CONDITIONAL or by_group:
         own = f"{config.design} with analysis.groups" if by_group else config.design
-        raise InputError(where, name, f"design {', '.join(CONDITIONAL[:-1])} or {CONDITIONAL[-1]}, not {own}")
+        raise InputError(where, name, f"design {either(CONDITIONAL)}, not {own}")
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
     if not free[name].discrete or len(free[name].levels) > MOST_LEVELS:
@@ -176,32 +176,31 @@ def _check_materials(study: Study) -> None:
     ------
     InputError : an unknown material, or a material without scatter
     """
-    check_material_names(study.config.base, study.factors, study.materials)
-    pairs = [*study.factors.get("material_pair", {}).get("values", [])]
-    if "material_pair" in study.config.base:
-        pairs.append(study.config.base["material_pair"])
-    used = {}
-    for i, name in enumerate(MATERIAL_FIELDS):
-        given = [study.config.values[name]] if name in study.config.values else []
-        given += [*study.factors.get(name, {}).get("values", []), *(pair[i] for pair in pairs)]
-        materials = dict.fromkeys(given)
-        used[name.removesuffix("_material")] = [study.materials.material(material) for material in materials]
-    check_scatter(study.config, used)
+    materials = named_materials(study.config.values, study.factors, study.materials)
+    check_scatter(study.config, {body: own.values() for body, own in materials.items()})
 
 
-def check_material_names(base: Mapping[str, Any], factors: Mapping[str, Any], database: MaterialDatabase) -> None:
-    """Refuse all names of materials that the database lacks; entries of another form are refused elsewhere."""
+def named_materials(
+    base: Mapping[str, Any], factors: Mapping[str, Any], database: MaterialDatabase
+) -> dict[str, dict[str, Material]]:
+    """Return the materials of each body by name; raise the errors of all names that the database lacks together.
+
+    Entries of another form are left out: they are refused elsewhere.
+    """
     wrong = Collector()
-    for name in (*MATERIAL_FIELDS, "material_pair"):
-        spec = factors.get(name)
+    named: dict[str, dict[str, Material]] = {body: {} for body in BODIES}
+    for field in (*MATERIAL_FIELDS, "material_pair"):
+        spec = factors.get(field)
         listed = spec.get("values") if isinstance(spec, Mapping) else ()
         listed = listed if isinstance(listed, (list, tuple)) else ()
-        for field, value in ((f"base.{name}", base.get(name)), *((f"factors.{name}.values", one) for one in listed)):
-            for material in value if isinstance(value, (list, tuple)) else (value,):
+        for where, value in ((f"base.{field}", base.get(field)), *((f"factors.{field}.values", one) for one in listed)):
+            bodies = BODIES if field == "material_pair" else (field.removesuffix("_material"),)
+            for body, name in zip(bodies, value if isinstance(value, (list, tuple)) else (value,), strict=False):
                 with wrong.part():
-                    if isinstance(material, str):
-                        database.material(material, field)
+                    if isinstance(name, str):
+                        named[body][name] = database.material(name, where)
     wrong.check()
+    return named
 
 
 def check_cells(study: Study) -> None:
@@ -244,9 +243,7 @@ def check_geometry(study: Study) -> None:
         problems = list(geometry_problems({name: design[name].values for name in _GEOMETRY}))
         if problems and config.design == "table":
             lines = table_lines(study.table_path)
-            wrong = Collector()
-            wrong.errors = [problem.at(study.table_path, lines[row]) for row, problem in problems]
-            wrong.check()
+            raise_all(problem.at(study.table_path, lines[row]) for row, problem in problems)
         problem = problems[0][1] if problems else None
     else:
         levels = [_ends(study, name) for name in _GEOMETRY]

@@ -219,17 +219,7 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
 def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     known = output_names(config.outputs)
-    scale = config.analysis.scale
-    asked = {
-        "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
-        "analysis.target": config.analysis.target,
-    }
-    raise_all(
-        unknown_result(where, name, known, config.outputs)
-        for where, names in asked.items()
-        for name in names
-        if name.replace(" ", "") not in known
-    )
+    check_analysed(config)
     if config.analysis.target and config.design not in TARGET_DESIGNS:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
@@ -241,6 +231,21 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
         if name in factors and not factors[name].numeric:
             raise InputError("pareto", name, "a result or factor with one number a case", "Names have no order.")
     _check_constraints(config, factors, free)
+
+
+def check_analysed(config: Any) -> None:
+    """Check that the outputs and targets under `analysis` are results of the study; raise all errors together."""
+    known, scale = output_names(config.outputs), config.analysis.scale
+    asked = {
+        "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
+        "analysis.target": config.analysis.target,
+    }
+    raise_all(
+        unknown_result(where, name, known, config.outputs)
+        for where, names in asked.items()
+        for name in names
+        if name.replace(" ", "") not in known
+    )
 
 
 def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[str]) -> None:

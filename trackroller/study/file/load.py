@@ -17,10 +17,10 @@ from trackroller.materials import load_database
 from trackroller.parameters.example import not_given
 from trackroller.parameters.own_limits import digests
 from trackroller.roller.aliases import ALIASES, study_with_radii
-from trackroller.study.file.checks import check_cells, check_geometry, check_material_names, cross_check
+from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.csv import column_names
-from trackroller.study.file.goals import Analysis
+from trackroller.study.file.goals import Analysis, check_analysed
 from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
@@ -91,6 +91,10 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         for one in errors:
             if one["type"] != "missing" or not any(nearest(name, map(str, one["loc"][-1:])) for name in unknown):
                 wrong.errors += _translated(one).errors
+        if not {one["loc"][0] for one in errors} & {"outputs", "analysis"}:
+            with wrong.part():
+                analysed = {key: data[key] for key in ("outputs", "analysis") if key in data}
+                check_analysed(StudyFile.model_validate({"name": "without-the-other-keys"} | analysed))
         wrong.check()
         raise
     return config
@@ -128,7 +132,7 @@ def parse_study(
         if wrong.errors:
             with wrong.part():
                 base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
-                check_material_names(base, factors, database or load_database())
+                named_materials(base, factors, database or load_database())
             wrong.check()
         study = complete(Study(config, path, database, inputs))
         with wrong.part():
