@@ -124,7 +124,7 @@ def log_ticks(axis: Any, low: float, high: float) -> None:
 def save(figure: Figure, out_dir: Path, name: str) -> tuple[Path, Path]:
     """Write `name`.svg and `name`.png, both whole or not at all, and return the two paths."""
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # both files have the same layout
+    figure.set_layout_engine(None)  # both files have the same layout; with "none" each would be drawn twice
     paths = out_dir / f"{name}.svg", out_dir / f"{name}.png"
     for path in paths:
         metadata = {"Date": None} if path.suffix == ".svg" else None  # the same data gives the same file
