@@ -70,8 +70,8 @@ def near(value: float, span: float) -> str:
 
 
 def life(value: float) -> str:
-    """Write a life: three figures, or the word 'unlimited'."""
-    return "unlimited" if value == math.inf else rounded(value)
+    """Write a life: three figures, 'unlimited', or 'unknown'."""
+    return "unknown" if math.isnan(value) else "unlimited" if value == math.inf else rounded(value)
 
 
 _duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)

@@ -32,7 +32,7 @@ from trackroller.report.pages.sheet_facts import body_materials, versions_text
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import flags_of
-from trackroller.report.words.spectrum import UNITS, _life, known_damage, sentences
+from trackroller.report.words.spectrum import UNITS, known_damage, sentences
 from trackroller.roller.record import NOT_GIVEN, doubts_of
 from trackroller.study.spectrum.file import LOAD_FIELDS
 
@@ -41,7 +41,7 @@ def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
     """Return the life of a body in shifts, km and hours, and at each failure probability if its material scatters."""
     lives = [(name, float(ds[f"{body}_life_{name}"]), unit) for name, unit in UNITS]
     rows = [
-        Row(f"life in {name}", _life(value), "" if math.isnan(value) else life_unit(unit, value))
+        Row(f"life in {name}", life(value), "" if math.isnan(value) else life_unit(unit, value))
         for name, value, unit in lives
     ]
     if "life_shifts_at_probability" in ds:
@@ -50,7 +50,7 @@ def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
         for p in ds["probability"].values if not bool(at.isnull().all()) else ():
             shifts = float(at.sel(probability=p).min(skipna=False))
             scaled = [(shifts * scale, unit) for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
-            lengths = ", ".join(f"{_life(value)} {life_unit(unit, value)}" for value, unit in scaled)
+            lengths = ", ".join(f"{life(value)} {life_unit(unit, value)}" for value, unit in scaled)
             rows.append(Row(f"until {100 * float(p):g} % have failed", lengths))
     return rows
 

@@ -1,16 +1,24 @@
-"""A sentence on a study as an object that can be checked.
+"""A sentence on a study as an object that can be checked, and how its words are put around its numbers.
 
-A `Sentence` holds its text, what it claims as plain values, and the rows that it holds for.
+A `Sentence` holds its text, what it claims as plain values, and the rows that it holds for. The words stand in
+`templates/sentences/`, one file a subject and one block a kind; the claims are the variables of the block.
 `tests/report/test_truth.py` recomputes the claims from the raw rows.
 """
 
 from __future__ import annotations
 
+import functools
+import inspect
+import math
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import jinja2
 import numpy as np
+
+from trackroller.report import numbers
 
 
 @dataclass(frozen=True)
@@ -29,3 +37,32 @@ class Sentence:
     text: str
     values: Mapping[str, Any] = field(default_factory=dict)
     rows: np.ndarray | None = None
+
+
+def say(subject: str, kind: str, rows: np.ndarray | None = None, /, **values: Any) -> Sentence:
+    """Return a sentence.
+
+    Parameters
+    ----------
+    subject : name of the file with the words
+    kind : name of the block in this file
+    rows : cases that the statement is on, shape (n,) bool
+    **values : what the sentence claims; a block that names another value raises an error
+    """
+    return Sentence(kind, phrase(subject, kind, **values), values, rows)
+
+
+def phrase(subject: str, kind: str, /, **values: Any) -> str:
+    """Return the words of a block with its values, in one line."""
+    template = _template(subject)
+    text = "".join(template.blocks[kind](template.new_context(values)))
+    return re.sub(r"[ \n]+", " ", text).strip(" ")
+
+
+@functools.cache
+def _template(subject: str) -> jinja2.Template:
+    loader = jinja2.PackageLoader("trackroller.report", "templates/sentences")
+    environment = jinja2.Environment(loader=loader, undefined=jinja2.StrictUndefined, trim_blocks=True)
+    environment.filters |= {name: value for name, value in vars(numbers).items() if inspect.isfunction(value)}
+    environment.globals |= {"inf": math.inf, "BEYOND": numbers.BEYOND, "NO_FAILURE": numbers.NO_FAILURE}
+    return environment.get_template(f"{subject}.txt.j2")
