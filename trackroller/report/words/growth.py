@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from trackroller.analysis.looks import looks_of
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import count, plain, rounded
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.numbers import plain
+from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import samples_of_points
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import DEFAULTS
@@ -34,16 +34,9 @@ def grown(view: StudyView) -> Sentence | None:
     if found is None:
         return None
     last, design = found["looks"][-1], view.solved.design.method
-    wide = [
-        f"no interval for the {quantity_words(name, design)}"
-        if width is None
-        else f"± {rounded(width, 2)} for the {quantity_words(name, design)} ({last['at'][name]})"
-        for name, width in last["half_width"].items()
-    ]
-    text = f"The study asked for {HEADLINE_WORDS[design]} within ± {found['half_width']:g} (95 % intervals). "
-    text += f"The sample stopped growing at {count(last['cases'])} cases: {found['stopped']}. "
-    if view.analysis is not None and "point_samples" in view.analysis:
-        text += f"{samples_of_points(view.analysis)} "
-    text += "Widest interval: "
-    text += f"{', '.join(wide)}, from {found['replicates']} independent replicates."
-    return Sentence("grown", text, {"cases": last["cases"], "half_width": last["half_width"]})
+    widths = [(quantity_words(n, design), width, last["at"][n]) for n, width in last["half_width"].items()]
+    robust = view.analysis is not None and "point_samples" in view.analysis
+    points = samples_of_points(view.analysis) if robust else ""
+    facts = {name: found[name] for name in ("half_width", "stopped", "replicates")}
+    values = {"what": HEADLINE_WORDS[design], "cases": last["cases"], "widths": widths, "points": points}
+    return say("growth", "grown", **values, **facts)

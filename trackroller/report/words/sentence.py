@@ -64,5 +64,6 @@ def _template(subject: str) -> jinja2.Template:
     loader = jinja2.PackageLoader("trackroller.report", "templates/sentences")
     environment = jinja2.Environment(loader=loader, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters |= {name: value for name, value in vars(numbers).items() if inspect.isfunction(value)}
+    environment.filters["joint"] = lambda loop: "" if loop.first else " and " if loop.last else ", "
     environment.globals |= {"inf": math.inf, "BEYOND": numbers.BEYOND, "NO_FAILURE": numbers.NO_FAILURE}
     return environment.get_template(f"{subject}.txt.j2")
