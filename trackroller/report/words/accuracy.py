@@ -10,8 +10,8 @@ import xarray as xr
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
-from trackroller.report.numbers import capital, count, level_text, listing, number, percent, plain, rounded
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.numbers import capital, level_text, number, percent, plain
+from trackroller.report.words.sentence import Sentence, say
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
 
@@ -23,25 +23,24 @@ FRICTION_OUTPUTS = ("friction_power", "friction_energy", "friction_energy_per_di
 
 def friction_guess(view: StudyView) -> Sentence | None:
     """Name the friction coefficients from the database that are placeholders."""
-    guesses = [r for r in friction_records(view.attrs) if r["placeholder"]]
-    names = [f"{number(r['value'])} ({level_text('material_pair', r['material_pair'])})" for r in guesses]
-    text = f"The friction coefficient {listing(names)} of the database is a placeholder: measure it."
-    return Sentence("friction_guess", text, {"guesses": guesses}) if names else None
+    records = [record for record in friction_records(view.attrs) if record["placeholder"]]
+    guesses = [(number(r["value"]), level_text("material_pair", r["material_pair"])) for r in records]
+    return say("accuracy", "friction_guess", guesses=guesses) if guesses else None
 
 
 def friction_error(view: StudyView) -> Sentence | None:
     """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
-    residual = view.column("energy_residual")
-    rows = view.rolling & np.isfinite(residual)
-    if not rows.any() or np.median(residual[rows]) <= KNOWN_ERROR:
+    residual = view.column("energy_residual")[view.rolling]
+    residual = residual[np.isfinite(residual)]
+    if not residual.size or np.median(residual) <= KNOWN_ERROR:
         return None
-    middle, most = float(np.median(residual[rows])), float(residual[rows].max())
-    text = (
-        f"Known model error: friction energy and power differ from the work put in by {rounded(100 * middle)} % in the "
-        f"median and {rounded(100 * most)} % at most of {count(int(rows.sum()))} rolling cases. Solve with "
-        "`contact_model: kalker` before a decision rests on them."
-    )
-    return Sentence("friction_error", text, {"median": middle, "largest": most, "of": int(rows.sum())}, rows)
+    values = {"median": float(np.median(residual)), "largest": float(residual.max()), "of": residual.size}
+    return say("accuracy", "friction_error", **values)
+
+
+def _slid(view: StudyView) -> np.ndarray:
+    """Mark the rolling cases that were solved by full sliding, shape (n,)."""
+    return np.asarray(view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding")))
 
 
 def full_sliding(view: StudyView) -> Sentence | None:
@@ -49,24 +48,16 @@ def full_sliding(view: StudyView) -> Sentence | None:
 
     Return None if the study holds the friction work: another sentence then states the error measured in this study.
     """
-    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
-    if not rows.any() or np.isfinite(view.column("energy_residual")).any():
+    cases = int(_slid(view).sum())
+    if not cases or np.isfinite(view.column("energy_residual")).any():
         return None
-    cases = int(rows.sum())
-    text = (
-        f"Known model error: full sliding solved {count(cases)} rolling cases. {SLIDING_ERROR} Solve with "
-        "`contact_model: kalker` before a decision rests on them."
-    )
-    return Sentence("full_sliding", text, {"count": cases}, rows)
+    return say("accuracy", "full_sliding", count=cases, known=SLIDING_ERROR)
 
 
 def wear_of_sliding(view: StudyView) -> Sentence | None:
     """State the known error of the wear that full sliding computes; None for other models and without wear."""
-    rows = view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding"))
-    if not (rows & np.isfinite(view.column("run_in_distance"))).any():
-        return None
-    text = f"Known model error: {SLIDING_WEAR} Solve with `contact_model: kalker` before a decision rests on it."
-    return Sentence("wear_of_sliding", text, {"count": int(rows.sum())}, rows)
+    worn = (_slid(view) & np.isfinite(view.column("run_in_distance"))).any()
+    return say("accuracy", "wear_of_sliding", known=SLIDING_WEAR) if worn else None
 
 
 def known_errors(view: StudyView) -> list[Sentence | None]:
@@ -77,21 +68,12 @@ def known_errors(view: StudyView) -> list[Sentence | None]:
 def accuracy(view: StudyView) -> list[Sentence]:
     """Say how well the peaks are resolved, and where the stress of the contact model is singular."""
     said = []
-    for body in BODIES:
-        error = view.column(f"error_estimate_{body}")
-        rows = view.valid & np.isfinite(error)
-        if rows.any():
-            middle, most = float(np.median(error[rows])), float(error[rows].max())
-            text = f"The peak stress of the {body} is resolved to {percent(middle)} in the median of the valid cases"
-            values = {"body": body, "median": middle, "largest": most}
-            said.append(Sentence("resolved", f"{text} and to {percent(most)} at worst.", values, rows))
-            break
-    if (hit := view.flagged("split_pole") & view.rolling).any():
-        cases = int(hit.sum())
-        many = ("s", "them") if cases > 1 else ("", "it")
-        text = f"In {count(cases)} rolling case{many[0]} the stress of full sliding is singular: solve {many[1]} with"
-        values = {"count": cases}
-        said.append(Sentence("singular", f"{text} `contact_model: kalker`.", values, view.rolling))
+    errors = {body: view.column(f"error_estimate_{body}")[view.valid] for body in BODIES}
+    for body, error in [(body, own[np.isfinite(own)]) for body, own in errors.items() if np.isfinite(own).any()][:1]:
+        values = {"median": float(np.median(error)), "largest": float(error.max())}
+        said.append(say("accuracy", "resolved", body=body, **values))
+    if cases := int((view.flagged("split_pole") & view.rolling).sum()):
+        said.append(say("accuracy", "singular", count=cases))
     return said
 
 

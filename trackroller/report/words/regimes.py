@@ -9,9 +9,9 @@ import numpy as np
 from trackroller.analysis.events import FEW, confining, meets, most_frequent
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIMES
-from trackroller.report.numbers import count, level_text, listing, long_name, number, quantity, setting, share
+from trackroller.report.numbers import level_text, listing, long_name, number, setting
 from trackroller.report.words.levels import at_least, at_most
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.sentence import Sentence, say
 
 
 def silent_drive(view: StudyView) -> Sentence | None:
@@ -20,11 +20,7 @@ def silent_drive(view: StudyView) -> Sentence | None:
     skid = view.regime == REGIMES.index("full_slip")
     if not force or not skid.any():
         return None
-    text = (
-        f"The study gives no motor force: {quantity(force, 'N')} of the paper's example drive the roller in all cases. "
-    )
-    text += "Write `motor_force: 0` for a free roller."
-    return Sentence("silent_drive", text, {"motor_force": force, "count": int(skid.sum())}, skid)
+    return say("regimes", "silent_drive", motor_force=force)
 
 
 def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
@@ -42,10 +38,9 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
     hit, whole, cases = hit & among, int(among.sum()), int((hit & among).sum())
     if not cases:
         return None
-    values: dict[str, Any] = {"count": cases, "of": whole}
+    values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
     if cases == whole:
-        return Sentence("everywhere", f"{what} occurs in all {count(whole)} cases.", values, among)
-    head = f"{what} occurs in {count(cases)} of {count(whole)} cases ({share(cases, whole)})"
+        return say("regimes", "everywhere", **values)
     only = confining(view, hit, among)
     inside = among.copy()
     for name, levels in only:
@@ -54,26 +49,19 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
     # few events may share levels by chance, unless all cases at these levels have the event
     common = met == cases and all(isinstance(levels, list) for _, levels in only)
     if only and (cases >= FEW or common):
-        there = "all" if met == cases else f"{count(cases)} of the {count(met)}"
-        text = f"{head}, only {_places(view, only)}: in {there} cases there."
-        return Sentence("only", text, values | {"conditions": only, "inside": met}, among)
+        return say("regimes", "only", **values, conditions=only, inside=met, places=_places(view, only))
     if cases < FEW:
-        named = [int(i) for i in np.flatnonzero(hit)]
-        text = f"{what} occurs in {cases} of {count(whole)} cases ({listing([str(i) for i in named])})"
         shared = [(n, own) for n, own in only if isinstance(own, list) and len(own) == 1] if cases > 1 else []
-        where = f", only {_places(view, shared)}" if shared else ""
-        return Sentence("cases", f"{text}{where}.", values | {"cases": named, "conditions": shared}, among)
+        named = np.flatnonzero(hit).tolist()
+        return say("regimes", "cases", **values, cases=named, conditions=shared, places=_places(view, shared))
     most = most_frequent(view, hit, among)
     if most is None:
-        return Sentence("share", f"{head}.", values, among)
-    name, high, low = most
-    levels_said = [f"{setting(name, level)} ({count(k)} of {count(n)} cases)" for level, k, n in (high, low)]
-    text = f"{head}, most often at {levels_said[0]} and least at {levels_said[1]}."
-    return Sentence("frequent", text, values | {"factor": name, "most": high, "least": low}, among)
+        return say("regimes", "share", **values)
+    return say("regimes", "frequent", **values, **dict(zip(("factor", "most", "least"), most, strict=True)))
 
 
-def _places(view: StudyView, conditions: list[tuple[str, Any]]) -> str:
-    return listing([f"at {_levels_words(view, name, levels)}" for name, levels in conditions])
+def _places(view: StudyView, conditions: list[tuple[str, Any]]) -> list[str]:
+    return [f"at {_levels_words(view, name, levels)}" for name, levels in conditions]
 
 
 def _levels_words(view: StudyView, name: str, levels: Any) -> str:
@@ -95,6 +83,4 @@ def lift_off(view: StudyView) -> Sentence | None:
     axial = np.abs(view.column("axial_force"))
     if not lifted.any() or np.isnan(axial[lifted]).any():
         return None
-    cases, least = int(lifted.sum()), float(axial[lifted].min())
-    text = f"The smallest axial force at which a case lifts off is {number(least)} N."
-    return Sentence("lift_off", text, {"count": cases, "least": least}, np.ones(len(lifted), dtype=bool))
+    return say("regimes", "lift_off", count=int(lifted.sum()), least=float(axial[lifted].min()))
