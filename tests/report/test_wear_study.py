@@ -42,7 +42,8 @@ def study(tmp_path_factory):
 def test_sentences_on_wear(study):
     view = study.view
     told = guesses(view)
-    assert {name.split(" on ")[0] for name in told.values["placed"]["run-in wear"]} == {"POM", "PA6", "1.7225-quenched-tempered"}
+    names = {name.split(" on ")[0] for name in told.values["placed"]["wear"]}
+    assert names == {"POM", "PA6", "1.7225-quenched-tempered"}
     assert all(name in told.text for name in ("decide wear (", "POM", "PA6"))  # of both chunks
     km = study.data.run_in_distance.values
     beyond = worn(view)

@@ -35,8 +35,8 @@ def grown(view: StudyView) -> Sentence | None:
         return None
     last, design = found["looks"][-1], view.solved.design.method
     widths = [(quantity_words(n, design), width, last["at"][n]) for n, width in last["half_width"].items()]
-    robust = view.analysis is not None and "point_samples" in view.analysis
-    points = samples_of_points(view.analysis) if robust else ""
+    sens = view.analysis
+    points = samples_of_points(sens) if sens is not None and "point_samples" in sens else ""
     facts = {name: found[name] for name in ("half_width", "stopped", "replicates")}
     values = {"what": HEADLINE_WORDS[design], "cases": last["cases"], "widths": widths, "points": points}
     return say("growth", "grown", **values, **facts)

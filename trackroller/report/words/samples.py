@@ -10,9 +10,8 @@ import xarray as xr
 from trackroller.analysis.convergence import HALF_WIDTH
 from trackroller.analysis.ranking import best_points, estimate
 from trackroller.parameters import REGIMES
-from trackroller.report.numbers import rounded
 from trackroller.report.words.indices import of_output
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import target_words
 from trackroller.study.design.sampling import ARRAYS
 
@@ -49,21 +48,12 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
         return None
     worst = max(needed, key=lambda name: (needed[name], float(sens["half_width"].sel(output=name))))
     half, times = float(sens["half_width"].sel(output=worst)), needed[worst]
-    values = {"take_times": times, "output": worst, "half": half}
-    share = "the largest effect" if method == "morris" else "the variance"
-    if times <= 1:
-        apart = ", those of regimes apart" if set(map(str, sens["output"].values)) & set(REGIMES) else ""
-        text = f"Yes: the indices of all outputs{apart} are known to ± {_percent(half)} of {share} or better."
-        return Sentence("enough", text, values)
     number = int(times * (sens.attrs.get("rows", asked) if method == "table" else asked))
-    text = f"No: the indices of {of_output(sens, worst)} are known to ± {_percent(half)} of {share} only."
-    write = f"A table of {number} rows gives" if method == "table" else f"Write `samples: {number}` for"
-    values |= {"number": number, "predicted": half / math.sqrt(times)}
-    return Sentence("more", f"{text} {write} ± {_percent(half / math.sqrt(times))}.", values)
-
-
-def _percent(half: float) -> str:
-    return f"{rounded(100 * half, 2)} %"
+    values = {"point": False, "too_few": False, "output": worst, "what": f"the indices of {of_output(sens, worst)}"}
+    values |= {"apart": bool(set(map(str, sens["output"].values)) & set(REGIMES)), "table": method == "table"}
+    values |= {"share": "the largest effect" if method == "morris" else "the variance", "half": half}
+    values |= {"take_times": times, "number": number, "predicted": half / math.sqrt(times)}
+    return say("samples", "enough" if times <= 1 else "more", **values)
 
 
 def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
@@ -83,17 +73,12 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
     if not widths:
         return None
     half, wanted, what = max(widths, key=lambda item: item[0] / item[1])
-    values = {"half": half, "wanted": wanted, "asked": asked}
+    values = {"point": True, "table": False, "what": what, "half": half, "wanted": wanted, "asked": asked}
     lives = any(limit == HALF_B10 for _, limit, _ in widths)
     if half <= wanted and (asked >= FEWEST or not lives):
-        text = f"Yes: {what} is known to ± {_percent(half)}, and every other result at least as well."
-        return Sentence("enough", text, values)
+        return say("samples", "enough", **values)
     times = 2.0 ** max(0, math.ceil(math.log2((half / wanted) ** 2) - 1e-9))
     while lives and times * asked < FEWEST:
         times *= 2
-    number, predicted = int(times * asked), half / math.sqrt(times)
-    values |= {"number": number, "predicted": predicted}
-    text = f"No: {what} is known to ± {_percent(half)} only. Write `samples: {number}` for ± {_percent(predicted)}."
-    if half <= wanted:
-        text = f"No: {asked} samples are too few for the interval of a B10. Write `samples: {number}`."
-    return Sentence("more", text, values)
+    values |= {"number": int(times * asked), "predicted": half / math.sqrt(times)}
+    return say("samples", "more", **values, too_few=half <= wanted)

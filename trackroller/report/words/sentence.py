@@ -65,5 +65,6 @@ def _template(subject: str) -> jinja2.Template:
     environment = jinja2.Environment(loader=loader, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters |= {name: value for name, value in vars(numbers).items() if inspect.isfunction(value)}
     environment.filters["joint"] = lambda loop: "" if loop.first else " and " if loop.last else ", "
-    environment.globals |= {"inf": math.inf, "BEYOND": numbers.BEYOND, "NO_FAILURE": numbers.NO_FAILURE}
+    known = ("BEYOND", "NO_FAILURE", "GUIDE_UNKNOWN")
+    environment.globals |= {"inf": math.inf} | {name: getattr(numbers, name) for name in known}
     return environment.get_template(f"{subject}.txt.j2")

@@ -7,8 +7,8 @@ import xarray as xr
 
 from trackroller.analysis.ranking import estimate
 from trackroller.analysis.targets import most_apart
-from trackroller.report.numbers import capital, chance, count, level_text, long_name, number, quantity, setting
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.numbers import chance, level_text, long_name, number, quantity, setting
+from trackroller.report.words.sentence import Sentence, phrase, say
 
 SAME = 1e-6  # probabilities that differ by less are called the same
 INTERVAL = "95 % interval "
@@ -37,31 +37,23 @@ def target(table: xr.Dataset, number: int) -> Sentence:
     table : analysis with the variables of `trackroller.analysis.targets.targets`
     number : of the target
     """
-    part, what = table.isel(target=number), capital(target_words(table, number))
-    share, low, high = estimate(part, "target_probability")
-    values = {"target": number, "share": share.tolist(), "low": low.tolist(), "high": high.tolist()}
-    if share.ndim:
-        best, worst = int(np.argmax(share)), int(np.argmin(share))
-        values |= {"best": best, "worst": worst}
-        highest = chance(share[best], low[best], high[best], INTERVAL)
-        same = len(share) > 1 and share[best] - share[worst] < SAME
-        where = f"all {len(share)} design points" if same else point_words(table, best)
-        text = f"{what}: probability {highest} at {where}"
-        if len(share) > 1 and not same:
-            text += f"; no other of the {count(len(share))} design points has more. The least, "
-            text += f"{chance(share[worst], low[worst], high[worst], INTERVAL)}, is at {point_words(table, worst)}"
-    elif np.isfinite(low):
-        text = f"{what}: probability {chance(share, low, high, INTERVAL)} over all cases"
-    else:
-        of = WHOLE.get(str(table.attrs.get("method")), "cases")
-        text = f"{what}: met by {chance(share)} of the {of}"
+    part = table.isel(target=number)
+    share, low, high = np.atleast_2d(estimate(part, "target_probability").T).T
+    order = [int(np.argmax(share)), int(np.argmin(share))]
+    robust = "point" in part["target_probability"].dims
     most = most_apart(part)
-    if most is not None:
-        values["levels"] = most
-        ends = [f"{_cell(part, 'level', i)} at {_level_words(part, i)}" for i in most]
-        name = capital(long_name(str(part["level_factor"][most[0]].item())))
-        text += f". {name} changes it most: from {ends[0]} to {ends[1]}"
-    return Sentence("target", f"{text}.", values)
+    return say(
+        "targets",
+        "target",
+        what=target_words(table, number),
+        whole="" if robust or np.isfinite(low).all() else WHOLE.get(str(table.attrs.get("method")), "cases"),
+        many=len(share) if robust else None,
+        same=bool(np.ptp(share) < SAME),
+        chances=[chance(share[i], low[i], high[i], INTERVAL) for i in order],
+        points=[point_words(table, i) for i in order] if robust else [],
+        changes=long_name(str(part["level_factor"][most[0]].item())) if most else "",
+        ends=[f"{_cell(part, 'level', i)} at {_level_words(part, i)}" for i in most or ()],
+    )
 
 
 def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:
@@ -80,10 +72,8 @@ def _level_words(part: xr.Dataset, level: int) -> str:
 
 def samples_of_points(table: xr.Dataset) -> str:
     """Say how many samples the design points have."""
-    low, high = (count(int(end(table["point_samples"]))) for end in (np.min, np.max))
-    if low == high:
-        return f"Every design point has the same {high} samples."
-    return f"The design points have {low} to {high} samples: those with wide intervals grew."
+    low, high = (int(end(table["point_samples"])) for end in (np.min, np.max))
+    return phrase("targets", "samples_of_points", low=low, high=high)
 
 
 def point_words(table: xr.Dataset, point: int) -> str:
