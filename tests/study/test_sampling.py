@@ -9,7 +9,8 @@ from trackroller.parameters.expressions import comparisons, condition, evaluate,
 from trackroller.study.design import arrays as designs
 from trackroller.study.design import saltelli
 from trackroller.study.design.factors import Factor, parse
-from trackroller.study.design.sampling import METHODS, sample
+from trackroller.study.design.kinds import METHODS
+from trackroller.study.design.sampling import sample
 
 MIXED = {
     "friction_coefficient": {"truncnormal": [0.2, 0.1, 0.05, 0.4]},

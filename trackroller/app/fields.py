@@ -12,7 +12,7 @@ from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, O
 from trackroller.parameters.example import LASTING
 from trackroller.report.numbers import capital, unit_text
 from trackroller.roller.doubts import USUAL
-from trackroller.study.design.sampling import METHODS
+from trackroller.study.design.kinds import METHODS
 
 SPAN = 4.0  # a slider goes from a quarter of the example's value to four times this value
 WIDEST = 100.0  # bounds that are farther apart say what the solver takes, not what rollers have

@@ -27,7 +27,7 @@ from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
 from trackroller.roller.aliases import ALIASES
-from trackroller.study.design.sampling import ARRAYS
+from trackroller.study.design.kinds import DESIGNS
 from trackroller.study.file.config import check_name
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
@@ -100,8 +100,9 @@ def _study(text: str) -> Study:
 def _least_cases(study: Study) -> int:
     """Return about how many cases a study has, found without drawing its design."""
     method = study.config.design
-    crossed = [len(f.levels) for f in study.parsed.values() if f.levels] if method in (*ARRAYS, "inner_outer") else []
-    return math.prod(crossed) * (1 if method in (*ARRAYS, "table") else int(study.config.samples))
+    array = DESIGNS[method].array
+    crossed = [len(f.levels) for f in study.parsed.values() if f.levels] if array or method == "inner_outer" else []
+    return math.prod(crossed) * (1 if array or method == "table" else int(study.config.samples))
 
 
 def start(text: str) -> dict[str, Any]:

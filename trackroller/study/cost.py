@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.contact_models import DECLARED, SOLVED_PATCHES
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.sampling import ARRAYS
+from trackroller.study.design.kinds import DESIGNS
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -60,8 +60,8 @@ def study_rate(study: Study) -> float:
 
 def seconds_of_report(design: str, cases: int) -> float:
     """Return the expected time on one core [s] to gather and analyse a study, draw its figures and write its page."""
-    known = (*ARRAYS, "saltelli", "morris")  # give indices themselves, without given-data measures
-    return (PAGES_OF_ARRAY if design in known else PAGES_OF_SAMPLE) + cases * PAGES_A_CASE
+    itself = DESIGNS[design].array or design in ("saltelli", "morris")  # indices without given-data measures
+    return (PAGES_OF_ARRAY if itself else PAGES_OF_SAMPLE) + cases * PAGES_A_CASE
 
 
 def bytes_a_case(outputs: tuple[str, ...]) -> int:

@@ -48,7 +48,7 @@ from trackroller.report.words.limits import limit_sentences
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
-from trackroller.study.design.sampling import ARRAYS
+from trackroller.study.design.kinds import those_with
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -159,9 +159,8 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     """Return the line under the title: date, design, size, model, accuracy."""
     design = str(merged.get("design", "grid" if view.grid else "sample")).replace("_", " ")
-    samples = (
-        view.study.get("samples") if design.replace(" ", "_") not in (*ARRAYS, "table", "sample", "optimise") else None
-    )
+    uncounted = design.replace(" ", "_") in (*those_with("array"), "table", "sample", "optimise")
+    samples = None if uncounted else view.study.get("samples")
     most = "up to " if view.study.get("point_samples") else ""
     date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")
     parts = [

@@ -13,7 +13,7 @@ from trackroller.parameters import REGIMES
 from trackroller.report.words.indices import of_output
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import target_words
-from trackroller.study.design.sampling import ARRAYS
+from trackroller.study.design.kinds import DESIGNS
 
 HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
 FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
@@ -39,7 +39,7 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
     method = str(sens.attrs.get("method"))
     if method == "inner_outer":
         return _of_points(sens, asked)
-    if method in ARRAYS or "take_times" not in sens:
+    if DESIGNS[method].array or "take_times" not in sens:
         return None
     asked = 1 << max(0, asked - 1).bit_length() if method == "saltelli" else asked
     needed = {str(o): float(sens["take_times"].sel(output=o)) for o in sens["output"].values if str(o) not in REGIMES}

@@ -13,9 +13,9 @@ from scipy.special import ndtr, ndtri
 
 from trackroller.errors import InputError, either, unknown_name
 from trackroller.study.design.factors import Factor
+from trackroller.study.design.kinds import those_that_take
 
 KEY = "rank_correlations"
-DESIGNS = ("lhs", "sobol", "inner_outer")
 SMALLEST = 1e-6  # eigenvalue of the correlation matrix below which it does not count as positive definite
 Entry = tuple[str, str, float]
 TAKE = "Take design lhs: first and delta allow correlation."
@@ -61,8 +61,9 @@ def check_entries(value: Any) -> tuple[Entry, ...]:
 
 def check_design(entries: Sequence[Entry], method: str) -> None:
     """Refuse rank correlations in a design that cannot have them; the message says what to take instead."""
-    if entries and method not in DESIGNS:
-        allowed = f"design {either(DESIGNS)}, not {method}"
+    having = those_that_take(KEY)
+    if entries and method not in having:
+        allowed = f"design {either(having)}, not {method}"
         raise InputError(KEY, [list(e) for e in entries], allowed, REFUSALS.get(method, REFUSAL))
 
 

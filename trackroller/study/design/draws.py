@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, check_names, nearest, unknown_name
+from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.numerics.numbers import read_number
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
@@ -25,6 +25,7 @@ from trackroller.study.design.evolution import Gene, first_generation
 from trackroller.study.design.factors import TAIL, Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.growth import check_point_samples
+from trackroller.study.design.kinds import those_with
 from trackroller.study.design.replicates import in_turn, sobol_rows
 from trackroller.study.design.saltelli import all_groups
 from trackroller.study.file.csv import read_rows
@@ -165,7 +166,6 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         raise InputError(
             "factors", list(free), allowed, "Give one factor a distribution such as {normal: [0.1, 0.02]}."
         )
-    check_names("design option inner", [settings["inner"]], ("lhs", "sobol"))
     drawn, sample, more = _random(settings["inner"], inner, n, seed, settings)
     points, index, meta = _grid(outer, 0, 0, {})
     sizes = check_point_samples(settings["point_samples"], n, len(index))
@@ -218,7 +218,7 @@ DRAW: dict[str, Callable[..., Drawn]] = {
     "saltelli": _saltelli,
     "morris": _morris,
     "inner_outer": _inner_outer,
-    **{method: partial(_coded, method) for method in ("central_composite", "box_behnken", "plackett_burman")},
+    **{method: partial(_coded, method) for method in those_with("coded")},
 }
 
 

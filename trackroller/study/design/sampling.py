@@ -20,36 +20,12 @@ from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.parameters import PARAMETERS, expressions
 from trackroller.study.design.draws import DRAW, MAX_ROWS, table
 from trackroller.study.design.factors import Factor, parse
-
-METHODS = (
-    "grid",
-    "lhs",
-    "sobol",
-    "morris",
-    "saltelli",
-    "central_composite",
-    "box_behnken",
-    "plackett_burman",
-    "inner_outer",
-    "table",
-    "optimise",
-)
-OPTIONS: dict[str, dict[str, Any]] = {
-    "saltelli": {"second_order": True, "groups": None, "replicates": 1},
-    "morris": {"levels": 4, "replicates": 1},
-    "table": {"table": None},
-    "inner_outer": {"inner": "lhs", "grown_from": (), "rank_correlations": (), "replicates": 1, "point_samples": ()},
-    "lhs": {"grown_from": (), "rank_correlations": (), "replicates": 1},
-    "sobol": {"rank_correlations": (), "replicates": 1},
-    "optimise": {"conditions": (), "population": 32, "table": None},
-}
-WEIGHING = ("lhs", "sobol", "saltelli")  # designs that draw the values of a list with their weights
-ARRAYS = ("grid", "central_composite", "box_behnken", "plackett_burman")  # `samples` does not count for them
+from trackroller.study.design.kinds import DESIGNS, those_that_take, those_with
 
 
 def is_random(factor: Factor, method: str) -> bool:
     """Return whether a design draws the values of a factor at random."""
-    return method in WEIGHING or (method == "inner_outer" and factor.scatter)
+    return DESIGNS[method].weighs or (method == "inner_outer" and factor.scatter)
 
 
 @dataclass(frozen=True)
@@ -60,7 +36,7 @@ class SampledDesign:
     ----------
     columns : every factor, derived ones included: name -> shape (n,), float, or object for categories
     factors : the independent factors by name; indices are given for them
-    method : one of `METHODS`
+    method : one of `DESIGNS`
     unit : shape (n, number of factors) [1]: quantiles; codes -1..1 in classical designs; the index of the
         listed value for a list in a grid, an inner/outer array or a Morris design
     meta : numbers of the method (base_samples, second_order, levels, shape, inner_samples, ...)
@@ -125,7 +101,7 @@ def sample(
     Parameters
     ----------
     factors : name -> dictionary as described in `trackroller.study.design.factors`
-    method : one of `METHODS`
+    method : one of `DESIGNS`
     n : rows (lhs, sobol), trajectories (morris), base samples (saltelli, rounded up to a power of two; the design has
         n (2 k + 2) rows, or n (k + 2) without second order), samples per design point (inner_outer). The other
         methods have their own number
@@ -162,7 +138,7 @@ def sample(
         if not free and method != "grid":
             raise InputError("factors", list(factors), "at least one factor must vary")
         _check_weights(free, method)
-        if method not in ARRAYS and int(n) < 1:
+        if not DESIGNS[method].array and int(n) < 1:
             raise InputError("samples", n, "a whole number >= 1")
         columns, unit, meta = DRAW[method](free, int(n), int(seed), settings)
     if columns and len(unit) > MAX_ROWS:
@@ -179,31 +155,25 @@ def sample(
 
 
 def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    check_names("design", [method], METHODS)
-    settings: dict[str, Any] = {**OPTIONS.get(method, {})}
-    for key, value in options.items():
-        if key not in settings:
-            having = [design for design, known in OPTIONS.items() if key in known]
-            if not having:
-                raise unknown_name("design option", key, settings)
-            raise InputError(key, value, f"an option of design {' and '.join(having)}", "Remove the key.")
-        settings[key] = value
-    return settings
+    check_names("design", [method], DESIGNS)
+    settings = DESIGNS[method].takes
+    for key in options.keys() - settings.keys():
+        if having := those_that_take(key):
+            raise InputError(key, options[key], f"an option of design {' and '.join(having)}", "Remove the key.")
+        raise unknown_name("design option", key, settings)
+    return {**settings, **options}
 
 
 def _check_weights(free: Mapping[str, Factor], method: str) -> None:
     """Refuse weights in a design that does not draw the values of a list at random."""
+    drawing, outer = those_with("weighs"), method == "inner_outer"
     for name, factor in free.items():
         if factor.weights and not is_random(factor, method):
-            where = "the outer array of inner_outer" if method == "inner_outer" else f"design {method}"
-            raise InputError(
-                f"factors.{name}.weights",
-                list(factor.weights),
-                f"a design that draws values at random ({', '.join(WEIGHING)}); {where} takes each value equally often",
-                "Remove the weights, or add scatter: true."
-                if method == "inner_outer"
-                else f"Remove the weights, or choose design {WEIGHING[0]}.",
-            )
+            where = "the outer array of inner_outer" if outer else f"design {method}"
+            known = f"a design that draws values at random ({', '.join(drawing)})"
+            remedy = f"Remove the weights, or {'add scatter: true' if outer else f'choose design {drawing[0]}'}."
+            allowed = f"{known}; {where} takes each value equally often"
+            raise InputError(f"factors.{name}.weights", list(factor.weights), allowed, remedy)
 
 
 def _derived(

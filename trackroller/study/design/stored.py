@@ -17,12 +17,11 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.study.design.draws import of_columns
 from trackroller.study.design.factors import TAIL, Factor
+from trackroller.study.design.kinds import DESIGNS
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import flat
 
 PLACE, FACTOR, META = "design_place", "design_factor", "design_meta"
-FOLLOWING = ("grid", "table")  # designs whose places follow from the values
-_CODED = ("central_composite", "box_behnken", "plackett_burman")
 
 
 def stored(design: SampledDesign) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -38,7 +37,7 @@ def stored(design: SampledDesign) -> tuple[dict[str, Any], dict[str, Any]]:
     """
     meta = {"columns": list(design.columns), "size": design.size, **design.meta}
     attrs = {"design": design.method, META: json.dumps(meta)}
-    if design.method in FOLLOWING:
+    if DESIGNS[design.method].follows:
         return {}, attrs
     words = {"long_name": "place in the design: quantile, code, or number of the listed value", "units": "1"}
     names = np.array(list(design.factors), dtype=object)
@@ -133,10 +132,8 @@ def _check_rows(ds: xr.Dataset, design: SampledDesign, dims: tuple[str, ...], re
             wanted = design.columns[name]
         else:
             unit = design.unit[:, j]
-            wanted = factor.from_unit((unit + 1) / 2 if design.method in _CODED else unit, _tail(design.method))
+            coded = DESIGNS[design.method].coded
+            tail = TAIL if coded or design.method == "morris" else 0.0
+            wanted = factor.from_unit((unit + 1) / 2 if coded else unit, tail)
         if not np.allclose(flat(ds, name, dims), wanted, rtol=1e-6, atol=1e-12):
             raise InputError("study", name, "the values of its design", remedy)
-
-
-def _tail(method: str) -> float:
-    return TAIL if method in (*_CODED, "morris") else 0.0

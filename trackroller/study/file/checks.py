@@ -19,6 +19,7 @@ from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.correlation import check_design, copula
 from trackroller.study.design.draws import check_listed, table_lines
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
+from trackroller.study.design.kinds import DESIGNS, those_with
 from trackroller.study.design.roles import check_roles
 from trackroller.study.file.csv import column_names, read_rows
 from trackroller.study.file.goals import check, check_scatter
@@ -31,8 +32,6 @@ if TYPE_CHECKING:
     from trackroller.study.design.factors import Factor
 
 
-GROUPED = ("grid", "saltelli")  # designs that give indices of groups of factors
-CONDITIONAL = ("grid", "saltelli", "lhs", "sobol", "table")  # designs that give indices at each level of a category
 MOST_LEVELS = 12
 _GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
 
@@ -124,8 +123,8 @@ def _check_groups(
     config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
 ) -> None:
     names, seen = list(free), set()
-    if config.design not in GROUPED:
-        allowed = f"design {either(GROUPED)}, not {config.design}"
+    if not DESIGNS[config.design].grouped:
+        allowed = f"design {either(those_with('grouped'))}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
     for group, members in groups.items():
         where = f"analysis.groups.{group}"
@@ -146,9 +145,9 @@ def _check_groups(
 def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     where = "analysis.conditional_on"
     by_group = config.design == "saltelli" and bool(config.analysis.groups)
-    if config.design not in CONDITIONAL or by_group:
+    if not DESIGNS[config.design].conditional or by_group:
         own = f"{config.design} with analysis.groups" if by_group else config.design
-        raise InputError(where, name, f"design {either(CONDITIONAL)}, not {own}")
+        raise InputError(where, name, f"design {either(those_with('conditional'))}, not {own}")
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
     if not free[name].discrete or len(free[name].levels) > MOST_LEVELS:

@@ -15,8 +15,8 @@ from trackroller.roller.duty import checked_duty
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.correlation import check_entries
 from trackroller.study.design.entries import base_value, choice, factor
+from trackroller.study.design.kinds import METHODS
 from trackroller.study.design.roles import check_words
-from trackroller.study.design.sampling import METHODS
 from trackroller.study.file.goals import Analysis, comparisons, directions
 from trackroller.study.file.search import Budget
 from trackroller.study.file.until import Until

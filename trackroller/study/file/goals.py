@@ -30,6 +30,7 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES,
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
 from trackroller.study.design.factors import Factor
+from trackroller.study.design.kinds import DESIGNS
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
 SCALES = ("natural", "log10")
@@ -41,7 +42,6 @@ STATISTICS_OF = {  # by the key of a study file
     "goals": ("mean", "worst", "b10", "probability"),
     "until.of": ("b10", "probability"),
 }
-TARGET_DESIGNS = ("inner_outer", "lhs", "sobol", "saltelli", "grid", "table", "optimise")
 
 
 def without_spaces(value: Any) -> Any:
@@ -220,7 +220,7 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     known = output_names(config.outputs)
     check_analysed(config)
-    if config.analysis.target and config.design not in TARGET_DESIGNS:
+    if config.analysis.target and not DESIGNS[config.design].weighted:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
     free = [*known, *factors, *PARAMETERS]

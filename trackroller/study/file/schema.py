@@ -10,7 +10,7 @@ from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, 
 from trackroller.parameters.options import QUANTITIES
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.factors import DISTRIBUTIONS
-from trackroller.study.design.sampling import METHODS
+from trackroller.study.design.kinds import METHODS
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 
 FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.schema.json"

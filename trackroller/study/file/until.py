@@ -11,11 +11,11 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from trackroller.errors import InputError, either
 from trackroller.parameters import REGIMES
+from trackroller.study.design.kinds import DESIGNS, those_with
 from trackroller.study.file.goals import output_names, statistic, unknown_result
 
 FIRST_LOOK = {"morris": 2}  # samples of a replicate at the first look, unless the study file names `samples`
 USUAL_FIRST_LOOK = 8
-GROWING = ("sobol", "lhs", "saltelli", "morris", "inner_outer")  # designs whose samples grow by doublings
 
 
 class Until(BaseModel):
@@ -54,8 +54,8 @@ def check_until(config: Any) -> None:
     until = config.until
     if until is None:
         return
-    if config.design not in GROWING:
-        allowed = f"with until: {either(GROWING)}, which grow by more samples"
+    if not DESIGNS[config.design].grows:
+        allowed = f"with until: {either(those_with('grows'))}, which grow by more samples"
         raise InputError("design", config.design, allowed, "Choose one of them, or remove until.")
     if config.design == "saltelli" and config.analysis.groups:
         groups = list(config.analysis.groups)
