@@ -18,7 +18,7 @@ ROLLERS = {
 ACCURACIES = ("preview", "standard", "reference")
 
 
-def measure(travel: float = 50.0, coefficient: float = 1e-5) -> dict:
+def measure(travel: float = 50.0, coefficient: float = 1e-5, accuracies: tuple[str, ...] = ACCURACIES) -> dict:
     """Return depth, pressure, estimated error and processor time of each roller and accuracy.
 
     Parameters
@@ -27,13 +27,15 @@ def measure(travel: float = 50.0, coefficient: float = 1e-5) -> dict:
         Travel [km].
     coefficient : float
         Wear coefficient of both bodies [mm3/(N m)].
+    accuracies : tuple of str
+        Resolutions that are measured.
     """
     steel = {"like": "1.7225-quenched-tempered", "wear_coefficient": coefficient}
     out: dict = {}
     for name, loads in ROLLERS.items():
         case = tr.Case(friction_coefficient=0.2, roller_material=steel, guide_material=steel, **loads)
         out[name] = {}
-        for accuracy in ACCURACIES:
+        for accuracy in accuracies:
             tr.wear(case, 0.01, contact_model="kalker", accuracy=accuracy)  # compile and load
             start = time.process_time()
             ds = tr.wear(case, travel, contact_model="kalker", accuracy=accuracy)
