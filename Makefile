@@ -72,7 +72,7 @@ docs: $(CI_STAMP)
 
 # the pages in a browser; needs Chromium, and axe-core from `npm ci` in web/
 test-browser: $(CI_STAMP)
-	$(BIN)/python -m pytest -q -ra -m browser tests/report tests/docs tests/app
+	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m browser tests/report tests/docs tests/app
 
 # the script of the explorer from web/src, which needs Node and npm; the check compares it byte for byte
 explorer:
