@@ -41,7 +41,7 @@ COMMANDS = {
 }
 
 
-def _draw(view, out_dir: Path) -> list[str]:
+def draw_one(view, out_dir: Path) -> list[str]:
     """Write one file in place of the figures, which would take seconds; it holds the results that were read."""
     (out_dir / "one.svg").write_text(f"<svg>{float(view.data['normal_force'].sum())!r}</svg>")
     return ["one"]
@@ -52,7 +52,7 @@ def original(tmp_path_factory):
     """Return a folder with a grown study and its report, for `finished` to copy."""
     place = tmp_path_factory.mktemp("original")
     with pytest.MonkeyPatch.context() as patch, contextlib.chdir(place):
-        patch.setattr("trackroller.report.figures.study.draw_all", _draw)
+        patch.setattr("trackroller.report.figures.study.draw_all", draw_one)
         for samples in ("6", "12"):
             Path("study.yaml").write_text(STUDY.replace("samples: 12", f"samples: {samples}"))
             plan = run_study(load_study("study.yaml"), solver=fake_solver.solve)
@@ -63,7 +63,7 @@ def original(tmp_path_factory):
 @pytest.fixture
 def finished(original, tmp_path, monkeypatch):
     """Return the folder of a grown study with its report."""
-    monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
+    monkeypatch.setattr("trackroller.report.figures.study.draw_all", draw_one)
     monkeypatch.chdir(tmp_path)
     shutil.copytree(original, tmp_path, dirs_exist_ok=True)
     return Path("results/edited")
