@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.contact.influence import convolve
-from trackroller.contact.kalker.columns import apply_inverse, factorise
+from trackroller.contact.kalker.columns import Systems, apply_inverse, factorise
 from trackroller.contact.kalker.loops import reals, row_means
 from trackroller.numerics.compiled import compiled, fast
 
@@ -35,7 +35,7 @@ class Columns(NamedTuple):
 class Derivative(NamedTuple):
     """Derivative of the friction law in each element; see `loops.jacobian`.
 
-    projection : P' (3, ny, nx); turn : (4, ny, nx), used only where friction `falls`; rho : scale of the slips.
+    projection : P' (4, ny, nx); turn : (4, ny, nx), used only where friction `falls`; rho : scale of the slips.
     """
 
     projection: np.ndarray
@@ -47,11 +47,11 @@ class Derivative(NamedTuple):
 class Space(NamedTuple):
     """Work space of a Newton step.
 
-    factors : see `factors_of`; basis : Krylov basis (m + 1, 2 ny nx); moves : of each vector of the basis the traction
-    and the slip that it stands for, complex (m, 2, ny, nx); transforms : see `convolve`.
+    systems : of the preconditioner; basis : Krylov basis (m + 1, 2 ny nx); moves : of each vector of the basis the
+    traction and the slip that it stands for, complex (m, 2, ny, nx); transforms : see `convolve`.
     """
 
-    factors: np.ndarray
+    systems: Systems
     basis: np.ndarray
     moves: np.ndarray
     transforms: np.ndarray
@@ -107,11 +107,12 @@ def arnoldi(direction, product, mean, derivative, basis, k, triangle):
             bx, by = product[i, j, 0], product[i, j, 1]
             dx, dy = direction[i, j, 0], direction[i, j, 1]
             x, y = dx - rho * bx, dy - rho * by
-            pxx, pxy, pyy = projection[0, i, j], projection[1, i, j], projection[2, i, j]
+            c, s = projection[2, i, j], projection[3, i, j]
+            along, across = projection[0, i, j] * (c * x + s * y), projection[1, i, j] * (c * y - s * x)
             mx, my = mean[i, j, 0], mean[i, j, 1]
             place = 2 * (i * nx + j)
-            v[place] = dx - pxx * x - pxy * y - turn[0, i, j] * mx - turn[1, i, j] * my
-            v[place + 1] = dy - pxy * x - pyy * y - turn[2, i, j] * mx - turn[3, i, j] * my
+            v[place] = dx - c * along + s * across - turn[0, i, j] * mx - turn[1, i, j] * my
+            v[place + 1] = dy - s * along - c * across - turn[2, i, j] * mx - turn[3, i, j] * my
     for i in range(k + 1):
         h = dot(basis[i], v)
         hessenberg[i, k] = h
@@ -149,7 +150,7 @@ def solve(value, derivative, columns, operator, tolerance, space, move):
     """
     ny, nx = value.shape
     slips, first, count = columns
-    factorise(slips, derivative.projection, derivative.rho, first, count, space.factors)
+    groups = factorise(slips, derivative.projection, derivative.rho, first, count, space.systems)
     limit = space.moves.shape[0]
     triangle = Triangle(np.zeros((limit + 1, limit)), np.zeros((2, limit)), np.zeros(limit + 1))
     mean = np.zeros((ny, nx, 2))
@@ -161,7 +162,7 @@ def solve(value, derivative, columns, operator, tolerance, space, move):
     done = 0
     for k in range(limit):
         traction, slip = space.moves[k, 0], space.moves[k, 1]
-        apply_inverse(space.factors, first, count, space.basis[k].reshape(ny, nx, 2), reals(traction))
+        apply_inverse(space.systems, groups, space.basis[k].reshape(ny, nx, 2), reals(traction))
         convolve(traction, operator.p, operator.q, space.transforms, slip)
         if derivative.falls:
             row_means(reals(slip), first, count, mean)

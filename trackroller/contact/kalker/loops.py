@@ -66,8 +66,9 @@ def residual(traction, slip, bound, rho, out):
 
 @fast
 def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
-    """Write the derivative of P_g at z = tau - rho s into `derivative` (3, ny, nx), order xx, xy, yy.
+    """Write the derivative of P_g at z = tau - rho s into `derivative` (4, ny, nx).
 
+    It is 1 or 0 along z and a number across z, in this order; the direction of z in x and y follows.
     Write n (dg/d|m|) m/|m| of the sliding elements into `turn` (4, ny, nx), order xx, xy, yx, yy. Here n is the
     direction of z, and m is the `row_means` of the slip.
     """
@@ -78,15 +79,12 @@ def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
             zx, zy = traction[i, j, 0] - rho * sx, traction[i, j, 1] - rho * sy
             square = zx * zx + zy * zy
             steep = 0.0
+            z = math.sqrt(square)
+            derivative[2, i, j], derivative[3, i, j] = (zx / z, zy / z) if z > 0.0 else (1.0, 0.0)
             if square <= g * g:
-                inside = 1.0 if g > 0.0 else 0.0
-                derivative[0, i, j], derivative[1, i, j], derivative[2, i, j] = inside, 0.0, inside
+                derivative[0, i, j] = derivative[1, i, j] = 1.0 if g > 0.0 else 0.0
             else:
-                z = math.sqrt(square)
-                factor = g / (z * square)
-                derivative[0, i, j] = factor * zy * zy
-                derivative[1, i, j] = -factor * zx * zy
-                derivative[2, i, j] = factor * zx * zx
+                derivative[0, i, j], derivative[1, i, j] = 0.0, g / z
                 sx, sy = mean[i, j, 0], mean[i, j, 1]
                 speed = math.sqrt(sx * sx + sy * sy)
                 steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
@@ -119,6 +117,6 @@ def hold(held, slip, rho, value, derivative, turn):
         for j in range(held.shape[1]):
             if held[i, j]:
                 value[i, j, 0], value[i, j, 1] = rho * slip[i, j, 0], rho * slip[i, j, 1]
-                derivative[0, i, j], derivative[1, i, j], derivative[2, i, j] = 1.0, 0.0, 1.0
+                derivative[0, i, j] = derivative[1, i, j] = 1.0
                 for k in range(4):
                     turn[k, i, j] = 0.0

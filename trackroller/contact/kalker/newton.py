@@ -16,7 +16,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.contact.influence import Influence, convolve
-from trackroller.contact.kalker.columns import column_ranges, factors_of
+from trackroller.contact.kalker.columns import column_ranges, systems_for
 from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
 from trackroller.numerics.compiled import compiled
@@ -86,10 +86,10 @@ def room_for(ny, nx, krylov):
         np.zeros((ny, nx), np.bool_),
         np.zeros((ny, nx, 2)),
         np.empty((ny, nx), np.complex128),
-        np.empty((3, ny, nx)),
+        np.empty((4, ny, nx)),
         np.empty((4, ny, nx)),
         Space(
-            factors_of(ny, nx),
+            systems_for(ny, nx),
             np.empty((krylov + 1, 2 * ny * nx)),
             np.empty((krylov, 2, ny, nx), np.complex128),
             np.empty((2, 2 * ny, 2 * nx), np.complex128),
@@ -159,7 +159,7 @@ def _iterate(law, work, at, tolerance, limit):
     while largest > tolerance and iteration < limit:
         iteration += 1
         # Far from the solution a rough linear solution is enough. Near it, a precise one gives quadratic convergence.
-        inner = max(0.3 * tolerance / largest, min(0.1, 0.3 * largest))
+        inner = max(0.3 * tolerance / largest, min(0.3, largest))
         leap = short >= SHORT and left == 0
         if leap:
             leap = find_slits(reals(at[0]), reals(at[1]), work.room.bound, law.rho, work.room.held) > 0

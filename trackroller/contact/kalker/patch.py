@@ -61,11 +61,14 @@ def _level(
     return solution
 
 
-def _simplified(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
-    """Return tractions of Kalker's simplified theory (FASTSIM, 1982) over mu p_max, (n, 2, elements, elements).
+def _first(ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
+    """Return the tractions over mu p_max from which the first grid starts, (n, 2, elements, elements).
 
-    Newton's method needs half the steps from them that it needs from zero. Elements without a finite value start at 0.
+    On ellipses they are those of Kalker's simplified theory (FASTSIM, 1982), from which Newton's method needs half the
+    steps that it needs from zero. Elements without a finite value, and other patches, start at 0.
     """
+    if not ellipse.is_hertzian:
+        return np.zeros((friction.size, 2, elements, elements))
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     c = creepage_coefficients(np.clip(b / a, 1.0 / LARGEST_RATIO, LARGEST_RATIO), elastic.poisson_ratio)
     height, _ = cells(ellipse, elements)
@@ -87,9 +90,10 @@ def _simplified(ellipse: Ellipse, creep: Creepage, friction, elastic: Elastic, e
 def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, traction, started: bool):
     """Solve on half the elements and, unless the iteration is `started`, fill its start `traction` from there."""
     n, half = friction.size, settings.elements // 2
-    first = np.zeros((n, 2, half, half))
     if started:
-        first[:] = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
+        first = traction.reshape(n, 2, half, 2, half, 2).mean(axis=(3, 5))
+    else:
+        first = _first(ellipse, creep, friction, elastic, half)
     solution = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
         traction[:] = on_half_elements(ellipse, solution)
@@ -121,9 +125,12 @@ def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSetting
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
     n, elements = friction.size, settings.elements
-    traction = np.zeros((n, 2, elements, elements)) if start is None else np.array(start, float)
-    if start is None and not settings.extrapolate and ellipse.is_hertzian:
-        traction = _simplified(ellipse, creep, friction, elastic, elements)
+    if start is not None:
+        traction = np.array(start, float)
+    elif settings.extrapolate:
+        traction = np.empty((n, 2, elements, elements))
+    else:
+        traction = _first(ellipse, creep, friction, elastic, elements)
     coarse = None
     if settings.extrapolate:
         coarse = _coarse(ellipse, creep, friction, elastic, travel, settings, traction, start is not None)
