@@ -104,7 +104,7 @@ def test_the_hypervolume_of_an_eighth_of_a_sphere():
 
 
 def test_a_search_finds_the_front_of_all_designs(tmp_path):
-    plan = search_designs(changed(budget={"designs": 24, "population": 4}), tmp_path)
+    plan = search_designs(changed(budget={"designs": 24, "population": 8}), tmp_path)
     solved = tr.open_study(plan.folder.root)
     grid = {**STUDY, "design": "grid", "name": "grid"}
     data = tr.run({k: v for k, v in grid.items() if k not in ("goals", "budget")}, progress=False).data
@@ -142,7 +142,7 @@ def test_a_search_goes_on_where_it_was_stopped(tmp_path):
 
 def test_hours_add_up_over_runs(tmp_path):
     told = []
-    tight = changed(budget={"designs": 24, "population": 4, "hours": 1e-9})
+    tight = changed(budget={"designs": 12, "population": 4, "hours": 1e-9})
     search_designs(tight, tmp_path, tell=told.append)
     assert [line for line in told if line.startswith("generation")][-1].startswith("generation 1:")
     search_designs(tight, tmp_path, tell=told.append)
