@@ -221,13 +221,15 @@ def _data_of(path: Path) -> Iterator[Path]:
 
 @cache
 def _data_files(root: Path) -> dict[str, list[Path]]:
-    """Return the files of a package that are no Python, by their last name."""
+    """Return the files of a package that are no Python, by their last name and by that of a folder without Python."""
     found: dict[str, list[Path]] = {}
     for folder, folders, names in os.walk(root):
         folders[:] = sorted(set(folders) - {"__pycache__"})
-        for name in sorted(names):
-            if "." in name and not name.endswith((".py", ".pyc")):
-                found.setdefault(name, []).append(Path(folder, name))
+        data = [name for name in sorted(names) if "." in name and not name.endswith((".py", ".pyc"))]
+        for name in data:
+            found.setdefault(name, []).append(Path(folder, name))
+        if data == sorted(names) and not folders:
+            found.setdefault(Path(folder).name, []).extend(Path(folder, name) for name in data)
     return found
 
 
