@@ -27,10 +27,10 @@ CHEAP = ("rating", "bearing", "limits")  # limits that cost nothing beside a com
 SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 
-def settings_of(words: list[str]) -> dict[str, Any]:
-    """Return the mapping of key=value words; the values are read as YAML."""
+def settings_of(words: list[str] | None) -> dict[str, Any]:
+    """Return the mapping of key=value words, if there are any; the values are read as YAML."""
     settings: dict[str, Any] = {}
-    for word in words:
+    for word in words or ():
         key, sign, value = word.partition("=")
         if not sign or not key:
             raise InputError("--set", word, "key=value", "For example --set friction_coefficient=0.1")
@@ -40,7 +40,7 @@ def settings_of(words: list[str]) -> dict[str, Any]:
     return settings
 
 
-def case_of(path: Path | None, words: list[str]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
+def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return the case, the options and the duty of a case file and of --set words."""
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = ({} if path is None else parse_mapping(text, "case file")) | given
@@ -60,7 +60,7 @@ def groups_of(words: str) -> tuple[str, ...]:
     return damage.groups_of("--limits", [word.strip() for word in words.split(",")])
 
 
-def solve_case(path: Path | None, words: list[str], **more: Any) -> xr.Dataset:
+def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
     case, options, duty = case_of(path, words)
     tell_doubts(case)
@@ -111,70 +111,73 @@ def _groups(limits: str | None, sheet: bool, plain: bool) -> tuple[str, ...]:
 
 def solve_and_tell(
     case: Path | None,
-    words: list[str],
-    json: bool,
+    settings: list[str] | None,
+    as_json: bool,
     out: Path | None,
     sheet: Path | None,
-    limits: str | None = None,
-    **more: Any,
+    limits: str | None,
+    no_shortcuts: bool,
 ) -> int:
     """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed.
 
-    `limits` are names of limits, of which the margins alone are printed; `more` are further options of `solve`.
+    `limits` are names of limits, of which the margins alone are printed.
     """
     target, page = None if out is None else writable(out), None if sheet is None else writable_page(sheet)
-    groups = _groups(limits, page is not None, json or target is not None or "outputs" in case_of(case, words)[1])
-    dataset = solve_case(case, words, **more | ({"outputs": groups} if groups else {}))
+    plain = as_json or target is not None or "outputs" in case_of(case, settings)[1]
+    groups, more = _groups(limits, page is not None, plain), {"shortcuts": False} if no_shortcuts else {}
+    dataset = solve_case(case, settings, **more | ({"outputs": groups} if groups else {}))
     if target is not None:
         write_result(dataset, target)
+    from trackroller.report.pages import sheet_text
     from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
     from trackroller.report.pages.sheet_facts import collect
-    from trackroller.report.pages.sheet_text import as_json, print_facts, print_margins
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
-    if json:
-        print(as_json(dataset))
+    if as_json:
+        print(sheet_text.as_json(dataset))
     elif target is None and limits is not None and not is_failed(dataset):
-        print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
+        sheet_text.print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
     elif target is None:
-        print_facts(dataset)
+        sheet_text.print_facts(dataset)
     if not is_failed(dataset):
         return 0
-    if json or target is not None:
+    if as_json or target is not None:
         print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
     return 1
 
 
-def run_spectrum(path: Path, json: bool, out: Path | None, page: Path | None) -> None:
+def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | None) -> None:
     """Solve the blocks of a spectrum file, and write or print the result.
 
-    `out` receives netCDF, and `page` the page. `json` prints JSON; without `json` and `out`, tables are printed.
+    `out` receives netCDF, and `report` the page. `as_json` prints JSON; without it and `out`, tables are printed.
     """
-    target, sheet = None if out is None else writable(out), None if page is None else writable_page(page)
-    from trackroller.report.pages.sheet_text import as_json, print_spectrum
+    target, page = None if out is None else writable(out), None if report is None else writable_page(report)
+    from trackroller.report.pages import sheet_text
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.study.spectrum.file import load_spectrum
     from trackroller.study.spectrum.solve import doubts_of_spectrum, solve_spectrum
 
-    spectrum = load_spectrum(path)
+    spectrum = load_spectrum(file)
     print_doubts(doubts_of_spectrum(spectrum, load_database()))
     dataset = solve_spectrum(spectrum)
     if target is not None:
         write_result(dataset, target)
-    if sheet is not None:
-        write_spectrum(dataset, sheet, path.name)
-    if json:
-        print(as_json(dataset))
+    if page is not None:
+        write_spectrum(dataset, page, file.name)
+    if as_json:
+        print(sheet_text.as_json(dataset))
     elif target is None:
-        print_spectrum(dataset)
+        sheet_text.print_spectrum(dataset)
 
 
-def run_wear(path: Path | None, to: str, words: list[str], out: Path | None, page: Path | None, quiet: bool) -> None:
+def run_wear(
+    case: Path | None, to: str, settings: list[str] | None, out: Path | None, report: Path | None, quiet: bool
+) -> None:
     """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
-    target, sheet = None if out is None else writable(out), None if page is None else writable_page(page)
-    case, options, _ = case_of(path, words)
-    tell_doubts(case)
+    target, page = None if out is None else writable(out), None if report is None else writable_page(report)
+    new, options, _ = case_of(case, settings)
+    tell_doubts(new)
     import xarray as xr  # heavy
 
     from trackroller.report.pages.wear import write_wear
@@ -193,11 +196,11 @@ def run_wear(path: Path | None, to: str, words: list[str], out: Path | None, pag
     if target is not None and target.exists():
         with xr.open_dataset(target) as stored:
             before = stored.load()
-    dataset = wear(case, to, resume=before, tell=tell, **options)
+    dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    if sheet is not None:
-        write_wear(dataset, sheet)
+    if page is not None:
+        write_wear(dataset, page)
     for sentence in sentences(dataset):
         print(sentence.text)
 
@@ -207,13 +210,13 @@ def is_failed(dataset: xr.Dataset) -> bool:
     return REGIMES[int(dataset["regime"])] == "failed"
 
 
-def plot_target(target: str, words: list[str], out: Path | None, results: Path) -> None:
+def plot_target(target: str, settings: list[str] | None, out: Path | None, results: Path) -> None:
     """Draw the case of a case file, or the figures of a study."""
     path = Path(target)
     if path.suffix in (".yaml", ".yml") and not is_study(path):
         from trackroller.report.figures.contact import plot_case
 
-        dataset = solve_case(path, words, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
+        dataset = solve_case(path, settings, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
         if is_failed(dataset):
             raise WorkError(f"{path} has no solution to draw: {dataset['reason'].item()}")
         folder = out or Path(f"{path.stem}-figures")

@@ -8,6 +8,7 @@ from __future__ import annotations
 import codecs
 import functools
 import io
+import os
 import signal
 import sys
 import tempfile
@@ -15,6 +16,7 @@ import traceback
 import unicodedata
 import warnings
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -22,7 +24,6 @@ import typer
 
 from trackroller import __version__
 from trackroller.cli import INTERRUPTED, STOPPED
-from trackroller.cli.live import live_page
 from trackroller.cli.materials import materials
 from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
@@ -39,7 +40,6 @@ app = typer.Typer(
     epilog="--allow-code with any command: load the limits of your own in config/limits/NAME.py, which are programs.",
 )
 app.add_typer(materials, name="materials")
-app.command("app")(live_page)
 
 SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"
 SIGNS = dict(zip("−–×·→µ°±∞≤≥↑↓", "- - x * -> u deg +- inf <= >= ^ v".split(), strict=True))
@@ -55,6 +55,22 @@ def _version(wanted: bool) -> None:
         raise typer.Exit
 
 
+def command(module: str, name: str) -> Callable[[Callable[..., None]], None]:
+    """Register a command whose arguments a function declares, and the function `name` of a module takes.
+
+    The module is imported when the command runs, so that no other command waits for what it needs. The function returns
+    the exit code, or None for 0.
+    """
+
+    def register(declared: Callable[..., None]) -> None:
+        @app.command()
+        @functools.wraps(declared)
+        def run(**arguments: Any) -> None:
+            raise typer.Exit(getattr(import_module(module), name)(**arguments) or 0)
+
+    return register
+
+
 @app.callback()
 def _root(
     version: Annotated[bool, typer.Option("--version", callback=_version, is_eager=True, help="print it")] = False,
@@ -62,7 +78,7 @@ def _root(
     pass
 
 
-@app.command()
+@command("trackroller.cli.case", "solve_and_tell")
 def solve(
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
@@ -76,13 +92,9 @@ def solve(
 
     The keys are the parameters and materials of a case and the options of a study file.
     """
-    from trackroller.cli.case import solve_and_tell
-
-    more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
-    raise typer.Exit(solve_and_tell(case, settings or [], as_json, out, sheet, limits, **more))
 
 
-@app.command()
+@command("trackroller.cli.study", "print_plan")
 def plan(
     target: Annotated[Path | None, typer.Argument(help="study or case file (YAML)", show_default=False)] = None,
     results: Results = Path("results"),
@@ -91,12 +103,9 @@ def plan(
     no_shortcuts: NoShortcuts = False,
 ) -> None:
     """Print the number of cases and chunks, the expected time and disk space; solve nothing."""
-    from trackroller.cli.study import print_plan
-
-    print_plan(target, results, explain, settings or [], no_shortcuts)
 
 
-@app.command()
+@command("trackroller.cli.study", "run_with_progress")
 def run(
     study: StudyFile,
     results: Results = Path("results"),
@@ -106,93 +115,69 @@ def run(
     report: Annotated[bool, typer.Option("--report", help="make analysis, figures and report as well")] = False,
 ) -> None:
     """Solve the missing cases of a study and gather the results; a stopped run goes on where it stopped."""
-    from trackroller.cli.study import run_with_progress
-
-    run_with_progress(study, results, rerun_failed, scheduler, quiet, report)
 
 
-@app.command()
+@command("trackroller.cli.study", "make_report")
 def report(
     study: AnyStudy,
     results: Results = Path("results"),
     out: Annotated[Path | None, typer.Option("-o", "--out", help="a copy as .html or .pdf; cases as .xlsx")] = None,
 ) -> None:
     """Make analysis, figures and report of a study that was run."""
-    from trackroller.cli.study import make_report
-
-    make_report(study, results, out)
 
 
-@app.command()
+@command("trackroller.cli.study", "print_best")
 def best(
     study: AnyStudy,
     results: Results = Path("results"),
     out: Annotated[Path | None, typer.Option("-o", "--out", help="the comparison as a page (.html or .pdf)")] = None,
 ) -> None:
     """Say which designs of a study that was run are best, and compare up to five of them."""
-    from trackroller.cli.study import print_best
-
-    print_best(study, results, out)
 
 
-@app.command()
+@command("trackroller.cli.study", "print_explorer")
 def explore(
     study: Annotated[str, typer.Argument(help="results/NAME, NAME, or a study.nc", show_default=False)],
     results: Results = Path("results"),
     out: Annotated[Path | None, typer.Option("-o", "--out", help="file; beside study.nc if not given")] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
-    from trackroller.cli.study import print_explorer
-
-    print_explorer(Path(study) if Path(study).exists() else results / study, out)
 
 
-@app.command()
+@command("trackroller.cli.study", "print_status")
 def status(
     study: AnyStudy,
     results: Results = Path("results"),
     figures: Annotated[bool, typer.Option("--figures", help="draw the figures of the solved cases as well")] = False,
 ) -> None:
     """Print how many cases are solved, missing and failed, the causes of failures, and the time left."""
-    from trackroller.cli.study import print_status
-
-    raise typer.Exit(print_status(study, results, figures))
 
 
-@app.command()
+@command("trackroller.cli.study", "print_repeat")
 def repeat(
     study: AnyStudy,
     case: Annotated[int, typer.Argument(help="case number (variable `case` of study.nc)", show_default=False)],
     results: Results = Path("results"),
 ) -> None:
     """Solve one case of a study again, compare the results, and print a command that solves this case alone."""
-    from trackroller.cli.study import print_repeat
-
-    raise typer.Exit(print_repeat(study, case, results))
 
 
-@app.command()
+@command("trackroller.cli.study", "print_verified")
 def verify(
     folder: Annotated[Path, typer.Argument(help="results/NAME of a study that was run", show_default=False)],
 ) -> None:
     """Check every file of a study against the digests in its RO-Crate; exit 1 if one is missing or changed."""
-    from trackroller.cli.study import print_verified
-
-    raise typer.Exit(print_verified(folder))
 
 
-@app.command()
+@command("trackroller.cli.study", "print_rerun")
 def rerun(
     crate: Annotated[Path, typer.Argument(help="results/NAME, or a copy of it from elsewhere", show_default=False)],
     results: Annotated[Path, typer.Option("--results", help="folder for the repeated study")] = Path("rerun"),
 ) -> None:
     """Solve a study again from its RO-Crate alone and compare; exit 1 if a value differs."""
-    from trackroller.cli.study import print_rerun
-
-    raise typer.Exit(print_rerun(crate, results))
 
 
-@app.command()
+@command("trackroller.cli.case", "run_spectrum")
 def spectrum(
     file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
@@ -200,12 +185,9 @@ def spectrum(
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
 ) -> None:
     """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
-    from trackroller.cli.case import run_spectrum
-
-    run_spectrum(file, as_json, out, report)
 
 
-@app.command()
+@command("trackroller.cli.case", "run_wear")
 def wear(
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
     to: Annotated[str, typer.Option("--to", help="travel at which to end, such as 500km")] = "50km",
@@ -215,12 +197,9 @@ def wear(
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no line for each state")] = False,
 ) -> None:
     """Follow roller and guide while their profiles wear, and print how far and how deep."""
-    from trackroller.cli.case import run_wear
-
-    run_wear(case, to, settings or [], out, report, quiet)
 
 
-@app.command()
+@command("trackroller.cli.case", "plot_target")
 def plot(
     target: Annotated[str, typer.Argument(help="case file (YAML), or name of a study", show_default=False)],
     settings: Annotated[list[str] | None, typer.Option("--set", help="key=value of a case")] = None,
@@ -228,9 +207,21 @@ def plot(
     results: Results = Path("results"),
 ) -> None:
     """Draw a case (tractions, friction energy, stress sections) or the figures of a study."""
-    from trackroller.cli.case import plot_target
 
-    plot_target(target, settings or [], out, results)
+
+@app.command("app")
+def live_page(
+    folder: Annotated[Path, typer.Argument(help="folder for studies and results")] = Path(),
+    no_browser: Annotated[bool, typer.Option("--no-browser", help="print the address only")] = False,
+    port: Annotated[
+        int | None, typer.Option(min=1, max=65_535, help="port on 127.0.0.1; a free one if not given")
+    ] = None,
+) -> None:
+    """Open the live page of a roller in the browser: sliders, pictures, variants, studies; Ctrl-C ends it."""
+    from trackroller.app.start import serve
+
+    serve(folder, port, not no_browser)
+    os._exit(0)  # Python aborts if it is torn down while a thread of the solver is inside compiled code
 
 
 def main() -> None:

@@ -35,17 +35,17 @@ MOST = 20_000  # --explain examines at most this many cases of a study
 
 
 def run_with_progress(
-    path: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
+    study: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
     from trackroller.analysis.deciding import run_any  # heavy: analysis
 
-    study = load_study(path)
-    _print_not_given(study.config.not_given, {*study.config.base, *study.factors}, sys.stderr)
-    print_doubts(study.doubts())
-    with progress_bar(study.name, not quiet) as bar:
+    checked = load_study(study)
+    _print_not_given(checked.config.not_given, {*checked.config.base, *checked.factors}, sys.stderr)
+    print_doubts(checked.doubts())
+    with progress_bar(checked.name, not quiet) as bar:
         plan = run_any(
-            study,
+            checked,
             results,
             rerun_failed=rerun_failed,
             scheduler=scheduler,
@@ -60,12 +60,11 @@ def run_with_progress(
         print(plan.folder.gathered)
 
 
-def make_report(name: str, results: Path, out: Path | None) -> None:
+def make_report(study: str, results: Path, out: Path | None) -> None:
     """Make analysis, figures and report of a study that was run; write a copy of the report, or the cases, to `out`."""
-    study = find_study(name, results)
+    folder = study_folder(find_study(study, results).name, results)
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
     target = out if out is None else writable(out) if table else writable_page(out)
-    folder = study_folder(study.name, results)
     report = _report(folder)
     print(report)
     if target is not None and table:
@@ -85,11 +84,12 @@ def _report(folder: StudyFolder) -> Path:
         return build_report(folder, tell)
 
 
-def print_explorer(path: Path, out: Path | None) -> None:
+def print_explorer(study: str, results: Path, out: Path | None) -> None:
     """Write the explorer of a study from its folder or its `study.nc`, and print where it is."""
     from trackroller.report.build import place_of_pages  # heavy: SALib
     from trackroller.solved import open_study
 
+    path = Path(study) if Path(study).exists() else results / study
     solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
     print(solved.explore(out or place_of_pages(solved, folder) / "explorer.html"))
 
@@ -111,7 +111,7 @@ def print_best(study: str, results: Path, out: Path | None) -> None:
         print(write_best(view, target))
 
 
-def print_status(name: str, results: Path, figures: bool) -> int:
+def print_status(study: str, results: Path, figures: bool) -> int:
     """Print how many cases of a study are done, missing and failed, and the failures by cause.
 
     Returns
@@ -119,10 +119,10 @@ def print_status(name: str, results: Path, figures: bool) -> int:
     int
         The exit code: 1 if a file of the study is damaged or was altered.
     """
-    study = find_study(name, results)
-    status = status_of(study, results)
+    found = find_study(study, results)
+    status = status_of(found, results)
     print(
-        f"study     {study.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
+        f"study     {found.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
         f"{status.failed} failed"
     )
     _print_left(status)
@@ -141,7 +141,7 @@ def print_status(name: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        folder, drawn = draw_solved(study_folder(study.name, results))
+        folder, drawn = draw_solved(study_folder(found.name, results))
         print(f"figures   {len(drawn)} in {folder}")
     return int(bool(status.corrupt))
 
@@ -158,9 +158,9 @@ def _print_left(status: Status) -> None:
         print("gathered  " + ("yes" if status.gathered else "not yet: run it once more"))
 
 
-def print_repeat(name: str, case: int, results: Path) -> int:
+def print_repeat(study: str, case: int, results: Path) -> int:
     """Solve a case again and compare; return the exit code, 0 if every number equals the stored one."""
-    again = repeat_case(find_study(name, results), case, results)
+    again = repeat_case(find_study(study, results), case, results)
     print(again.command())
     if again.largest == 0.0:
         print(f"case {case}: equal to the stored result in every number")
@@ -203,12 +203,14 @@ def print_rerun(crate: Path, results: Path) -> int:
     return int(not same)
 
 
-def print_plan(path: Path | None, results: Path, explain: bool, words: list[str], no_shortcuts: bool) -> None:
+def print_plan(
+    target: Path | None, results: Path, explain: bool, settings: list[str] | None, no_shortcuts: bool
+) -> None:
     """Print the plan of a study file, or the stages of a case file or of the paper's example with key=value words."""
-    if path is None or not is_study(path):
-        _print_case(path, words, no_shortcuts)
+    if target is None or not is_study(target):
+        _print_case(target, settings, no_shortcuts)
         return
-    study = load_study(path)
+    study = load_study(target)
     for name, text in plan_rows(study, status_of(study, results)):
         print_text(text, name)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
@@ -224,8 +226,8 @@ def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO
         print_text(line, to=to)
 
 
-def _print_case(path: Path | None, words: list[str], no_shortcuts: bool) -> None:
-    case, options, _ = case_of(path, words)
+def _print_case(path: Path | None, settings: list[str] | None, no_shortcuts: bool) -> None:
+    case, options, _ = case_of(path, settings)
     tell_doubts(case)
     values = case.as_dict()
     _print_not_given({name: values[name] for name in case.not_given}, values.keys() - set(case.not_given))
