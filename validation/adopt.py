@@ -17,6 +17,7 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 from PIL import Image
 
@@ -53,12 +54,14 @@ def ladders() -> str:
 
 def costs() -> str:
     """Return the text of the file of costs from the stored data: those of forces, and of peaks in addition."""
-    models: dict[str, dict[str, list[float]]] = {}
-    for row in json.loads((DATA / "trade.json").read_text(encoding="utf-8"))["rows"]:
-        forces, complete = row["forces"], max(row["complete"], row["forces"])
-        models.setdefault(row["model"], {})[str(row["accuracy"])] = [round(forces, 4), round(complete - forces, 4)]
-    made_by = "python -m validation.adopt benchmarks, from validation.benchmarks.trade"
-    return json.dumps({"made_by": made_by, "models": models}, indent=1) + "\n"
+    content: dict[str, Any] = {"made_by": "python -m validation.adopt benchmarks, from validation.benchmarks.trade"}
+    measured = json.loads((DATA / "trade.json").read_text(encoding="utf-8"))
+    for kind, rows in (("models", measured["rows"]), ("falling", measured["falling"])):
+        models = content[kind] = {}
+        for row in rows:
+            forces, complete = row["forces"], max(row["complete"], row["forces"])
+            models.setdefault(row["model"], {})[str(row["accuracy"])] = [round(forces, 4), round(complete - forces, 4)]
+    return json.dumps(content, indent=1) + "\n"
 
 
 def copy_figures(folder: Path, pattern: str, colours: int) -> None:

@@ -26,8 +26,8 @@ YARDSTICK = 1.9e-3
 
 @cache
 def _ratios() -> Any:
-    """Return the measured costs of forces and of peaks over the yardstick, by model and accuracy."""
-    return json.loads(FILE.read_text(encoding="utf-8"))["models"]
+    """Return the measured costs of forces and of peaks over the yardstick, by friction, model and accuracy."""
+    return json.loads(FILE.read_text(encoding="utf-8"))
 
 
 @dataclass(frozen=True)
@@ -49,9 +49,9 @@ class Cost:
     tolerances: tuple[tuple[float, float, float], ...] = ()
 
     @classmethod
-    def measured(cls, name: str) -> Cost:
+    def measured(cls, name: str, friction: str = "models") -> Cost:
         """Return the cost of a built-in model from the ratios of `validation.benchmarks.trade`."""
-        spent = {word: [YARDSTICK * ratio for ratio in both] for word, both in _ratios()[name].items()}
+        spent = {word: [YARDSTICK * ratio for ratio in both] for word, both in _ratios()[friction][name].items()}
         forces, peaks = zip(*(spent[level] for level in LEVELS), strict=True)
         tolerances = sorted((float(word), *both) for word, both in spent.items() if word not in LEVELS)
         return cls(forces, peaks, tuple(tolerances[::-1]))
@@ -115,6 +115,8 @@ class ModelDeclaration:
         Model that stands in for this one at accuracy preview, and for forces within a tolerance that it keeps.
     cost : Cost
         Measured cost; orders of magnitude.
+    falling : Cost, optional
+        Measured cost where friction depends on the slip speed; by default `cost`.
     source : str
         Digest of the source of a model from outside, which `register` adds for the identity of its cases.
     """
@@ -135,6 +137,7 @@ class ModelDeclaration:
     rough_peaks: bool = False
     cheaper: str = ""
     cost: Cost = Cost()
+    falling: Cost | None = None
     source: str = ""
 
     def check(self, option: str, value: str) -> None:
@@ -160,6 +163,7 @@ _BUILT_IN = (
         "lengthens slip and friction work.",
         ladder="forces",
         cost=Cost.measured("sliding"),
+        falling=Cost.measured("sliding", "falling"),
     ),
     ModelDeclaration(
         "fastsim",
@@ -170,6 +174,7 @@ _BUILT_IN = (
         friction_laws=True,
         ladder="fastsim",
         cost=Cost.measured("fastsim"),
+        falling=Cost.measured("fastsim", "falling"),
     ),
     ModelDeclaration(
         "kalker",
@@ -185,6 +190,7 @@ _BUILT_IN = (
         interpolates=True,
         cheaper="kalker_table",
         cost=Cost.measured("kalker"),
+        falling=Cost.measured("kalker", "falling"),
     ),
     ModelDeclaration(
         "kalker_table",

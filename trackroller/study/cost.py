@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from trackroller.contact.friction_laws import law_of
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.contact_models import DECLARED, SOLVED_PATCHES
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -31,12 +32,14 @@ _BYTES_OF_A_LIMIT = 150
 _PATCH_LIMITS = {"shakedown": 0.012, "heat": 0.004, "multiaxial": 0.06}  # s; the limits of forces take no time
 
 
-def rate(options: Mapping[str, Any]) -> float:
-    """Return the expected cases a second on one core for keyword arguments of `solve`."""
+def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
+    """Return the expected cases a second on one core for keyword arguments of `solve` and a friction law of a case."""
     accuracy, groups = options.get("accuracy", "standard"), set(options.get("outputs", ("forces",)))
     model = options.get("contact_model", OPTIONS["contact_model"].default)
     peaks = bool(groups & {"peak_stress", "life", "subsurface"})
-    cost = SOLVED_PATCHES if options.get("normal") == "halfspace" else DECLARED[model].cost
+    cost = DECLARED[model].cost if law_of(friction_law).is_constant else DECLARED[model].falling or DECLARED[model].cost
+    if options.get("normal") == "halfspace":
+        cost = SOLVED_PATCHES
     seconds, searched = cost.at(_smallest(accuracy, peaks) if isinstance(accuracy, Mapping) else accuracy)
     if peaks:  # one search serves all
         seconds += searched
@@ -52,9 +55,10 @@ def _smallest(asked: Mapping[str, float], peaks: bool) -> float:
 
 
 def study_rate(study: Study) -> float:
-    """Return the expected cases a second of a study, in which contact model and normal problem may be factors."""
+    """Return the expected cases a second of a study, in which model, normal problem and friction may be factors."""
     varied = {name: spec["values"] for name, spec in study.factors.items() if name in OPTION_FACTORS}
-    several = [rate(study.options | dict(zip(varied, values, strict=True))) for values in product(*varied.values())]
+    options = [study.options | dict(zip(varied, values, strict=True)) for values in product(*varied.values())]
+    several = [rate(*each) for each in product(options, study.friction_laws)]
     return len(several) / sum(1.0 / each for each in several)
 
 

@@ -24,9 +24,11 @@ import numpy as np
 import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.parameters import ACCURACIES
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.report.figures import style
 from trackroller.roller.accuracy import PRESETS, accuracy_settings
 from trackroller.roller.dataset import validity_bit
+from validation.benchmarks import falling_friction
 from validation.benchmarks.command import run
 from validation.benchmarks.samples import geometry_study, load_study, random_designs
 from validation.tradeoff.errors import percentiles, relative_errors
@@ -120,6 +122,21 @@ def parts_of_space(cases: list[tr.Case]) -> dict[str, list[list[int]]]:
     return {name: [part.tolist() for part in np.array_split(np.argsort(value), 3)] for name, value in values.items()}
 
 
+def falling(designs: list[tr.Case], seed: int, repeats: int) -> list[dict[str, Any]]:
+    """Return the cost of each preset under random laws of falling friction, over the yardstick on the designs.
+
+    Some of the rollers slip. A roller that nearly slips takes ten times longer than one that rolls.
+    """
+    cases, yardstick = falling_friction.sample(len(designs), seed), ("sliding", "standard")
+    asked = [one for one in settings() if DECLARED[one[0]].friction_laws and one[1] in ACCURACIES]
+    one = min(seconds(designs, repeats, [yardstick], COMPLETE))
+    spent = (seconds(cases, repeats, asked, outputs) for outputs in (COMPLETE, FORCES))
+    return [
+        {"model": model, "accuracy": accuracy, "complete": whole / one, "forces": part / one}
+        for (model, accuracy), whole, part in zip(asked, *spent, strict=True)
+    ]
+
+
 def measure(cases: int = 90, seed: int = 3, repeats: int = 2) -> dict[str, Any]:
     """Return cost and errors of every setting, costs by sample, and costs of parts of the space of designs."""
     designs = rolling(random_designs(2 * cases, seed))[:cases]
@@ -142,7 +159,8 @@ def measure(cases: int = 90, seed: int = 3, repeats: int = 2) -> dict[str, Any]:
         name: [over([designs[i] for i in part]) if part else {} for part in parts]
         for name, parts in parts_of_space(designs).items()
     }
-    return {"designs": len(designs), "rows": rows, "by_sample": by_sample, "by_part": by_part}
+    costs = {"rows": rows, "falling": falling(designs[: cases // 2], seed, repeats)}
+    return {"designs": len(designs), **costs, "by_sample": by_sample, "by_part": by_part}
 
 
 def draw(measured: dict[str, Any], folder: Path) -> None:

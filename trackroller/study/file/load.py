@@ -110,8 +110,7 @@ def complete(study: Study) -> Study:
     names = {*config.base, *study.factors}
     if config.design == "table" and config.table is not None:
         names.update(column_names(study.table_path, "table"))
-    laws = study.factors.get("friction_law", {}).get("values", [config.base.get("friction_law")])
-    if any(at_rest(law) is not None for law in laws if law):
+    if any(at_rest(law) is not None for law in study.friction_laws if law):
         names.add("friction_coefficient")  # the first value of the table
     values = not_given(names) | {name: value for name, value in config.not_given.items() if name not in names}
     update: dict[str, Any] = {"not_given": values}

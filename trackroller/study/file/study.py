@@ -50,6 +50,11 @@ class Study:
         }
         return {**self.config.factors, **extra}
 
+    @property
+    def friction_laws(self) -> list[Any]:
+        """Return the friction laws of the study file as it states them; None and "" stand for constant friction."""
+        return list(self.factors.get("friction_law", {}).get("values", [self.config.base.get("friction_law")]))
+
     @cached_property
     def parsed(self) -> dict[str, Factor]:
         """Return all factors as `Factor`."""
