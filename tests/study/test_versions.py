@@ -106,7 +106,7 @@ def test_a_study_of_another_solver_is_read_whole_and_says_so(sealed):
 
 
 def test_rerun_solves_every_case_again_and_compares_what_is_stored(sealed):
-    """The stored numbers come from the real solver: another version may differ by its accuracy, and estimate it anew."""
+    """The stored numbers come from the real solver: another version may differ by its accuracy and by its estimate."""
     before = forces(sealed)
     code, out, err = command(("rerun", "results/sealed", "--results", "again"))
     again = forces(Path("again/sealed"))
