@@ -6,7 +6,6 @@ Each function takes the independent factors, the number of samples, the seed and
 
 from __future__ import annotations
 
-import itertools
 import math
 from collections.abc import Callable, Collection, Mapping
 from functools import partial
@@ -40,6 +39,16 @@ def _map(free: Factors, unit: np.ndarray) -> dict[str, np.ndarray]:
     return {name: f.from_unit(unit[:, j]) for j, (name, f) in enumerate(free.items())}
 
 
+def _crossed(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
+    """Return each row of one array beside all rows of another one."""
+    return np.concatenate([np.repeat(outer, len(inner), axis=0), np.tile(inner, (len(outer), 1))], axis=1)
+
+
+def _in_order(places: np.ndarray, names: list[str], free: Factors) -> np.ndarray:
+    """Return the columns of places, whose names are given, in the order of the factors."""
+    return places[:, [names.index(name) for name in free]]
+
+
 def _of_replicates(settings: Settings) -> dict[str, int]:
     return {"replicates": settings["replicates"]} if settings.get("replicates", 1) > 1 else {}
 
@@ -48,9 +57,8 @@ def check_listed(factors: Factors) -> None:
     """Refuse distributions in a grid."""
     for name, factor in factors.items():
         if not factor.discrete and factor.kind != "expression":
-            allowed = "a grid needs values, linspace or logspace"
             remedy = "Or choose a sampled design (lhs, sobol, saltelli, morris)."
-            raise InputError(f"factors.{name}", factor.kind, allowed, remedy)
+            raise InputError(f"factors.{name}", factor.kind, "a grid needs values, linspace or logspace", remedy)
 
 
 def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -140,17 +148,12 @@ def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) ->
     from trackroller.study.design import arrays  # heavy: pydoe
 
     coded = getattr(arrays, method)(len(numeric))
-    combinations = list(itertools.product(*[range(len(free[k].levels)) for k in listed]))
-    crossing = np.array(combinations, dtype=float).reshape(len(combinations), len(listed))
-    unit = np.empty((len(crossing) * len(coded), len(free)))
-    columns = {}
-    for j, (name, factor) in enumerate(free.items()):
-        if name in listed:
-            unit[:, j] = np.repeat(crossing[:, listed.index(name)], len(coded))
-            columns[name] = factor.take(unit[:, j])
-        else:
-            unit[:, j] = np.tile(coded[:, numeric.index(name)], len(crossing))
-            columns[name] = factor.from_unit((unit[:, j] + 1) / 2, TAIL)
+    crossing = _grid({name: free[name] for name in listed}, n, seed, {})[1]
+    unit = _in_order(_crossed(crossing, coded), [*listed, *numeric], free)
+    columns = {
+        name: factor.take(places) if name in listed else factor.from_unit((places + 1) / 2, TAIL)
+        for (name, factor), places in zip(free.items(), unit.T, strict=True)
+    }
     return columns, unit, {"runs": len(coded), "crossed": listed}
 
 
@@ -171,10 +174,10 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     sizes = check_point_samples(settings["point_samples"], n, len(index))
     point, row = np.repeat(np.arange(len(index)), sizes), np.concatenate([np.arange(size) for size in sizes])
     columns = {name: values[point] for name, values in points.items()} | {n: v[row] for n, v in drawn.items()}
-    places = dict(zip([*outer, *inner], [*index[point].T, *sample[row].T], strict=True))
+    unit = _in_order(np.concatenate([index[point], sample[row]], axis=1), [*outer, *inner], free)
     meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": len(index)}
     meta |= {"point_samples": sizes} if min(sizes) < n else {}
-    return columns, np.stack([places[name] for name in free], axis=1), meta
+    return columns, unit, meta
 
 
 def genes_of(choices: Factors) -> list[Gene]:
@@ -200,14 +203,11 @@ def _optimise(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     random = {name: f for name, f in inner.items() if not f.discrete}
     listed, index, _ = _grid({name: f for name, f in inner.items() if f.discrete}, 0, 0, {})
     drawn, sample, _ = _random("sobol", random, n, seed, {}) if random else ({}, np.zeros((1, 0)), {})
-    places = {name: np.repeat(index[:, j], len(sample)) for j, name in enumerate(listed)}
-    places |= {name: np.tile(sample[:, j], len(index)) for j, name in enumerate(drawn)}
-    rows, many = len(index) * len(sample), len(genes)
-    places = {name: np.tile(values, many) for name, values in places.items()}
-    places |= {name: np.repeat(genes[:, j], rows) for j, name in enumerate(choices)}
-    columns = {n: f.take(places[n]) if f.discrete else f.from_unit(places[n]) for n, f in free.items()}
-    meta = {"design_points": many, "inner_samples": rows, "outer": list(choices), "inner": list(inner)}
-    return columns, np.stack([places[name] for name in free], axis=1), meta
+    conditions = _crossed(index, sample)
+    unit = _in_order(_crossed(genes, conditions), [*choices, *listed, *drawn], free)
+    columns = {n: f.take(u) if f.discrete else f.from_unit(u) for (n, f), u in zip(free.items(), unit.T, strict=True)}
+    meta = {"design_points": len(genes), "inner_samples": len(conditions)}
+    return columns, unit, meta | {"outer": list(choices), "inner": list(inner)}
 
 
 DRAW: dict[str, Callable[..., Drawn]] = {
