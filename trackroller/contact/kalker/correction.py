@@ -16,7 +16,7 @@ import numpy as np
 from trackroller.contact import table
 from trackroller.contact.common import Elastic, Ellipse, Resultants, Works
 from trackroller.contact.kalker import extrapolation
-from trackroller.contact.kalker.patch import on_half_elements, solve_patch
+from trackroller.contact.kalker.patch import on_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
 from trackroller.contact.settings import converged_up_to
@@ -216,12 +216,11 @@ class Correction:
         value, force_error, side = solution.resultants.columns, solution.force_error.copy(), _side(slip)
         other, creep = self._turned(patch, slip, rows), Creepage.of_slip(slip, self.settings.profile_slip)
 
-        def solve_again(pick: np.ndarray, elements: int) -> None:
+        def solve_again(pick: np.ndarray, elements: int, start: np.ndarray | None = None) -> None:
             settings = dataclasses.replace(self.settings, elements=elements, tolerance=self.traction_tolerance)
             elastic = self.elastic.take(rows[pick])
-            best = solve_patch(patch.take(pick), creep.take(pick), friction[pick], elastic, settings)
-            self.count += pick.size
-            good = best.converged
+            best = solve_patch(patch.take(pick), creep.take(pick), friction[pick], elastic, settings, start)
+            self.count, good = self.count + pick.size, best.converged
             value[pick[good]], force_error[pick[good]] = best.resultants.columns[good], best.force_error[good]
 
         if self.trusts_table:
@@ -245,9 +244,10 @@ class Correction:
         _, limit = extrapolation.extrapolated(finer_patch, creep.take(rough), mu, elastic, finer, plain, change)
         error = extrapolation.force_error(finer_patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
         value[rough[good]], force_error[rough[good]] = (plain + limit)[good], error[good]
-        light = rough[force_error[rough] > LIGHT_ERROR * other[rough]]
+        light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
         if light.size:
-            solve_again(light, LIGHT_FACTOR * self.settings.elements)
+            start = on_elements(finer_patch.take(light), finer.take(light), LIGHT_FACTOR * self.settings.elements)
+            solve_again(rough[light], start.shape[-1], start)
         return value, force_error
 
     def on_finer(
@@ -260,7 +260,7 @@ class Correction:
         if known.any():
             start[known] = self.finer.get(slot[known]).traction
         if not known.all():
-            start[~known] = on_half_elements(patch.take(~known), coarse.take(~known))
+            start[~known] = on_elements(patch.take(~known), coarse.take(~known), elements)
         wanted = {"elements": elements, "tolerance": self.traction_tolerance, "extrapolate": False, "between": forces}
         elastic, settings = self.elastic.take(rows), dataclasses.replace(self.settings, **wanted)
         return solve_patch(patch, creep, friction, elastic, settings, start)

@@ -96,14 +96,15 @@ def _coarse(ellipse, creep, friction, elastic, travel, settings: KalkerSettings,
         first = _first(ellipse, creep, friction, elastic, half)
     solution = _level(ellipse, creep, friction, elastic, travel, settings, first)
     if not started:
-        traction[:] = on_half_elements(ellipse, solution)
+        traction[:] = on_elements(ellipse, solution, settings.elements)
     return solution
 
 
-def on_half_elements(ellipse: Ellipse | GridPatch, coarse: batch.Found | PatchSolution) -> np.ndarray:
-    """Return the tractions of a solution, interpolated to elements of half the size."""
-    height, _ = cells(ellipse, 2 * coarse.traction.shape[-1])
-    return subgrid.shares(subgrid.fields_of(ellipse, coarse), 2) * (height if height.ndim == 2 else height[:, None])
+def on_elements(ellipse: Ellipse | GridPatch, solution: batch.Found | PatchSolution, elements: int) -> np.ndarray:
+    """Return the tractions of a solution, interpolated to `elements` along each axis, (n, 2, elements, elements)."""
+    height, _ = cells(ellipse, elements)
+    share = subgrid.shares(subgrid.fields_of(ellipse, solution), elements / solution.traction.shape[-1])
+    return share * (height if height.ndim == 2 else height[:, None])
 
 
 def shares(ellipse, solution: PatchSolution, parts: int = subgrid.PARTS) -> tuple[np.ndarray, np.ndarray]:

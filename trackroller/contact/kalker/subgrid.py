@@ -9,6 +9,7 @@ true size.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from functools import lru_cache
 from typing import Any, NamedTuple
 
@@ -19,11 +20,12 @@ from trackroller.contact.kalker.cells import cells
 from trackroller.numerics.compiled import compiled
 
 PARTS = 3  # points along each side of an element
+POINTS = 2**15  # between elements that are held at once: these stay in the fast caches
 RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
 @lru_cache(maxsize=32)
-def _spline(n: int, parts: int) -> np.ndarray:
+def _spline(n: int, parts: float) -> np.ndarray:
     """Return the matrix (parts n, n) of the cubic spline through the centres, constant beyond the outer ones."""
     from scipy.interpolate import make_interp_spline  # heavy: it doubles the start of a command without kalker
 
@@ -91,7 +93,16 @@ class Fields(NamedTuple):
         z -= self.slip / (self.own_slip[:, None, None, None] * np.maximum(self.heights, RIM))
         return _filled(z, self.height)
 
-    def finer_factor(self, parts: int) -> np.ndarray:
+    def pieces(self, parts: float) -> Iterator[tuple[slice, Fields]]:
+        """Return pieces of the patches that have about POINTS points with `parts` times the elements."""
+        n, _, _, m = self.traction.shape
+        size = max(int(POINTS / (parts * m) ** 2), 1)
+        for i in range(0, max(n, 1), size):
+            rows = slice(i, i + size)
+            height = self.height if self.height.ndim == 2 else self.height[rows]
+            yield rows, Fields(height, *(field[rows] for field in self[1:]))
+
+    def finer_factor(self, parts: float) -> np.ndarray:
         """Return the factor of the friction on `parts` times the elements, (n, 1, ., .)."""
         if self.factor.shape[1:] == (1, 1):
             return self.factor[:, None]
@@ -105,18 +116,25 @@ def fields_of(patch: Any, solution: Any) -> Fields:
     return Fields(height, solution.traction, solution.slip, solution.own_slip, solution.factor)
 
 
-def shares(fields: Fields, parts: int = PARTS) -> np.ndarray:
+def shares(fields: Fields, parts: float = PARTS) -> np.ndarray:
     """Return the traction over mu p at rest on `parts` times the elements, (n, 2, parts m, parts m)."""
-    return _between(fields.before_law(), fields, parts)
+    return np.concatenate([_between(some.before_law(), some, parts) for _, some in fields.pieces(parts)])
 
 
 def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndarray]:
-    """Return `shares`, and those of elements of twice the size whose z is the mean of four, (n, 2, ., .) each."""
-    z, factor = fields.before_law(), fields.factor
-    if factor.shape[1:] != (1, 1):
-        factor = _of_four(factor)
-    twice = fields._replace(height=_of_four(fields.height), factor=factor)
-    return _between(z, fields, parts), _between(_of_four(z), twice, parts)
+    """Return `shares`, and those of elements of twice the size whose z is the mean of four, (n, 2, ., .) each.
+
+    Both have single precision, as the search for peaks takes them.
+    """
+    n, _, _, m = fields.traction.shape
+    fine, coarse = (np.empty((n, 2, parts * size, parts * size), np.float32) for size in (m, m // 2))
+    for rows, some in fields.pieces(parts):
+        z, factor = some.before_law(), some.factor
+        if factor.shape[1:] != (1, 1):
+            factor = _of_four(factor)
+        twice = some._replace(height=_of_four(some.height), factor=factor)
+        fine[rows], coarse[rows] = _between(z, some, parts), _between(_of_four(z), twice, parts)
+    return fine, coarse
 
 
 def shares_of(z: np.ndarray, across: int, along: int) -> np.ndarray:
@@ -130,12 +148,12 @@ def _of_four(field: np.ndarray) -> np.ndarray:
     return field.reshape(*field.shape[:-2], m, 2, m, 2).mean(axis=(-3, -1))
 
 
-def _between(z: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
+def _between(z: np.ndarray, fields: Fields, parts: float) -> np.ndarray:
     """Interpolate z (n, 2, m, m) to `parts` times the elements and apply the law of friction of the fields."""
     return _by_law(interpolated(z, parts, parts), fields, parts)
 
 
-def interpolated(field: np.ndarray, across: int, along: int) -> np.ndarray:
+def interpolated(field: np.ndarray, across: float, along: float) -> np.ndarray:
     """Interpolate a field (..., ny, nx) by cubic splines, with `across` and `along` points a side of each element."""
     ny, nx = field.shape[-2:]
     return np.matmul(np.matmul(_spline(ny, along), field), _spline(nx, across).T)
@@ -148,7 +166,7 @@ def _bounded(fine: np.ndarray) -> np.ndarray:
     return fine
 
 
-def _by_law(fine: np.ndarray, fields: Fields, parts: int) -> np.ndarray:
+def _by_law(fine: np.ndarray, fields: Fields, parts: float) -> np.ndarray:
     """Turn z on `parts` times the elements into the traction over mu p at rest, in place."""
     return np.multiply(_bounded(fine), fields.finer_factor(parts), out=fine)
 
@@ -196,14 +214,14 @@ def integrals(
     the trailing edge, which an element's mean contains and a smooth field does not. The weight of the elements' own
     tractions therefore grows as less of the bound is used.
     """
-    height, share = finer
-    fine = interpolated(fields.before_law(), PARTS, PARTS)
-    within = np.broadcast_to(share, (len(fine), *share.shape[-2:]))
-    adhesion = np.array([_adhesion(z, own) for z, own in zip(fine, within, strict=True)])
-    between = _by_law(fine, fields, PARTS)
-    between *= height if height.ndim == 2 else height[:, None]
-    smooth, plain = np.zeros((2, len(between), 3))
-    for i in range(len(between)):
-        _sum(between[i], a[i], b[i], smooth[i])
-        _sum(fields.traction[i], a[i], b[i], plain[i])
+    height, share = (np.broadcast_to(v, (len(a), *v.shape[-2:])) for v in finer)
+    adhesion, smooth, plain = np.empty(len(a)), np.zeros((len(a), 3)), np.zeros((len(a), 3))
+    for rows, some in fields.pieces(PARTS):
+        fine = interpolated(some.before_law(), PARTS, PARTS)
+        adhesion[rows] = [_adhesion(z, own) for z, own in zip(fine, share[rows], strict=True)]
+        between = _by_law(fine, some, PARTS)
+        between *= height[rows, None]
+        for i, own in enumerate(between, rows.start):
+            _sum(own, a[i], b[i], smooth[i])
+            _sum(fields.traction[i], a[i], b[i], plain[i])
     return smooth + (1.0 - fields.used[:, None]) ** 2 * (plain - smooth), adhesion

@@ -98,7 +98,7 @@ class EllipseStresses(PatchStresses):
         shares = ask(patch, slip, np.where(slides, 0.0, friction), rows)
         if shares is None:
             return None
-        return *(_mirrored(part.astype(FIELD), own != flat) for part in shares[:2]), *shares[2:]
+        return *(_mirrored(part.astype(FIELD, copy=False), own != flat) for part in shares[:2]), *shares[2:]
 
     def fields(self, flat: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
         """Return the traction over its bound on grids over the existing patches `flat` (m,), and on coarser grids.
