@@ -51,9 +51,9 @@ def measure_table(sens: xr.Dataset, output: str, error: Sentence | None) -> Tabl
     return Table.of(f"measures_{output}", f"All measures: {of_output(sens, output)}", rows, note)
 
 
-def part_tables(sens: xr.Dataset) -> list[Table | None]:
+def part_tables(sens: xr.Dataset) -> list[Table]:
     """List the indices of groups and those within the levels of a category, for every output."""
-    return [_group_table(sens), _level_table(sens)]
+    return [table for table in (_group_table(sens), _level_table(sens)) if table is not None]
 
 
 def _group_table(sens: xr.Dataset) -> Table | None:

@@ -9,18 +9,8 @@ import xarray as xr
 
 from trackroller.analysis.labels import INDEX_WORDS, RELIABLE, factor_name
 from trackroller.analysis.ranking import SIGNED, USABLE, Rank, estimate, headline, order, used_share
-from trackroller.report.numbers import (
-    capital,
-    count,
-    level_text,
-    listing,
-    percent,
-    plus_minus,
-    rounded,
-    shortened,
-    unit_text,
-)
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.numbers import level_text, percent, plus_minus, unit_text
+from trackroller.report.words.sentence import Sentence, say
 
 HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible
@@ -63,57 +53,45 @@ def tornado(sens: xr.Dataset, output: str) -> Sentence:
 
 def decides(sens: xr.Dataset, output: str) -> Sentence:
     """Name the factors that decide an output, by one index with its interval."""
-    ranks, what, index = order(sens, output), of_output(sens, output), headline(sens)
+    ranks, index, used = order(sens, output), headline(sens), used_share(sens, output)
+    values = {"output": output, "what": of_output(sens, output), "index": index}
     if not ranks:
-        text = f"No index can be given for {what}: {sens.sel(output=output)['note'].item()}."
-        return Sentence("no_index", text, {"output": output})
-    used = used_share(sens, output)
+        return say("indices", "no_index", **values, note=sens.sel(output=output)["note"].item())
     if used < USABLE:
-        text = f"No factor is named as decisive for {what}: its indices use only {percent(used)} of the cases."
-        return Sentence("no_index", text, {"output": output, "used": used})
-    text = _range_words(sens, output, ranks) if index in ("mu_star", "effect") else _share_words(ranks, what, index)
-    if used < RELIABLE:
-        text = f"{text[:-1]}; the index uses {percent(used)} of the cases."
-    if tied := _correlated(sens):
-        text = f"{text[:-1]}; {listing(tied)} are correlated, and the index of each holds influence of the others."
-    values = {"output": output, "index": index, "ranks": [(r.factor, r.value, r.low, r.high) for r in ranks]}
-    return Sentence("index", text, values)
+        return say("indices", "no_index", **values, used=used)
+    sized = index in ("mu_star", "effect")
+    unit = f" {effect_unit(sens, output)}".replace(" –", "") if sized else ""
+    large = [r for r in ranks[1:] if not _small(r, ranks[0], sized)]
+    shares = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in large]
+    sizes = [f"{r.name} by {plus_minus(r.value, r.low, r.high)}{unit}" for r in large]
+    return say(
+        "indices",
+        "index",
+        **values,
+        ranks=[(r.factor, r.value, r.low, r.high) for r in ranks],
+        first=ranks[0],
+        further=sizes if sized else shares,
+        small=[r.name for r in ranks[1:] if r not in large],
+        sized=sized,
+        unit=unit,
+        words=INDEX_WORDS[index],
+        negligible=SMALL,
+        used=used,
+        reliable=RELIABLE,
+        correlated=_correlated(sens),
+    )
+
+
+def _small(rank: Rank, first: Rank, sized: bool) -> bool:
+    """Return whether a factor has less than a tenth of the largest effect, or a negligible share of variance."""
+    if sized:
+        return bool(abs(rank.value) < 0.1 * abs(first.value))
+    return bool((rank.high if np.isfinite(rank.high) else rank.value) < SMALL)
 
 
 def _correlated(sens: xr.Dataset) -> list[str]:
     """Name the factors that are correlated with another factor."""
     return [str(n) for n in sens["factor_name"].values[sens["correlated"].values == 1]] if "correlated" in sens else []
-
-
-def _share_words(ranks: list[Rank], what: str, index: str) -> str:
-    first, *others = ranks
-    verb = "accounts for" if index == "ST" else "explains"
-    share = f"{percent(first.value, first.low, first.high)} of the variance of {what} ({INDEX_WORDS[index]})"
-    text = f"{capital(first.name)} {verb} {share}"
-    small = [r for r in others if (r.high if np.isfinite(r.high) else r.value) < SMALL]
-    more = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in others if r not in small]
-    text += f", {shortened(more)}" if more else ""
-    if small:
-        many = "each " if len(small) > 1 else ""
-        text += f"; {shortened([r.name for r in small])} {many}less than {100 * SMALL:.0f} %"
-    return text + "."
-
-
-def _range_words(sens: xr.Dataset, output: str, ranks: list[Rank]) -> str:
-    index, first = headline(sens), ranks[0]
-    unit = f" {effect_unit(sens, output)}".replace(" –", "")
-    what = of_output(sens, output)
-    text = f"Over its whole range {first.name} changes {what} most, by {plus_minus(first.value, first.low, first.high)}"
-    text += f"{unit}{' on average' if index == 'mu_star' else ''}"
-    more = [
-        f"{r.name} by {plus_minus(r.value, r.low, r.high)}{unit}"
-        for r in ranks[1:]
-        if abs(r.value) >= 0.1 * abs(first.value)
-    ]
-    text += f", {shortened(more)}" if more else ""
-    small = [r.name for r in ranks if abs(r.value) < 0.1 * abs(first.value)]
-    text += f"; {shortened(small)} by less than a tenth of the largest" if small else ""
-    return text + "."
 
 
 def convergence(sens: xr.Dataset, output: str) -> Sentence:
@@ -122,11 +100,9 @@ def convergence(sens: xr.Dataset, output: str) -> Sentence:
     if not ranks or not np.isfinite(times):
         return Sentence("no_index", "There are too few usable samples to judge convergence.", {"output": output})
     widest = max(ranks, key=lambda r: r.high - r.low)
-    half, size = (widest.high - widest.low) / 2, int(sens["sample_size"].values[-1])
-    wide = rounded(half, 2) if headline(sens) == "mu_star" else f"{100 * half:.1f} % of the variance"
-    text = f"With {count(size)} samples the widest 95 % interval, of {widest.name}, is ± {wide}. The indices have "
-    text += "converged." if times <= 1 else f"not converged: take {times:.0f} times as many samples."
-    return Sentence("widest", text, {"output": output, "factor": widest.factor, "half": half, "size": size})
+    values = {"output": output, "factor": widest.factor, "name": widest.name, "half": (widest.high - widest.low) / 2}
+    values |= {"size": int(sens["sample_size"].values[-1]), "sized": headline(sens) == "mu_star"}
+    return say("indices", "widest", **values, times=times)
 
 
 def morris(sens: xr.Dataset, output: str) -> Sentence:
@@ -138,11 +114,7 @@ def morris(sens: xr.Dataset, output: str) -> Sentence:
     strong = [r for r in ranks if r.value >= 0.1 * ranks[0].value]
     bent = [r.name for r in strong if sigma[r.factor] > 0.5 * r.value]
     straight = [r.name for r in strong if sigma[r.factor] <= 0.5 * r.value]
-    said = [f"the effect of {listing(straight)} is nearly the same everywhere"] if straight else []
-    if bent:
-        said.append(f"the effect of {listing(bent)} is curved or depends on other factors")
-    text = f"On {of_output(sens, output)}, {'; '.join(said)}."
-    return Sentence("morris", text, {"output": output, "bent": bent, "straight": straight})
+    return say("indices", "morris", what=of_output(sens, output), output=output, bent=bent, straight=straight)
 
 
 def interactions(sens: xr.Dataset, output: str) -> Sentence:
@@ -153,21 +125,14 @@ def interactions(sens: xr.Dataset, output: str) -> Sentence:
     if not np.isfinite(table).any():
         return Sentence("no_index", f"No interaction can be given for {what}.", {"output": output})
     i, j = np.unravel_index(np.nanargmax(np.abs(table)), table.shape)
-    names = part["factor_name"].values
     value, low, high = map(float, estimate(part, name)[:, i, j])
-    values = {"output": output, "index": name, "pair": (i, j), "value": value, "low": low, "high": high}
-    if name == "interaction":
-        text = f"The strongest interaction on {what} is {names[i]} with {names[j]}: {rounded(value)}."
-        return Sentence("interaction", text, values)
-    if (np.isfinite(low) and low <= 0) or value < 0.01:
-        return Sentence("no_interaction", f"No interaction of two factors on {what} is found.", values)
-    text = f"The strongest interaction on {what}, {names[i]} with {names[j]}, makes {percent(value, low, high)} of the "
-    text += "variance"
-    if "fit_share" in part:
-        text += f" (by a fitted polynomial that predicts {percent(float(part['fit_share']))} of the variance)"
-    if "higher_share" in part:
-        text += f"; interactions of three and more factors make {percent(float(part['higher_share']))}"
-    return Sentence("interaction", text + ".", values)
+    values = {"output": output, "index": name, "pair": (i, j), "value": value, "low": low, "high": high, "what": what}
+    shared = name != "interaction"
+    if shared and ((np.isfinite(low) and low <= 0) or value < 0.01):
+        return say("indices", "no_interaction", **values)
+    fit, higher = (float(part[n]) if n in part else None for n in ("fit_share", "higher_share"))
+    names = part["factor_name"].values[[i, j]].tolist()
+    return say("indices", "interaction", **values, names=names, share=shared, fit=fit, higher=higher)
 
 
 def part_sentences(sens: xr.Dataset, output: str) -> list[Sentence]:
@@ -185,13 +150,10 @@ def group_indices(sens: xr.Dataset, output: str) -> Sentence | None:
     if not np.isfinite(value).all():
         return None
     order = np.argsort(-value, kind="stable")
-    names = part["group_name"].values
-    parts = [f"{names[i]} {percent(value[i], low[i], high[i])}" for i in order]
-    what = f"of the variance of {of_output(sens, output)} ({INDEX_WORDS['ST']})"
-    text = f"By groups, {names[order[0]]} accounts for {percent(value[order[0]], low[order[0]], high[order[0]])} {what}"
-    text += f", {listing(parts[1:])}." if parts[1:] else "."
+    names, shares = part["group_name"].values, [percent(*one) for one in zip(value, low, high, strict=True)]
     ranks = [(str(part["group"].values[i]), float(value[i]), float(low[i]), float(high[i])) for i in order]
-    return Sentence("groups", text, {"output": output, "ranks": ranks})
+    values = {"output": output, "what": of_output(sens, output), "words": INDEX_WORDS["ST"], "ranks": ranks}
+    return say("indices", "groups", **values, parts=[(str(names[i]), shares[i]) for i in order])
 
 
 def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
@@ -209,9 +171,8 @@ def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
         parts.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
     if not parts:
         return None
-    what = f"{INDEX_WORDS['S1']} of the variance of {of_output(sens, output)}"
-    text = f"By {category(sens)}, the largest {what} is: {'; '.join(parts)}."
-    return Sentence("levels", text, {"output": output, "lead": lead})
+    values = {"output": output, "what": of_output(sens, output), "words": INDEX_WORDS["S1"], "lead": lead}
+    return say("indices", "levels", **values, category=category(sens), parts=parts)
 
 
 def category(sens: xr.Dataset) -> str:
