@@ -19,9 +19,9 @@ from trackroller.analysis.effects import (
     strata,
 )
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, rounded, setting, times
+from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, setting, times
 from trackroller.report.words.levels import at_least, at_most
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.sentence import Sentence, say
 from trackroller.study.design.levels import NAMED
 
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
@@ -49,8 +49,9 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
         return None
     parts = strata(view, column, effect, rows)
     beyond = int((rows & view.beyond_data(column)).sum())
-    values = {"column": column, **vars(effect), "beyond": beyond}
-    said = (_of_pairs if paired else _of_classes)(view, effect, parts, words, values, rows)
+    values = {"column": column, "words": words, **vars(effect), "beyond": beyond}
+    values |= {"fold": _fold(effect), "verb": _verb(words, effect.ratio > 1)}
+    said = (_of_pairs if paired else _of_classes)(view, effect, parts, values, rows)
     if beyond:
         own = f"{count(beyond)} of the {count(int(rows.sum()))} lives lie {BEYOND}"
         said = replace(said, text=f"{said.text.removesuffix('.')}; {own}.")
@@ -84,33 +85,22 @@ def _verb(words: str, up: bool) -> str:
     return ("lengthens" if up else "shortens") if "life" in words else ("raises" if up else "lowers")
 
 
-def _of_pairs(
-    view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
-) -> Sentence:
+def _of_pairs(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
     """State the median change of cases that differ in one factor only."""
     changed = [long_name(name) for name in also_changed(view, effect.factor, rows)]
     pairs = f"{count(effect.size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that follows from it" if changed else ""
+    values |= {"span": _span(view, effect), "pairs": pairs}
     parts = [p for p in parts if p[2].size >= FEWEST_PAIRS]
-    up = effect.ratio > 1
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
-    same = effect.rising if up else effect.falling
+    same = effect.rising if effect.ratio > 1 else effect.falling
     if max(effect.ratio, 1 / effect.ratio) <= 1 + UNCHANGED and not against:
-        text = f"{_span(view, effect)} changes the {words} by less than 2 % (median of {pairs})."
-        return Sentence("pairs_same", text, values, rows)
+        return say("factors", "pairs_same", rows, **values)
     if against or same < MOST * effect.size:
-        text = (
-            f"{_span(view, effect)} acts in both directions: the {words} rises in {count(effect.rising)} and falls in "
-            f"{count(effect.falling)} of {pairs}"
-        )
-        by_category = _by_category(parts, words) if against else []
-        values["strata"] = [(c, v, e.ratio) for c, v, e in parts] if by_category else []
-        medians = f"; the median is {', '.join(by_category)}" if by_category else ""
-        return Sentence("pairs_both", f"{text}{medians}.", values, rows)
-    agree = "all" if same == effect.size else count(same)
-    text = f"{_span(view, effect)} {_verb(words, up)} the {words} {_fold(effect)}, the median of {pairs}; "
-    text += f"the {words} {'rises' if up else 'falls'} in {agree} pairs."
-    return Sentence("pairs", text, values, rows)
+        medians = _by_category(parts, values["words"]) if against else []
+        strata = [(c, v, e.ratio) for c, v, e in parts] if against else []
+        return say("factors", "pairs_both", rows, **values, strata=strata, medians=medians)
+    return say("factors", "pairs", rows, **values, same=same)
 
 
 def _by_category(parts: Strata, words: str) -> list[str]:
@@ -128,38 +118,21 @@ def _by_category(parts: Strata, words: str) -> list[str]:
     ]
 
 
-def _of_classes(
-    view: StudyView, effect: Effect, parts: Strata, words: str, values: dict[str, Any], rows: np.ndarray
-) -> Sentence:
+def _of_classes(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
     """State the change of the median between the lowest and the highest third of a factor, with its interval."""
     own = view.table[effect.factor].to_numpy(dtype=float)[rows]
-    low_class = at_most(effect.factor, effect.low, own.min())
-    high_class = at_least(effect.factor, effect.high, own.max())
-    low, high = effect.interval
+    values |= {"low_class": at_most(effect.factor, effect.low, own.min()), "name": long_name(effect.factor)}
+    values |= {"high_class": at_least(effect.factor, effect.high, own.max())}
+    values["strata"] = [(c, v, e.ratio, e.interval) for c, v, e in parts]
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
-    ways = {e.ratio > 1 for _, _, e in opposed}
-    values["strata"] = [(c, v, e.ratio, e.interval) for c, v, e in parts]
-    if len(ways) == 2:
-        turns = [f"{_fold(e)} {_direction(words, e.ratio > 1)} with {setting(c, v)}" for c, v, e in opposed]
-        text = f"{capital(high_class)}, compared with {low_class}: the median {words} of the valid cases is "
-        return Sentence("classes_both", f"{text}{listing(turns)}.", values, rows)
-    if low <= 1 <= high or against:
-        kinds = f" common to every {listing(sorted({long_name(c) for c, _, _ in against}), 'and')}" if against else ""
-        text = (
-            f"No effect of {long_name(effect.factor)} on the {words}{kinds} is found: with {high_class} the median of "
-            f"the valid cases is {rounded(effect.ratio)} times that with {low_class} (95 % interval {rounded(low)} "
-            f"to {rounded(high)})."
-        )
-        return Sentence("classes_none", text, values, rows)
-    up = effect.ratio > 1
-    bounds = (low, high) if up else (1 / high, 1 / low)
-    text = (
-        f"{capital(high_class)} instead of {low_class} {_verb(words, up)} the median {words} {_fold(effect)} (95 % "
-        f"interval {rounded(bounds[0])} to {rounded(bounds[1])}; the outer thirds of the valid cases, "
-        f"{count(effect.size)} or more in each)."
-    )
-    return Sentence("classes", text, values, rows)
+    if len({e.ratio > 1 for _, _, e in opposed}) == 2:
+        turns = [f"{_fold(e)} {_direction(values['words'], e.ratio > 1)} with {setting(c, v)}" for c, v, e in opposed]
+        return say("factors", "classes_both", rows, **values, turns=turns)
+    if effect.interval[0] <= 1 <= effect.interval[1] or against:
+        kinds = sorted({long_name(c) for c, _, _ in against})
+        return say("factors", "classes_none", rows, **values, kinds=kinds)
+    return say("factors", "classes", rows, **values)
 
 
 def _direction(words: str, up: bool) -> str:
