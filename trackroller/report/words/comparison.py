@@ -21,33 +21,26 @@ from trackroller.analysis.contact_models import (
 )
 from trackroller.analysis.groups import DRIVE, Groups, drives, groups
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import listing, long_name, percent
+from trackroller.report.numbers import long_name, percent
 from trackroller.report.tables.table import Table
 from trackroller.report.words.levels import group_texts, span
+from trackroller.report.words.sentence import phrase
 
 FRICTION = "friction_coefficient"
 NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "kalker_table": "The table of the exact theory"}
 MOST = 0.9  # a level is good enough if this share of its cases is
+IN_SHORT = ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
 FEWEST = 3  # smallest number of cases, rolling in both models, for a sentence
 
 
 def overview(paired: xr.Dataset) -> str:
     """Say how the models were compared, or why they cannot be compared."""
-    reference, number = paired.attrs["reference"], paired.sizes["design"]
-    left = f" {paired.attrs['left']} cases have no partner and are left out." if paired.attrs["left"] else ""
-    if not number:
-        return (
-            f"The contact models cannot be compared: no case was solved with {reference} and another model. "
-            "A grid, an inner/outer array or a table has pairs of cases; a sample that draws the model has no pairs."
-        )
-    rolls = paired["regime"] == 0
-    both = [(str(m), int((rolls.sel(contact_model=m) & rolls[-1]).sum())) for m in paired["contact_model"].values[:-1]]
-    rolling = listing([f"{count} with {model}" for model, count in both])
-    return (
-        f"Each cheaper model is compared with {_exact(reference)} in {_cases(number)} that differ in nothing but the "
-        f"model. Errors count where both models roll: {rolling}. A model is good enough at a level of a factor if 9 of "
-        f"10 cases there err by {percent(GOOD)} or less. Brackets hold the smallest and the largest error.{left}"
-    )
+    reference, rolls = paired.attrs["reference"], paired["regime"] == 0
+    exact = "the exact theory (kalker)" if reference == "kalker" else f"{reference}, the most exact model here,"
+    cheaper = map(str, paired["contact_model"].values[:-1]) if paired.sizes["design"] else ()
+    both = [(model, int((rolls.sel(contact_model=model) & rolls[-1]).sum())) for model in cheaper]
+    values = {"reference": reference, "exact": exact, "both": both, "left": paired.attrs["left"]}
+    return phrase("comparison", "overview", **values, number=paired.sizes["design"], good=GOOD)
 
 
 def short(paired: xr.Dataset) -> list[str]:
@@ -57,21 +50,12 @@ def short(paired: xr.Dataset) -> list[str]:
     deviations, said = errors(paired), []
     exact = paired["regime"].sel(contact_model=paired.attrs["reference"]).values
     for model in map(str, deviations["contact_model"].values):
-        one = deviations.sel(contact_model=model)
-        if compared(one) < FEWEST:
-            rolls = f"{compared(one) or 'no'} case{'s' * (compared(one) != 1)} of {paired.sizes['design']}"
-            said.append(f"{NAMES[model]}: cannot be compared with the reference, because both models roll in {rolls}.")
-            continue
-        parts = [
-            f"{q.words.split(' (')[0]} in {percent(good_share(one[q.name].values))}"
-            for q in measured(one)
-            if q.name in ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
-        ]
-        shares = f"{', '.join(parts)} of {_cases(compared(one))}"
-        own = paired["regime"].sel(contact_model=model).values
-        unlike = int(((own >= 0) & (exact >= 0) & (own != exact)).sum())
-        more = f" In {_cases(unlike)} the two are not in the same regime." if unlike else ""
-        said.append(f"{NAMES[model]} is within {percent(GOOD)} of {deviations.attrs['reference']}: {shares}.{more}")
+        one, own = deviations.sel(contact_model=model), paired["regime"].sel(contact_model=model).values
+        shown = [q for q in measured(one) if q.name in IN_SHORT]
+        values = {"name": NAMES[model], "rolling": compared(one), "few": compared(one) < FEWEST}
+        values |= {"unlike": int(((own >= 0) & (exact >= 0) & (own != exact)).sum()), "number": paired.sizes["design"]}
+        values["parts"] = [(q.words.split(" (")[0], good_share(one[q.name].values)) for q in shown]
+        said.append(phrase("comparison", "short", **values, reference=deviations.attrs["reference"], good=GOOD))
     return said
 
 
@@ -106,26 +90,19 @@ def report_section(view: StudyView) -> dict[str, Any]:
     paired = pairs(view)
     if paired is None:
         return {}
-    rows = []
-    if paired.sizes["design"]:
-        deviations = errors(paired)
-        for model, q in product(map(str, deviations["contact_model"].values), measured(deviations)):
-            e = known(deviations[q.name].sel(contact_model=model))
-            if e.size:
-                cells = [percent(v) for v in (good_share(e), *spread(e))]
-                rows.append([f"{model}: {q.words}", *cells, str(e.size)])
-    heads = ["Model, quantity", f"cases within {percent(GOOD)}", "median error", "90 % below", "largest", "cases"]
-    table = Table("contact_models", "Errors of the cheaper models", heads, rows)
-    said = [overview(paired), *details(paired)]
-    return {"short": short(paired), "said": said, "tables": [table] if rows else []}
+    tables = [_table(paired)] if paired.sizes["design"] else []
+    return {"short": short(paired), "said": [overview(paired), *details(paired)], "tables": tables}
 
 
-def _exact(reference: str) -> str:
-    return {"kalker": "the exact theory (kalker)"}.get(reference, f"{reference}, the most exact model here,")
-
-
-def _cases(number: int) -> str:
-    return f"{number} case{'s' if number > 1 else ''}"
+def _table(paired: xr.Dataset) -> Table | None:
+    deviations, rows = errors(paired), []
+    for model, q in product(map(str, deviations["contact_model"].values), measured(deviations)):
+        e = known(deviations[q.name].sel(contact_model=model))
+        if e.size:
+            row = {"Model, quantity": f"{model}: {q.words}", f"cases within {percent(GOOD)}": percent(good_share(e))}
+            row |= zip(("median error", "90 % below", "largest"), map(percent, spread(e)), strict=True)
+            rows.append(row | {"cases": str(e.size)})
+    return Table.of("contact_models", "Errors of the cheaper models", rows)
 
 
 def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
