@@ -126,7 +126,7 @@ DECISIONS = {
         '1.0 if way == "max" else -1.0',
         WORDS,
     ),
-    "same-share": ("report/words/targets.py", "- share[worst] < SAME", "- share[worst] > SAME", TARGETS),
+    "same-share": ("report/words/targets.py", "np.ptp(share) < SAME", "np.ptp(share) > SAME", TARGETS),
     "rate-of-models": ("study/cost.py", "len(several) / sum(1.0 / each", "len(several) / sum(each / 1e6", PLANNED),
     "solved-again": ("study/store/inventory.py", "!= chunks.FAILED).values)", "== chunks.FAILED).values)", STORE),
     "missing-case": ("study/store/gather.py", "(place < 0).sum()", "(place < -1).sum()", STORE),
