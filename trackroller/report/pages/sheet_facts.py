@@ -34,6 +34,7 @@ from trackroller.report.words.assumptions import (
     standards,
     strength_sentences,
 )
+from trackroller.report.words.sentence import phrase
 from trackroller.roller.dataset import VARIABLES, shown
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.record import (
@@ -99,10 +100,13 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
     lifeless = {body: _no_life(regime, ds, body, material) for body, material in materials.items()}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
+    below, above = inputs["axial_force"] - ranges.axial_force[0], ranges.axial_force[1] - inputs["axial_force"]
+    reason = str(ds["reason"].item()) if "reason" in ds else ""
+    summed = {"reserve": min(above, below), "toward": "more" if above <= below else "less", "axial": ranges.axial_force}
     said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
     return Facts(
-        verdict=_verdict(regime, ds, lives, lifeless, ranges, inputs, own),
-        reason=str(ds["reason"].item()) if "reason" in ds else "",
+        verdict=_verdict(regime, ds, lives, lifeless, own, reason=reason, **summed),
+        reason=reason,
         inputs=input_rows(inputs, given),
         not_given=not_given_text(given),
         doubts=doubts_of(ds),
@@ -177,46 +181,26 @@ def _no_life(regime: str, ds: xr.Dataset, body: str, material: Material) -> str:
 
 
 def _verdict(
-    regime: str,
-    ds: xr.Dataset,
-    lives: list[Row],
-    lifeless: Mapping[str, str],
-    ranges: Limits,
-    inputs: Mapping[str, Any],
-    own: list[Margin],
+    regime: str, ds: xr.Dataset, lives: list[Row], lifeless: Mapping[str, str], own: list[Margin], **values: Any
 ) -> str:
     """Return the summary of the sheet: what rules (lift-off, overload, skidding, life) and the distance to lift-off."""
-    if regime == "failed":
-        return f"No solution: {ds['reason'].item()}"
-    if regime == "lift_off":
-        low, high = ranges.axial_force
-        if math.isnan(low):
-            return "A contact lifts off."
-        return (
-            f"A contact lifts off. Both contacts carry load for axial forces from {rounded(low)} to {rounded(high)} N."
-        )
-    over = [f"at the {body} {why}" for body, why in lifeless.items() if "tensile strength" in why]
-    parts = [f"Overloaded: {listing(over)}."] if over else []
-    if regime == "full_slip":
-        parts.append("Skids: the motor force exceeds what friction transmits.")
-    elif not over:
-        parts.append("Rolls.")
-        passed: dict[str, list[str]] = {}
-        for margin in (m for m in own if m.reached == 0.0):
-            passed.setdefault(f"{margin.title}{GUESSED * margin.guessed}", []).append(margin.body)
-        words = [f"{title} ({listing(bodies)})" for title, bodies in passed.items()]
-        parts += [f"Exceeded: {listing(words)}."] if words else []
+    passed: dict[str, list[str]] = {}
+    for margin in (m for m in own if m.reached == 0.0):
+        passed.setdefault(f"{margin.title}{GUESSED * margin.guessed}", []).append(margin.body)
     of_roller = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
-    if of_roller and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"])):
-        parts.append(f"The roller lasts {', '.join(map(_hours, of_roller[:2]))}; contact {_weakest(ds)} decides.")
-        if FIRST_TO_FAIL[int(ds["first_to_fail"])] == "guide":
-            parts.append(f"The guide fails first, after {_hours(lives[-1])}.")
-    axial = inputs["axial_force"]
-    reserve = min(ranges.axial_force[1] - axial, axial - ranges.axial_force[0])
-    if math.isfinite(reserve):
-        toward = "more" if ranges.axial_force[1] - axial <= axial - ranges.axial_force[0] else "less"
-        parts.append(f"A contact lifts off with {rounded(reserve, 2)} N {toward} axial force.")
-    return " ".join(parts)
+    known = of_roller and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"]))
+    first = FIRST_TO_FAIL[int(ds["first_to_fail"])] if known else ""
+    return phrase(
+        "sheet",
+        "verdict",
+        regime=regime,
+        overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if "tensile strength" in why],
+        exceeded=[f"{title} ({listing(bodies)})" for title, bodies in passed.items()],
+        lives=list(map(_hours, of_roller[:2])) if known else [],
+        contact=_weakest(ds) if known else None,
+        guide=_hours(lives[-1]) if first == "guide" else "",
+        **values,
+    )
 
 
 def _hours(row: Row) -> str:
