@@ -150,9 +150,13 @@ class EllipseStresses(PatchStresses):
         settings = replace(settings, seeds=seeds, finalists=max(settings.finalists, FINALISTS))
         if not self.options.settings.refines and self.options.settings.elements > REFINED_AT:
             settings = _finer_search(settings)
+        again = self.options.settings.refines and self.options.settings.elements <= REFINED_AT
         for piece in _pieces(flat.size):
             fields, coarse = (_mirrored(part, second[piece]) for part in self.fields(flat[piece]))
-            peak.put(piece, find_peaks(patches[piece], ratios[piece], settings, fields, coarse, bool(own)))
+            # doubtful peaks of the exact theory are searched again; a third climb finds no higher peaks of the others
+            few = again and coarse is not None
+            effort = replace(settings, finalists=FINALISTS) if few else settings
+            peak.put(piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own)))
         worth = REFINED_SHARE * own * results.friction[flat]
         limit = np.maximum(refined_above(self.options.settings.elements), worth)
         # a model with an error of its own gains nothing from elements where the search alone is rough
