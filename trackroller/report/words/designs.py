@@ -98,10 +98,8 @@ def target_of_designs(view: StudyView, words: str) -> Sentence | None:
         return None
     best = int(np.argmax(met / designs.size))
     values = {"met": met.tolist(), "every": int((met == designs.size).sum()), "best": best, "words": words}
-    values |= {
-        "name": design_words(designs, designs.table[designs.table.index == best].iloc[0]),
-        "several": bool(designs.conditions),
-    }
+    row = designs.table[designs.table.index == best].iloc[0]
+    values |= {"name": design_words(designs, row), "several": bool(designs.conditions)}
     named = dict((view.study.get("analysis") or {}).get("target") or {})
     unknown = "pair_life_hours" in named and alone(designs)
     return say("designs", "target_of_designs", **values, conditions=int(designs.size[best]), alone=unknown)

@@ -54,17 +54,18 @@ def say(subject: str, kind: str, rows: np.ndarray | None = None, /, **values: An
 
 def phrase(subject: str, kind: str, /, **values: Any) -> str:
     """Return the words of a block with its values, in one line."""
-    template = _template(subject)
+    template = _environment().get_template(f"{subject}.txt.j2")
     text = "".join(template.blocks[kind](template.new_context(values)))
     return re.sub(r"[ \n]+", " ", text).strip(" ")
 
 
 @functools.cache
-def _template(subject: str) -> jinja2.Template:
+def _environment() -> jinja2.Environment:
     loader = jinja2.PackageLoader("trackroller.report", "templates/sentences")
+    # plain text for terminals and figures, too: a page escapes it when the text is put in
     environment = jinja2.Environment(loader=loader, undefined=jinja2.StrictUndefined, trim_blocks=True)
     environment.filters |= {name: value for name, value in vars(numbers).items() if inspect.isfunction(value)}
     environment.filters["joint"] = lambda loop: "" if loop.first else " and " if loop.last else ", "
     known = ("BEYOND", "NO_FAILURE", "GUIDE_UNKNOWN")
     environment.globals |= {"inf": math.inf} | {name: getattr(numbers, name) for name in known}
-    return environment.get_template(f"{subject}.txt.j2")
+    return environment
