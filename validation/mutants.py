@@ -105,7 +105,7 @@ FORMULAS = {
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("analysis/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
-    "converged": ("report/words/indices.py", 'converged." if times <= 1', 'converged." if times <= 4', CONVERGENCE),
+    "converged": ("report/templates/sentences/indices.txt.j2", "if times <= 1", "if times <= 4", CONVERGENCE),
     "interval-of-a-step": ("analysis/effects.py", "a - low_a))", "high_a - a))", WORDS),
     "rising": ("analysis/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
     "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),

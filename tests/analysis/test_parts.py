@@ -216,7 +216,7 @@ def test_levels_reach_analysis_table_and_summary():
         said = level_indices(sens, "roller_life_hours")
         assert said.values["lead"]["POM"] == "friction_coefficient"
         assert said.values["lead"]["PA6"] in ("axial_force", "radial_force")
-        assert [row[1] for row in part_tables(sens)[1].rows] == ["PA6", "POM"]
+        assert [row[1] for row in part_tables(sens)[0].rows] == ["PA6", "POM"]
 
 
 def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
