@@ -1,0 +1,35 @@
+"""The words of sentences: every kind has a block, every block is a kind, and a missing number is an error."""
+
+import re
+from pathlib import Path
+
+import jinja2
+import pytest
+
+from trackroller.report.words.sentence import phrase, say
+
+REPORT = Path(__file__).parents[2] / "trackroller" / "report"
+CODE = "".join(path.read_text(encoding="utf-8") for path in sorted(REPORT.rglob("*.py")))
+BLOCKS = {
+    (path.name.partition(".")[0], kind)
+    for path in sorted((REPORT / "templates" / "sentences").glob("*.j2"))
+    for kind in re.findall(r"{% block (\w+) %}", path.read_text(encoding="utf-8"))
+}
+
+
+def test_every_kind_of_sentence_has_words_and_every_block_is_a_kind():
+    called = set(re.findall(r'(?:say|phrase)\(\s*"(\w+)",\s*"(\w+)"', CODE))
+    assert len(called) > 40 and called <= BLOCKS
+    chosen = {("designs", "best"), ("designs", "next")}  # the caller of both names the kind
+    assert BLOCKS - called == chosen and all(f'"{kind}"' in CODE for _, kind in chosen)
+
+
+def test_words_stand_in_one_line_with_the_numbers_as_claims():
+    said = say("regimes", "lift_off", count=3, least=12345.6)
+    assert said.text == "The smallest axial force at which a case lifts off is 12,300 N."
+    assert said.values == {"count": 3, "least": 12345.6} and said.kind == "lift_off"
+
+
+def test_a_number_that_is_missing_is_an_error():
+    with pytest.raises(jinja2.UndefinedError, match="'least' is undefined"):
+        phrase("regimes", "lift_off", count=3)
