@@ -343,3 +343,23 @@ def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
         }
         assert set(reasons) == {"abc"[i] for i in rows if i != 1}
         assert all("guide_profile" in why and "inclined" in why for why in reasons.values())
+
+
+def test_a_body_ends_before_its_axis():
+    """A steep contact of a small roller: the gap beyond the roller's axis would be endless, and so would the patch."""
+    radius, angle = 1.6373, np.radians(75.4)
+    gap_of = gap("", "", 24.29, -36.22, angle, radius, math.inf, 1)
+    assert gap_of.limits[0] == pytest.approx(-0.95 * radius / np.sin(angle))
+    case = tr.Case(
+        axis_distance=7.76,
+        guide_profile_radius=24.29,
+        roller_profile_radius=-36.22,
+        guide_curve_radius=math.inf,
+        contact_angle=75.4,
+        radial_force=-5005.0,
+        axial_force=24868.0,
+        motor_force=12739.0,
+        friction_coefficient=1.0,
+    )
+    ds = tr.solve(case, "contact", normal="halfspace", contact_model="sliding", accuracy="preview")
+    assert ds.sizes["contact"] == 2 and ds.regime.attrs["flag_meanings"].split()[int(ds.regime)] != "failed"

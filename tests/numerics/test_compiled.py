@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 import ast
+import os
 from pathlib import Path
 
+import pytest
+
 import trackroller
+from trackroller.numerics.compiled import forget_stale
 
 PACKAGE = Path(trackroller.__file__).parent
 TREES = {path: ast.parse(path.read_text(encoding="utf-8")) for path in PACKAGE.rglob("*.py")}
@@ -43,3 +47,17 @@ def test_fast_arithmetic_uses_no_function_that_numba_shares_among_callers():
             power = isinstance(node, (ast.BinOp, ast.AugAssign)) and isinstance(node.op, ast.Pow)
             shared = isinstance(node, ast.Attribute) and node.attr in SHARED
             assert not power and not shared, f"{path.name}:{node.lineno} in {function.name}"
+
+
+@pytest.mark.parametrize(("edited", "left"), [("kernel.py", 0), ("words.py", 2), (None, 2)])
+def test_callers_of_a_changed_function_are_compiled_again(tmp_path, edited, left):
+    """numba itself would keep the callers that stand in other files."""
+    (tmp_path / "room" / "__pycache__").mkdir(parents=True)
+    (tmp_path / "room" / "kernel.py").write_text("from trackroller.numerics.compiled import fast\n")
+    (tmp_path / "room" / "words.py").write_text("WORD = 'a'\n")
+    for name in ("kernel.py", "words.py", "__pycache__/caller.f-1.py311.nbi", "__pycache__/caller.f-1.py311.1.nbc"):
+        place = tmp_path / "room" / name
+        place.touch()
+        os.utime(place, (1e9, 1e9 + 10.0 * name.startswith("__") + 20.0 * (name == edited)))
+    forget_stale(tmp_path)
+    assert len(list(tmp_path.rglob("*.nb[ic]"))) == left

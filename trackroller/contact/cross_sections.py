@@ -21,6 +21,7 @@ STEEPEST = 0.999  # largest sine of the inclination to the tangent plane at whic
 # a half-space with one plane of contact does not describe it.
 CONTACT_SLOPE = 0.4663
 
+BEFORE_AXIS = 0.95  # ASSUME: a surface nearer to its axis of revolution than 5 % of the radius takes no part
 SAFETY = 1.05  # factor on the noise found in points: too little smoothing does more harm than too much
 
 Curve = Callable[[np.ndarray], np.ndarray]
@@ -267,9 +268,10 @@ class Gap:
 
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Return the first ends of the two bodies inward and outward [mm]."""
+        """Return the first ends of the two bodies inward and outward [mm]; a body ends before its axis, too."""
         (a, b), (c, d) = self.guide.limits, self.roller.limits
-        return max(a, c), min(b, d)
+        sine, curve = np.sin(self.alpha) / BEFORE_AXIS, self.guide_curve_radius
+        return max(a, c, -self.rolling_radius / sine), min(b, d, curve / sine if curve > 0.0 else np.inf)
 
     def lateral(self, x: np.ndarray) -> np.ndarray:
         """Return g_0(x) [mm]."""

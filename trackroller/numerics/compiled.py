@@ -10,6 +10,8 @@ of their first caller. Functions with `FAST` arithmetic therefore use products a
 
 from __future__ import annotations
 
+import contextlib
+from pathlib import Path
 from typing import Any
 
 from numba import njit
@@ -21,6 +23,26 @@ _FAST: dict[str, Any] = {"error_model": "numpy", "fastmath": FAST}
 _CACHED: dict[str, Any] = {"cache": True, "nogil": True, "forceinline": False}
 # of functions that only compiled functions call: always inlined, without the wrappers for callers in Python
 _INNER: dict[str, Any] = {"cache": True, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
+
+
+def forget_stale(package: Path) -> None:
+    """Delete what numba compiled below a folder before a source file of compiled functions was changed there.
+
+    A function becomes a part of its callers, but numba compiles again only the functions of the changed file. Callers
+    in other files would go on with the old one.
+    """
+    with contextlib.suppress(OSError):  # a folder that cannot be written, or another process that deletes the same
+        kept = {path: path.stat().st_mtime for path in package.glob("**/__pycache__/*.nb[ic]")}
+        oldest = min(kept.values(), default=float("inf"))
+        changed = [path for path in package.glob("**/*.py") if path.stat().st_mtime > oldest]
+        texts = {path: path.read_text(encoding="utf-8") for path in changed}
+        newest = max((p.stat().st_mtime for p, text in texts.items() if "numba" in text or __name__ in text), default=0)
+        for path, time in kept.items():
+            if time < newest:
+                path.unlink(missing_ok=True)
+
+
+forget_stale(Path(__file__).parents[1])
 
 compiled: Any = njit(**_PLAIN, **_CACHED)
 fast: Any = njit(**_FAST, **_CACHED)
