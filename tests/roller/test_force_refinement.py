@@ -76,7 +76,7 @@ def test_peaks_take_the_finer_tractions_of_the_forces(designs):
     own, (patch, slip) = scene.model.correction, scene.contacts(solve_equilibrium(scene.loads, scene.model.law))
     rows, friction = np.zeros(2, int), scene.loads.friction[[0, 0]]
     own.solve(patch, slip, friction, rows)
-    refined = own.finer.known.copy()
+    refined = own.finer[0].known.copy()
     assert refined.any()
     again = own.on_finer(patch, slip, friction, rows, own.solution(patch, slip, friction, rows))
     assert again.converged.all() and (again.steps[refined] == 0).all()

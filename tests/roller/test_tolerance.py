@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 import trackroller as tr
+from trackroller.contact.kalker import batch
 from trackroller.errors import InputError
 from trackroller.parameters.contact_models import Cost
-from trackroller.roller import tolerance as by_case
-from trackroller.roller.accuracy import BY_CASE_ELEMENTS, PRESETS, Tolerance
+from trackroller.roller.accuracy import PRESETS, Tolerance
 from trackroller.roller.dataset import validity_bit
 from trackroller.study.cost import rate
 from validation.benchmarks.samples import random_designs
@@ -76,40 +76,33 @@ def test_few_elements_leave_no_step_above_a_fifth_of_the_tolerance():
         assert np.abs(np.diff(off, axis=0)).max() < 0.2 * 0.01, name
 
 
-def test_only_doubtful_cases_are_solved_again(monkeypatch):
-    solved, cases = [], random_designs(12, 5)
-    meet = by_case.meet
+def test_only_doubtful_patches_are_solved_on_more_elements(monkeypatch):
+    """The elements of a patch double; every case is balanced once, and far fewer patches take more elements."""
+    grids, plain, settings = [], batch.solve_batch, Tolerance(0.01, 0.02).settings()
 
-    def counted(table, options, solve):
-        def one(part, own):
-            solved.append((own.settings.elements, len(part)))
-            return solve(part, own)
+    def counted(*given):
+        grids.extend([given[3].traction.shape[-1]] * len(given[3].traction))
+        return plain(*given)
 
-        return meet(table, options, one)
-
-    monkeypatch.setattr("trackroller.roller.solver.meet", counted)
-    tr.solve(cases, accuracy=0.02)
-    elements, rows = zip(*solved, strict=True)
-    assert elements == tuple(sorted(set(elements))) and elements[0] == 12
-    assert rows[0] == 12 > max(rows[1:]) and sum(rows) < 2 * rows[0]
+    monkeypatch.setattr(batch, "solve_batch", counted)
+    tr.solve(random_designs(12, 5), accuracy={"forces": 0.01, "peak": 0.02})
+    half, first, twice, finest = (grids.count(factor * settings.elements // 2) for factor in (1, 2, 4, 8))
+    assert half == 24 and half + first + twice + finest == len(grids)
+    assert first > twice > 2 * finest > 0
 
 
-@pytest.mark.parametrize(
-    ("at", "over", "following"),
-    [
-        (0, 0.9, 0),  # within its tolerance
-        (0, 2.0, 1),  # 28 elements promise a third of the error of 12, and 56 a seventh
-        (0, 5.0, 2),
-        (0, 1e4, 2),  # a rough estimate
-        (1, 2.0, 2),
-        (1, 3.0, 3),
-        (1, 50.0, 0),  # out of reach
-        (3, 1.1, 0),  # on the finest elements
-    ],
-)
-def test_a_case_goes_on_to_the_first_elements_that_promise_its_tolerance(at, over, following):
-    elements = np.array(BY_CASE_ELEMENTS)
-    assert by_case._next_rung(np.array([at]), np.array([over]), elements).tolist() == [following]
+def test_peaks_fade_from_one_number_of_elements_to_the_next(monkeypatch):
+    """Where the estimate meets the tolerance just so, twice the elements count by and by."""
+    case, peaks = tr.Case(friction_coefficient=0.4, contact_angle=30.0, motor_force=0.0), []
+    own = dataclasses.replace(PRESETS["standard"], elements=20, force_goal=np.inf)
+    estimates = tr.solve(case, accuracy=dataclasses.replace(own, doublings=0)).error_estimate.max("body").values
+    told, contact = 2.0 * estimates.max(), estimates.argmax()
+    for goal in told / np.array([0.79, 0.9, 1.01]):
+        ds = tr.solve(case, accuracy=dataclasses.replace(own, peak_goal=goal, doublings=1))
+        peaks.append(ds.peak_stress.values[contact])
+    rough, mixed, fine = peaks
+    assert (rough != fine).any()
+    np.testing.assert_allclose(mixed, 0.5 * (rough + fine), rtol=1e-6)
 
 
 def test_a_case_alone_and_in_a_batch_has_the_same_bits():
@@ -137,7 +130,7 @@ def test_a_tolerance_of_the_life_is_one_of_the_peak_by_the_exponent():
     assert exponent > 3
 
 
-def test_frictionless_and_sliding_rollers_need_no_second_rung():
+def test_frictionless_and_sliding_rollers_have_no_error():
     ds = tr.solve(
         [tr.Case(friction_coefficient=0.0), tr.Case(friction_coefficient=0.02)], outputs="forces", accuracy=2e-3
     )
@@ -166,7 +159,7 @@ def test_tolerances_are_read_by_quantity():
     assert Tolerance.read(0.01, OUTPUTS) == Tolerance(0.01, 0.01) and Tolerance.read(0.01, ["forces"]) == Tolerance(
         0.01
     )
-    assert [rung.elements for rung in Tolerance(0.01).rungs] == [12, 28, 56, 112]
+    assert [Tolerance(each).settings().elements for each in (0.1, 0.01)] == [20, 24]
 
 
 def test_the_expected_cost_grows_with_the_accuracy():

@@ -124,17 +124,17 @@ class ContactModel:
         """
         return None
 
-    def finer_shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
-        """Return `shares` after solving the patches on twice the elements, and whether this has converged, (m,).
+    def finer_shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int = 1) -> Any:
+        """Return `shares` after `doublings` of the elements of the patches, and whether this has converged, (m,).
 
         None if the model does not refine patches.
         """
         return None
 
     def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Iterator[Any]:
-        """Return an iterator over `shares` of one patch with ever finer elements around its adhesion area.
+        """Return an iterator over functions of `shares` of one patch with finer elements around its adhesion area.
 
-        With each come the number of elements in this area. A model without such elements gives none.
+        With each comes the number of elements in this area. A model without such elements gives none.
         """
         return iter(())
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -15,6 +14,8 @@ if TYPE_CHECKING:  # these modules load numba, which a plan does not need
     from trackroller.contact.common import Elastic
     from trackroller.contact.friction_laws import FrictionLaw
 
+# Estimated error over its goal, from which and to which results fade from one number of elements to twice as many.
+FADES = 0.8, 1.0
 CONVERGED_PRESSURE = 1e-7  # largest residual of the normal problem of patches that are no ellipses
 
 
@@ -71,10 +72,12 @@ class Accuracy:
         Elements of FASTSIM and of patches whose pressure is solved; 0: as many as `elements`.
     peak_elements : int
         Elements of the tractions from which a model finds the peak stress; 0: as many as `elements`.
-    refines : bool
-        Whether patches with large estimated errors are solved again on twice the elements.
-    peak_goal : float
-        Largest relative error of a peak, which finer elements around the adhesion area shall reach; inf: none.
+    doublings : int
+        How often the elements of a patch with a large estimated error may double.
+    force_goal, peak_goal, life_goal : float
+        Errors that a patch may have by its estimates: of the friction forces over mu F_N, of peak and life over
+        themselves. The elements double where they are larger, and a small adhesion area gets finer elements. 0: the
+        limits of a preset.
     """
 
     name: str
@@ -87,8 +90,10 @@ class Accuracy:
     elements: int
     grid_elements: int = 0
     peak_elements: int = 0
-    refines: bool = True
-    peak_goal: float = math.inf
+    doublings: int = 1
+    force_goal: float = 0.0
+    peak_goal: float = 0.0
+    life_goal: float = np.inf
 
     @property
     def on_grids(self) -> int:

@@ -17,3 +17,16 @@ def determinant(sine: np.ndarray, cosine: np.ndarray, one: np.ndarray, two: np.n
     0.866
     """
     return 2.0 * sine * cosine * (1.0 + one * two) + (one - two) * (cosine - sine) * (cosine + sine)
+
+
+def own_change(sine: np.ndarray, cosine: np.ndarray, beside: np.ndarray) -> np.ndarray:
+    """Return the change of F_N with the own F_T of a contact, times the `determinant`, (n,).
+
+    `beside` is F_T/F_N of the other contact; it and `sine` change their signs for contact 2.
+
+    Examples
+    --------
+    >>> float(round(own_change(0.5**0.5, 0.5**0.5, 0.2), 3))  # at 45 degrees only by the friction of the other contact
+    0.2
+    """
+    return np.abs((cosine - sine) * (cosine + sine) + 2.0 * sine * cosine * beside)

@@ -29,8 +29,10 @@ PEAK_OUTPUTS = frozenset(("peak_stress", "life", "subsurface"))
 FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whose cost is low
 LIKELY_EXPONENT = 10.0  # of an S-N curve, for the search of the peak where the life has a tolerance
 PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
-BY_CASE_ELEMENTS = (12, 28, 56, 112)  # across a patch, on the rungs of a tolerance that is met case by case
-WINDOWS_BELOW = 0.015  # tolerance of peaks up to which adhesion areas of few elements get finer ones
+SEARCH_SHARE = 0.4  # the same for a tolerance met case by case, where the estimated error contains that of the search
+BY_CASE_ELEMENTS = {1.5e-2: 20, 0.0: 24}  # across a patch, by the smallest tolerance; they double where it is not met
+WHOLE_ELEMENTS = (56, 112)  # across all patches of a case whose elements cannot double patch by patch
+FORCE_SAFETY = 1.6  # factor on the estimated error of forces; the error of 1 in 100 designs is larger
 SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 112 elements keep in all but a few per cent of designs
 
 
@@ -167,19 +169,18 @@ class Tolerance:
             raise InputError("accuracy", extra[0], "a tolerance of a quantity that is computed", remedy)
         return cls(**asked)
 
-    @functools.cached_property
-    def rungs(self) -> tuple[Accuracy, ...]:
-        """Return the settings to solve with, from few to many elements."""
+    def settings(self, elements: int = 0) -> Accuracy:
+        """Return the settings to solve with, on as many elements as the tolerance suggests, or on `elements`."""
         peak, searches = min(self.peak, self.life / LIKELY_EXPONENT), ladders()["peak"]
-        search = _cheapest(searches, PEAK_SHARE * peak, ("peak_stress",)) or _finest(searches, ("peak_stress",))
+        search = _cheapest(searches, SEARCH_SHARE * peak, ("peak_stress",)) or _finest(searches, ("peak_stress",))
         forces = _finest(ladders()["forces"], FORCE_QUANTITIES)
-        return tuple(
-            replace(
-                _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements),
-                refines=False,
-                peak_goal=peak if peak <= WINDOWS_BELOW else math.inf,
-            )
-            for elements in BY_CASE_ELEMENTS
+        elements = elements or next(n for limit, n in BY_CASE_ELEMENTS.items() if min(self.forces, peak) >= limit)
+        return replace(
+            _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements),
+            doublings=2,
+            force_goal=self.forces / FORCE_SAFETY,
+            peak_goal=self.peak,
+            life_goal=self.life,
         )
 
 
@@ -209,7 +210,7 @@ def accuracy_settings(
 
     Notes
     -----
-    For `kalker` the settings are those of the first rung, see `Tolerance`. For other models the tolerance limits the
+    For `kalker` see `Tolerance`. For other models the tolerance limits the
     error of discretisation, not that of the model, in 99 % of the measured cases. It is
     relative to F_N for F_N, to mu F_N for F_T and F_A, to mu F_N sqrt(a b) for M_R, and to the value itself for
     friction work and peak stress. The relative error of the life is that of the peak times the exponent k of the S-N
@@ -225,7 +226,7 @@ def accuracy_settings(
             raise unknown_name("accuracy", accuracy, (*ACCURACIES, "a relative tolerance such as 1e-3"))
         accuracy = number
     if DECLARED[contact_model].by_case and (by_case := tolerance_of(accuracy, outputs)) is not None:
-        return by_case.rungs[0]
+        return by_case.settings()
     if isinstance(accuracy, Mapping):
         remedy = f"Give {contact_model} one number, or take contact_model: kalker."
         raise InputError("accuracy", accuracy, "a tolerance by quantity only with contact_model: kalker", remedy)

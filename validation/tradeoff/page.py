@@ -10,7 +10,6 @@ from trackroller.contact.kalker import correction
 from trackroller.errors import InputError
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import (
-    BY_CASE_ELEMENTS,
     ELEMENTS,
     GRID_ELEMENTS,
     PROMISES,
@@ -67,7 +66,7 @@ def _settings(tolerance: float, model: str) -> str:
         hit = re.search(r"reaches here is ([\d.e-]+)|= [\d.e-]+ is not usable: ([\d.e-]+) or more", str(refusal))
         return "refused: " + (f"reaches {hit[1] or hit[2]}" if hit else "out of reach")
     if DECLARED[model].by_case:
-        return f"{BY_CASE_ELEMENTS[0]} to {BY_CASE_ELEMENTS[-1]} elements, by case"
+        return f"{s.elements} to {2**s.doublings * s.elements} elements, by patch"
     p = s.peak
     size = f"{s.force_nodes} nodes" if model == "sliding" else f"{s.elements} elements"
     return f"{size}, {p.scan}/{p.climb}/{p.polish}/{p.summit}, {p.seeds} seeds"

@@ -14,14 +14,14 @@ from typing import Any, cast
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Works
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Works, error_of_work, force_scales
 from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
-from trackroller.contact.settings import converged_up_to
+from trackroller.contact.settings import FADES, converged_up_to
 from trackroller.contact.slip import Creepage, Slip
-from trackroller.contact.wedge import determinant
+from trackroller.contact.wedge import determinant, own_change
 from trackroller.numerics.knots import rise
 
 NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
@@ -45,10 +45,6 @@ LIGHT_ERROR, LIGHT_FACTOR = 1e-2, 3
 # take over by and by, so that the forces have no step. Beyond the second value they serve alone, which keeps the
 # estimated error of the friction forces below 5 % of mu F_N.
 TABLE_SERVES = 0.037, 0.047
-# Distance of the forces of table and few elements over the estimated error of the elements, on the first rung of a
-# tolerance. Up to the first value both agree, and the table serves, because the forces of few elements jump where an
-# element begins to slide. From there on the elements take over by and by.
-AGREED = 1.0, 2.5
 # Elements across patches that serve for the table. A patch takes the first number that promises the error of F_N.
 SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.02
 
@@ -86,7 +82,8 @@ class Correction:
         self.error = np.full((n, 2), np.nan)  # of the friction forces over mu F_N, estimated
         self.share = np.zeros((n, 2))  # of the elements in the forces, from 0 to 1
         self.count = 0  # of solved patches
-        self.store, self.finer = Store(2 * n), Store(2 * n)  # solutions, and solutions on twice the elements
+        self.store = Store(2 * n)  # solutions
+        self.finer = [Store(2 * n) for _ in range(max(settings.doublings, 1))]  # on twice the elements and more
 
     def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and its validity, (m,)."""
@@ -103,7 +100,7 @@ class Correction:
         """Return the resultants on the roller by the corrected table, arrays (m,)."""
         forces, place, _ = self._table(patch, slip, friction, rows)
         forces = self._corrected(forces, place, rows, _side(slip))
-        scale = _scale(patch, friction)
+        scale = force_scales(patch, friction)
         return Resultants(*(forces * scale).T)
 
     def solve(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
@@ -127,28 +124,10 @@ class Correction:
             if self.trusts_table:
                 table_error = (1.0 - part) * table.stored().force_error("p99")
                 self.error[own, side] = np.fmax(self.error[own, side], table_error)
-            elif not self.settings.refines and self.settings.elements < SERVING[0]:
-                apart = self._apart(patch.take(pick), slip.take(pick), friction[pick], own, forces[pick], offset)
-                part = np.where(held[pick], rise(apart / np.maximum(self.error[own, side], 1e-12), AGREED), 1.0)
-                self.share[own, side] = part
             offset *= part[:, None]
             self._learn(offset, place[pick], own, side)
             change[pick] = np.max(np.abs(forces[pick] + offset - before), axis=1)
         return np.where(held, change, OUTSIDE * change)
-
-    def _apart(self, patch: Patch, slip: Slip, friction, rows: np.ndarray, forces, offset: np.ndarray) -> np.ndarray:
-        """Return how far the elements are from the table's `forces` (m, 3), (m,).
-
-        This is the largest `offset` (m, 3), or the change of the friction work over itself.
-        """
-        solution, scale = self.store.get(_slots(rows, _side(slip))), _scale(patch, friction)
-
-        def work(values: np.ndarray) -> np.ndarray:
-            return _work(solution, slip, *(values * scale).T[1:])
-
-        with np.errstate(divide="ignore", invalid="ignore"):
-            off = np.abs(work(forces + offset) * (1.0 + solution.energy_residual) / work(forces) - 1.0)
-        return np.fmax(np.abs(offset).max(axis=1), off)
 
     def _share(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the share of the elements in the forces of patches inside the table, (m,), see `TABLE_SERVES`."""
@@ -162,8 +141,11 @@ class Correction:
         self.normal[rows, side] = patch.normal_force
         other, own = self.normal[rows, 1 - side], self.ratio[rows, side]
         beside = np.where(np.isnan(other), -own, self.ratio[rows, 1 - side])  # of mirror images only one is given
-        wedge = determinant(np.abs(slip.sine), slip.cosine, sign * own, sign * beside)
-        return np.abs(wedge) * np.where(np.isnan(other), patch.normal_force, other)
+        sine, normal = np.abs(slip.sine), np.where(np.isnan(other), patch.normal_force, other)
+        if self.settings.force_goal:  # F_N of the same contact counts too
+            with np.errstate(divide="ignore"):
+                normal = np.fmin(normal, patch.normal_force / own_change(sine, slip.cosine, sign * beside))
+        return np.abs(determinant(sine, slip.cosine, sign * own, sign * beside)) * normal
 
     def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
         """Store the differences `offset` (m, 3) at the places of the slip, and their derivatives if known."""
@@ -179,7 +161,7 @@ class Correction:
 
         Without `forces` only the tractions are needed, so that nothing is extrapolated.
         """
-        side, scale = _side(slip), _scale(patch, friction)
+        side, scale = _side(slip), force_scales(patch, friction)
         near = np.abs(place - self.place[rows, side]) <= NEAR
         exact = np.empty((len(rows), 3))
         self.count += len(rows)
@@ -198,6 +180,8 @@ class Correction:
             plain, value = solution.resultants.columns - solution.limit[:, :3], solution.resultants.columns
             if before is not None:
                 solution = solution.extrapolated_as(before)
+                if self.settings.force_goal:
+                    solution = dataclasses.replace(solution, pressure_work=solution.pressure_work + before.limit[:, 4])
             else:
                 if forces:
                     value, force_error = self._refined(patch.take(pick), slip.take(pick), friction[pick], own, solution)
@@ -213,7 +197,7 @@ class Correction:
         They are those of the solutions `solution`, or of two or three times the elements where the error counts. In the
         balance an error of F_T in one contact changes F_N of the other, see `stages.mechanics.force_error`.
         """
-        value, force_error, side = solution.resultants.columns, solution.force_error.copy(), _side(slip)
+        value, force_error = solution.resultants.columns, solution.force_error.copy()
         other, creep = self._turned(patch, slip, rows), Creepage.of_slip(slip, self.settings.profile_slip)
 
         def solve_again(pick: np.ndarray, elements: int, start: np.ndarray | None = None) -> None:
@@ -230,40 +214,68 @@ class Correction:
                 if (enough == number).any():
                     solve_again(np.flatnonzero(enough == number), SERVING[number])
             return value, force_error
-        least = np.minimum(friction * patch.normal_force, other)
-        rough = np.flatnonzero(force_error > refined_above(self.settings.elements) * least)
-        if not self.settings.refines or not rough.size:
-            return value, force_error
-        finer_patch, finer_slip, coarse = patch.take(rough), slip.take(rough), solution.take(rough)
-        mu, own = friction[rough], rows[rough]
-        finer = self.on_finer(finer_patch, finer_slip, mu, own, coarse, forces=True)
-        self.finer.put(_slots(own, side[rough]), finer)
-        self.count += rough.size
-        plain, good = finer.resultants.columns, finer.converged
-        change, elastic = plain - (value[rough] - coarse.limit[:, :3]), self.elastic.take(own)
-        _, limit = extrapolation.extrapolated(finer_patch, creep.take(rough), mu, elastic, finer, plain, change)
-        error = extrapolation.force_error(finer_patch, mu, finer.stick_fraction, change, finer.traction.shape[-1])
-        value[rough[good]], force_error[rough[good]] = (plain + limit)[good], error[good]
+        work = error_of_work(patch, slip, friction, *value.T[1:]) if self.settings.force_goal else 1.0
+        least = np.minimum(friction * patch.normal_force / work, other)
+        rough, finer = self._doubled(patch, slip, friction, rows, solution, least, value, force_error)
         light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
-        if light.size:
-            start = on_elements(finer_patch.take(light), finer.take(light), LIGHT_FACTOR * self.settings.elements)
+        if light.size and not self.settings.force_goal:
+            start = on_elements(patch.take(rough[light]), finer.take(light), LIGHT_FACTOR * self.settings.elements)
             solve_again(rough[light], start.shape[-1], start)
         return value, force_error
+
+    def _doubled(self, patch: Any, slip: Slip, friction, rows, solution: PatchSolution, least, value, force_error):
+        """Solve patches on twice the elements, and again, while their error over `least` (m,) [N] is too large.
+
+        Forces, error and works are overwritten. For a tolerance the forces fade from one number of elements to the
+        next, so that they have no step. Returns the patches of the first doubling, and their solutions.
+        """
+        goal, creep = self.settings.force_goal, Creepage.of_slip(slip, self.settings.profile_slip)
+        limit = least * (FADES[0] * goal or refined_above(self.settings.elements))
+        first, twice = (pick := np.flatnonzero(force_error > limit)), None
+        total = np.column_stack([value, solution.pressure_work, solution.energy_residual])
+        coarse, old, error, share = solution.take(pick), total[pick], force_error[pick], np.ones(pick.size)
+        for _ in range(self.settings.doublings * bool(pick.size)):
+            part, mu, elastic = patch.take(pick), friction[pick], self.elastic.take(rows[pick])
+            finer = self.on_finer(part, slip.take(pick), mu, rows[pick], coarse, forces=True)
+            self.count += pick.size
+            new, change = extrapolation.doubled(part, creep.take(pick), mu, elastic, finer, coarse)
+            finest = extrapolation.force_error(part, mu, finer.stick_fraction, change, finer.traction.shape[-1])
+            if goal:  # the change of the forces is an estimate, too
+                scale = force_scales(part, mu)
+                finest = np.fmin(finest, (np.abs(new - old)[:, :3] / scale * scale[:, :1]).max(axis=1))
+            share *= finer.converged * (rise(error / (goal * least[pick]), FADES) if goal else 1.0)
+            total[pick] += share[:, None] * (new - old)
+            force_error[pick] += share * (finest - error)
+            twice = twice or finer
+            more = np.flatnonzero(finer.converged & (finest > limit[pick]))
+            if not more.size:
+                break
+            pick, coarse, old, error, share = pick[more], finer.take(more), new[more], finest[more], share[more]
+        value[:] = total[:, :3]
+        if goal:
+            solution.limit[:, 4] += total[:, 3] - solution.pressure_work
+            solution.pressure_work[:], solution.energy_residual[:] = total[:, 3], total[:, 4]
+        return first, twice
 
     def on_finer(
         self, patch: Any, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
     ) -> PatchSolution:
         """Solve patches on twice the elements of the solutions `coarse`, arrays (m,), from the tractions at hand."""
         slot, creep = _slots(rows, _side(slip)), Creepage.of_slip(slip, self.settings.profile_slip)
-        known, elements = self.finer.known[slot], 2 * coarse.traction.shape[-1]
+        elements = 2 * coarse.traction.shape[-1]
+        store = self.finer[(elements // self.settings.elements).bit_length() - 2]
+        known = store.known[slot]
         start = np.empty((len(rows), 2, elements, elements))
         if known.any():
-            start[known] = self.finer.get(slot[known]).traction
+            start[known] = store.get(slot[known]).traction
         if not known.all():
             start[~known] = on_elements(patch.take(~known), coarse.take(~known), elements)
         wanted = {"elements": elements, "tolerance": self.traction_tolerance, "extrapolate": False, "between": forces}
         elastic, settings = self.elastic.take(rows), dataclasses.replace(self.settings, **wanted)
-        return solve_patch(patch, creep, friction, elastic, settings, start)
+        solution = solve_patch(patch, creep, friction, elastic, settings, start)
+        if forces or self.settings.doublings > 1:
+            store.put(slot, solution)
+        return solution
 
     def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
         """Return the last solutions of patches, arrays (m,); patches without one are solved."""
@@ -283,14 +295,15 @@ class Correction:
         if self.settings.profile_slip:
             return solution.works
         r = self.law(patch, slip, friction, rows)
-        work = _work(solution, slip, r.driving_force, r.spin_moment)
+        work = solution.pressure_work - slip.longitudinal * r.driving_force - slip.spin * r.spin_moment
         lost = 0.0 if self.trusts_table else self.share[rows, _side(slip)] * solution.energy_residual
         return Works(work * (1.0 + lost), solution.pressure_work)
 
     def forget(self, rows: np.ndarray) -> None:
         """Drop the solutions of the rollers `rows`, so that their patches are solved again when needed."""
         slots = np.concatenate([2 * rows, 2 * rows + 1])
-        self.store.known[slots] = self.finer.known[slots] = False
+        for store in (self.store, *self.finer):
+            store.known[slots] = False
         self.error[rows] = np.nan
 
     def state(self, n: int) -> tuple[np.ndarray, np.ndarray]:
@@ -299,22 +312,9 @@ class Correction:
         return residual.reshape(n, 2).max(axis=1), np.logical_and.reduce(converged.reshape(n, 2), axis=1)
 
 
-def _work(solution: PatchSolution, slip: Slip, driving: np.ndarray, moment: np.ndarray) -> np.ndarray:
-    """Return the work that F_A, M_R and the pressures do per distance travelled, (m,) [N]."""
-    return np.asarray(solution.pressure_work - slip.longitudinal * driving - slip.spin * moment)
-
-
 def _side(slip: Slip) -> np.ndarray:
     return (slip.sine < 0).astype(int)
 
 
 def _slots(rows: np.ndarray, side: np.ndarray) -> np.ndarray:
     return 2 * rows + side
-
-
-def _scale(patch: Patch, friction: np.ndarray) -> np.ndarray:
-    """Return mu F_N, mu F_N and mu F_N c of patches, (m, 3); 1e-300 where there is no friction."""
-    scale = np.empty((len(friction), 3))
-    scale[:] = np.maximum(friction * patch.normal_force, 1e-300)[:, None]
-    scale[:, 2] *= np.sqrt(patch.semi_axis_lateral * patch.semi_axis_rolling)
-    return scale

@@ -90,6 +90,25 @@ def extrapolated(
     return share, limit
 
 
+def doubled(
+    ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic, finer: Any, coarse: Any
+) -> tuple[np.ndarray, np.ndarray]:
+    """Extrapolate from the solutions `coarse`, which may be extrapolated, and `finer` on twice the elements.
+
+    Returns
+    -------
+    Resultants [N, N, N mm], work of the pressures [N] and energy residual [1], (n, 5); and the change of the resultants
+    with the elements, (n, 3).
+    """
+    plain = finer.resultants.columns
+    change = plain - (coarse.resultants.columns - coarse.limit[:, :3])
+    weight, limit = extrapolated(ellipse, creep, friction, elastic, finer, plain, change)
+    pressed = finer.pressure_work + weight * (finer.pressure_work - coarse.pressure_work + coarse.limit[:, 4])
+    return np.column_stack(
+        [plain + limit, pressed, energy(finer.energy_residual, coarse.energy_residual - coarse.limit[:, 5])]
+    ), change
+
+
 def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
     """Return the error of |F_T| by `unseen_adhesion`, (n,) [N]."""
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling

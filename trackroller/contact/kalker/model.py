@@ -11,6 +11,7 @@ from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.kalker.patch import shares, to_tractions
 from trackroller.contact.kalker.problem import KalkerSettings
+from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.normal.models import GridKalkerModel
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Accuracy, Rollers
@@ -30,7 +31,12 @@ class KalkerModel(ContactModel):
         self.given, law, elastic = given, given.law, given.elastic
         elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
         discretisation = KalkerSettings(
-            elements=elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip, refines=settings.refines
+            elements=elements,
+            tolerance=1e-8,
+            law=law,
+            profile_slip=given.profile_slip,
+            doublings=settings.doublings,
+            force_goal=settings.force_goal,
         )
         self._law = KalkerLaw(elastic, discretisation, given.travel_speed)
         if law.is_constant:  # the table behind the corrections holds constant friction only
@@ -52,17 +58,19 @@ class KalkerModel(ContactModel):
     def shares(self, ellipse, slip, friction, rows):
         return shares(ellipse, self._solution(ellipse, slip, friction, rows))
 
-    def finer_shares(self, ellipse, slip, friction, rows, parts=FINER_PARTS):
+    def finer_shares(self, ellipse, slip, friction, rows, doublings=1, parts=FINER_PARTS):
         if self.correction is None:
             return None
         coarse = self._solution(ellipse, slip, friction, rows)
-        finer = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
-        return (*shares(ellipse, finer, parts), finer.converged)
+        for _ in range(doublings):
+            finer = coarse = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
+        return (*shares(ellipse, finer, max(parts // doublings, PARTS)), finer.converged)
 
     def windows(self, ellipse, slip, friction, rows):
         if self.correction is None:
             return iter(())
         correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)
+        coarse = correction.on_finer(ellipse, slip, friction, rows, coarse)
         elastic = correction.elastic.take(rows)
         bound = friction * ellipse.max_pressure / elastic.shear_modulus
         settings = replace(correction.settings, tolerance=correction.traction_tolerance)

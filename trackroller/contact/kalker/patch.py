@@ -138,7 +138,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     solution = _level(ellipse, creep, friction, elastic, travel, settings, traction)
     fine = solution.report
     value, stick = _integrals(ellipse, friction, solution, settings)
-    limit, change = np.zeros((n, 4)), np.full((n, 3), np.nan)
+    limit, change = np.zeros((n, 6)), np.full((n, 3), np.nan)
     force_error, pressed = np.full(n, np.nan), fine.pressure_work
     work, energy = fine.work + pressed, fine.energy_residual
     if coarse is not None:
@@ -151,6 +151,7 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
         work = work + weight * (work - report.work - report.pressure_work)
         # observed to be of second order wherever a part of the patch slides
         energy = extrapolation.energy(energy, report.energy_residual)
+        limit[:, 4], limit[:, 5] = pressed - fine.pressure_work, energy - fine.energy_residual
     value = value + limit[:, :3]
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)

@@ -27,8 +27,10 @@ class KalkerSettings:
     between : bool
         Integrate resultants and adhesion area between the elements too. False, where only the tractions are wanted,
         adds up the elements.
-    refines : bool
-        Solve patches of an equilibrium again on twice the elements where their estimated error is large.
+    doublings : int
+        How often the elements of a patch of an equilibrium may double where its estimated error is large.
+    force_goal : float
+        The error over mu F_N from which they double; 0: the limit of a preset, see `correction`.
     profile_slip : bool
         Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.
     law : FrictionLaw, optional
@@ -43,7 +45,8 @@ class KalkerSettings:
     krylov: int = 80
     extrapolate: bool = True
     between: bool = True
-    refines: bool = True
+    doublings: int = 1
+    force_goal: float = 0.0
     profile_slip: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0
@@ -77,8 +80,9 @@ class PatchSolution:
         the normal, and the pressures do work on this motion.
     energy_residual : ndarray, shape (n,)
         Dissipation summed over the elements, over `friction_energy_per_distance`, less 1 [1]; extrapolated.
-    limit : ndarray, shape (n, 4)
-        Change of the resultants and of the adhesion area by the extrapolation [N, N, N mm, 1]; 0 without it.
+    limit : ndarray, shape (n, 6)
+        Change of the resultants, of the adhesion area, of the pressures' work and of the energy residual by the
+        extrapolation [N, N, N mm, 1, N, 1]; 0 without it.
     error_estimate : ndarray, shape (n, 3)
         |F_h - F_2h| of the resultants [N, N, N mm]; NaN without extrapolation.
     force_error : ndarray, shape (n,)

@@ -9,7 +9,8 @@ fade out from the edge of a window, so that no step of the tractions there acts 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -135,7 +136,7 @@ def _field(grids: list[Grid], windows: list[Spans]) -> np.ndarray:
 
 def fields(
     patch: Ellipse, solution: PatchSolution, poisson_ratio: float, bound: float, settings: KalkerSettings
-) -> Iterator[tuple[np.ndarray, np.ndarray, float]]:
+) -> Iterator[tuple[Callable[[], tuple[np.ndarray, np.ndarray]], float]]:
     """Yield the traction of one patch over mu p with one, two, ... windows.
 
     The iteration ends with a window that has too many elements or does not converge.
@@ -154,8 +155,8 @@ def fields(
     Yields
     ------
     tuple
-        Traction over mu p with the windows and on the elements of the patch, (1, 2, ., .) each, and the number of
-        elements in the adhesion area.
+        Function that returns the traction over mu p with the windows and on the elements of the patch, (1, 2, ., .)
+        each; and the number of elements in the adhesion area.
     """
     own = subgrid.fields_of(patch, solution)
     z, count = own.before_law(), own.traction.shape[-1]
@@ -176,4 +177,7 @@ def fields(
             return
         grids.append(grid)
         windows.append(spans)
-        yield _field(grids, windows), plain, float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum())
+        yield (
+            partial(lambda *found: (_field(*found), plain), grids.copy(), windows.copy()),
+            float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum()),
+        )

@@ -81,9 +81,10 @@ class TableModel(ContactModel):
         """Return the tractions of the exact solver on few elements over their bound, see `ContactModel.shares`."""
         return self.rough.shares(patch, slip, friction, rows)
 
-    def finer_shares(self, patch: Any, slip: Slip, friction, rows):
+    def finer_shares(self, patch: Any, slip: Slip, friction, rows, doublings: int = 1):
         """Return `shares` from twice the elements, see `ContactModel.finer_shares`; None if they come from all."""
-        return None if self.rough is self.exact else self.rough.finer_shares(patch, slip, friction, rows, PARTS)
+        own = self.rough
+        return None if own is self.exact else own.finer_shares(patch, slip, friction, rows, doublings, PARTS)
 
     def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""

@@ -9,13 +9,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
+from trackroller.contact.common import Elastic, error_of_work
 from trackroller.contact.drawn_profiles import inclined
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.normal.patches import Boxes
 from trackroller.contact.slip import pole_rolling, turning_of
-from trackroller.contact.wedge import determinant
+from trackroller.contact.wedge import determinant, own_change
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import contact_geometry, lever_arms
@@ -28,6 +28,7 @@ SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
 )
+LOAD_SHARE = 0.6  # of the estimated error of F_N for a tolerance: the errors of both contacts seldom add up
 MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 FINITE = {"normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure", "peak_stress"}
 
@@ -115,8 +116,13 @@ def force_error(results: Results, options: Options) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
         of_load = _load_error(results, error * scene.loads.friction[:, None])
+        forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
+        work = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
+        largest = np.fmax(error * work, LOAD_SHARE * of_load)
         error = error + np.sqrt(used) * of_load
     known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
+    if options.settings.force_goal:
+        results.tell(np.where(known[:, None], 0.0, largest / options.settings.force_goal))
     for name, estimate in (("force_error_estimate", error), ("normal_force_error_estimate", of_load)):
         estimate = np.where(known[:, None], 0.0, estimate)
         v[name] = np.where(np.isfinite(v["lateral_force"]), estimate, np.nan)
@@ -126,8 +132,7 @@ def _load_error(results: Results, of_ratio: np.ndarray) -> np.ndarray:
     """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7), (9), (n, 2)."""
     v, loads = results.values, results.scene.loads
     normal, (one, two) = v["normal_force"], (v["lateral_force"] / v["normal_force"]).T
-    double, turned = 2.0 * loads.sine * loads.cosine, (loads.cosine - loads.sine) * (loads.cosine + loads.sine)
-    own = np.abs(np.stack([turned + double * two, turned - double * one], axis=1))
+    own = np.stack([own_change(loads.sine, loads.cosine, two), own_change(loads.sine, loads.cosine, -one)], axis=1)
     wedge = np.abs(determinant(loads.sine, loads.cosine, one, two))
     return (own * of_ratio + (of_ratio * normal)[:, ::-1] / normal) / wedge[:, None]
 

@@ -79,8 +79,7 @@ class Results:
     values : results by name, arrays with the case as first axis
     surface : tractions of the existing patches, once computed
     share : traction of the existing patches over its bound, once computed
-    refined : patches whose peak was searched on twice the elements of the contact model, (2 n,)
-    resolved : patches whose peak was searched with finer elements around the adhesion area, (2 n,)
+    refined : how often the elements of a patch doubled before its peak was searched, (2 n,)
     """
 
     scene: Scene
@@ -96,8 +95,7 @@ class Results:
     values: dict[str, np.ndarray] = field(default_factory=dict)
     surface: SurfaceTractions | None = None
     share: np.ndarray | None = None
-    refined: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
-    resolved: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
+    refined: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
@@ -121,8 +119,7 @@ class Results:
             np.isfinite(normal),
             np.where(balance.jamming, JAMMING, 0).astype(np.int32),
             np.zeros(scene.n, bool),
-            refined=np.zeros(2 * scene.n, bool),
-            resolved=np.zeros(2 * scene.n, bool),
+            refined=np.zeros(2 * scene.n, int),
         )
         out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out
@@ -141,6 +138,11 @@ class Results:
         """Return the direction of the traction along y_C in full slip, and 0 in rolling, (2 n,)."""
         along = np.where(self.regime == eq.FULL_SLIP, -np.sign(self.scene.loads.motor_force), 0.0)
         return np.concatenate([along, along])
+
+    def tell(self, over: np.ndarray) -> None:
+        """Take estimated errors over their tolerance, (n, ...), into the largest one of each case."""
+        known = self.values.setdefault("error_over_tolerance", np.zeros(self.scene.n))
+        np.fmax(known, np.nan_to_num(over, nan=0.0).reshape(self.scene.n, -1).max(axis=1), out=known)
 
     def full(self, flat_good: np.ndarray) -> np.ndarray:
         """Return values of the existing patches for all patches, NaN for the others, shape (n, 2, ...)."""
