@@ -32,7 +32,7 @@ Values = dict[str, Any]
 POINTS = 21  # cases of a curve
 LIVE = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions")
 _JUDGED = tuple(dict.fromkeys(limit.group for limit in LIMITS.values() if limit.verdict is not None))
-_UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes 0.2 s
+_UNKNOWN = Limits((math.nan, math.nan), (math.nan, math.nan), math.nan)  # not searched, which takes up to 1 s
 DERIVED = ("share", "factor", "life", "when")  # properties of a margin that the page shows
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
 

@@ -61,17 +61,18 @@ def run_with_progress(
 
 
 def make_report(study: str, results: Path, out: Path | None) -> None:
-    """Make analysis, figures and report of a study that was run; write a copy of the report, or the cases, to `out`."""
+    """Make analysis, figures and report of a study that was run, and a copy at `out`; or write its cases to `out`."""
     folder = study_folder(find_study(study, results).name, results)
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
     target = out if out is None else writable(out) if table else writable_page(out)
-    report = _report(folder)
-    print(report)
     if target is not None and table:
         from trackroller.solved import open_study  # heavy: SALib
 
         print(open_study(folder.root).export(target))
-    elif target is not None:
+        return
+    report = _report(folder)
+    print(report)
+    if target is not None:
         from trackroller.report.html import write_page  # heavy: jinja2
 
         print(write_page(target, report.read_text(encoding="utf-8")))

@@ -21,7 +21,9 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-POINTS, ROUNDS = 17, 7  # cases a round on each search, and rounds: the range shrinks by 16 each time
+# Parts into which each round cuts the range of each search. Cases near lift-off are dear, and many rounds of few cases
+# need the least of them.
+PARTS = (16, *(4,) * 12)
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
 _FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
@@ -70,7 +72,7 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
 
     Notes
     -----
-    Equilibria are solved with `accuracy="preview"`, in batches, about 450 in all.
+    Equilibria are solved with `accuracy="preview"`, in batches, about 300 in all.
     ASSUME: drawn and worn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the
     shape of the patch. ASSUME: friction that falls with the slip speed is searched with full sliding, which is a
     thousand times cheaper and has the same complete friction.
@@ -122,13 +124,14 @@ def _edges(
     ranges = [(start, end) for _, start, end in searches]
     edges = [math.nan] * len(searches)
     going = list(range(len(searches)))
-    for _ in range(ROUNDS):
-        values = {i: np.linspace(*ranges[i], POINTS) for i in going}
-        near = holds(
-            [replace(case, **{_FIELD.get(searches[i][0], searches[i][0]): float(v)}) for i in going for v in values[i]]
-        )
+    for number, parts in enumerate(PARTS):
+        values = {i: np.linspace(*ranges[i], parts + 1) for i in going}
+        asked = slice(1, -1) if number else slice(None)  # the ends are known after the first round
+        places = [(_FIELD.get(searches[i][0], searches[i][0]), v) for i in going for v in values[i][asked].tolist()]
+        near = holds([replace(case, **{field: v}) for field, v in places])
         for row, i in enumerate(tuple(going)):
-            far = np.flatnonzero(~near[searches[i][0]].reshape(-1, POINTS)[row])
+            inner = near[searches[i][0]].reshape(-1, len(values[i][asked]))[row]
+            far = np.flatnonzero(~np.concatenate([[True], inner, [False]]) if number else ~inner)
             if far.size and far[0]:
                 ranges[i] = (float(values[i][far[0] - 1]), float(values[i][far[0]]))
                 edges[i] = ranges[i][0]
