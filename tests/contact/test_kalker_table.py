@@ -196,8 +196,9 @@ def test_beside_a_nearly_lifted_contact_the_elements_serve():
     by_table = (error * normal[:, ::-1] / normal / determinant[:, None]).max(axis=1)
     used = np.array(ds.contact_model_used.flag_meanings.split())[ds.contact_model_used.values]
     assert set(used[by_table > 0.048]) == {"kalker"} and set(used[by_table < 0.036]) == {"kalker_table"}
-    assert by_table.max() > 0.2 and float(ds.normal_force_error_estimate.max()) < 0.05
-    assert float(ds.force_error_estimate.max()) < 0.05
+    told = ds.normal_force_error_estimate.values.max(axis=1)
+    assert by_table.max() > 0.2 and told[used == "kalker_table"].max() < 0.05 and told.max() < 0.08
+    assert float(ds.force_error_estimate.max()) < 0.06
     off = abs(ds.normal_force / exact.normal_force - 1).values[by_table > 0.048]
     assert off.max() < 0.05  # 0.4 by the table alone
     np.testing.assert_allclose(

@@ -40,13 +40,13 @@ TRACTION_TOLERANCE = 1e-3
 REFINED_ERROR = 4e-3
 # Estimated relative error of F_N in the other contact above which a patch is solved on three times the elements, too.
 # Only contacts near lift-off have such an error.
-LIGHT_ERROR, LIGHT_FACTOR = 1e-2, 3
+LIGHT_ERROR, LIGHT_FACTOR = 2e-2, 3
 # Relative error of F_N in the other contact that the error of the table may cause. From the first value on the elements
 # take over by and by, so that the forces have no step. Beyond the second value they serve alone, which keeps the
 # estimated error of the friction forces below 5 % of mu F_N.
 TABLE_SERVES = 0.037, 0.047
 # Elements across patches that serve for the table. A patch takes the first number that promises the error of F_N.
-SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.02
+SERVING, SERVED_ERROR = (20, 28, 40, 56, 80), 0.04
 
 
 def refined_above(elements: int) -> float:
@@ -218,7 +218,7 @@ class Correction:
         least = np.minimum(friction * patch.normal_force / work, other)
         rough, finer = self._doubled(patch, slip, friction, rows, solution, least, value, force_error)
         light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
-        if light.size and not self.settings.force_goal:
+        if light.size and finer is not None and not self.settings.force_goal:
             start = on_elements(patch.take(rough[light]), finer.take(light), LIGHT_FACTOR * self.settings.elements)
             solve_again(rough[light], start.shape[-1], start)
         return value, force_error
