@@ -56,7 +56,7 @@ def peak_at(ds, place):
 def test_peaks_under_kalkers_tractions_match_contact(contact_records, monkeypatch):
     """With tractions bilinear between centres of one grid, as CONTACT's were taken, peaks agree within 2 %."""
     for name in ("shares", "finer_shares"):
-        monkeypatch.setattr(models.KalkerModel, name, lambda *given: None)
+        monkeypatch.setattr(models.KalkerModel, name, lambda *given, **more: None)
     found = solve(contact_records, "kalker", accuracy=dataclasses.replace(PRESETS["standard"], elements=40))
     off = [peak_at(found, place) / peak - 1.0 for place, peak in contact_peaks(contact_records)]
     assert len(off) >= 8
