@@ -65,7 +65,7 @@ def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(pla
     for sentence in sentences(whole):
         assert sentence.text in said and sentence.text in page
     end = sentences(whole)[0].values
-    assert end["roller"] == 1e3 * float(whole.groove_depth.isel(travel=-1).max()) and end["travel"] == 9.0
+    assert end["depths"]["roller"] == 1e3 * float(whole.groove_depth.isel(travel=-1).max()) and end["travel"] == 9.0
     assert deeper_contact(whole) == 2
     assert float(state_table(whole).rows[-1][0]) == 9.0
     for draw in (profiles, course):

@@ -1,41 +1,13 @@
-"""The expected cost of a study against what its cases take."""
+"""The expected cost of a study counts friction laws; `validation.benchmarks.trade` measures it."""
 
 from __future__ import annotations
 
-import time
-
 import pytest
 
-import trackroller as tr
 from trackroller.study.cost import rate, study_rate
 from trackroller.study.file.load import parse_study
 
-OUTPUTS = ("forces", "contact", "peak_stress", "life")
 FALLING = {"kind": "exponential", "speed": 200.0, "lowest": 0.4}
-# rollers that slip (0.10), nearly slip (0.12) and roll
-FRICTIONS = (0.1, 0.12, 0.16, 0.18, 0.2, 0.22, 0.24, 0.26, 0.28, 0.3)
-
-
-def _seconds(cases: list[tr.Case], contact_model: str) -> float:
-    """Return the processor time of a case, the least of two runs."""
-    spent = []
-    for _ in range(3):  # the first run loads compiled code
-        start = time.process_time()
-        tr.solve(cases, OUTPUTS, contact_model=contact_model)
-        spent.append((time.process_time() - start) / len(cases))
-    return min(spent[1:])
-
-
-def test_falling_friction_takes_as_long_as_expected():
-    """The expected cost of kalker over that of sliding is met within a factor of 3; it was 10 times too small once."""
-    one = {model: {"contact_model": model, "outputs": OUTPUTS} for model in ("sliding", "kalker")}
-    plain, falling = (
-        [tr.Case(axial_force=force) for force in range(40)],
-        [tr.Case(friction_coefficient=mu, friction_law=FALLING) for mu in FRICTIONS],
-    )
-    expected = rate(one["sliding"]) / rate(one["kalker"], FALLING)
-    taken = _seconds(falling, "kalker") / _seconds(plain, "sliding")
-    assert expected / 3 < taken < 3 * expected
 
 
 @pytest.mark.parametrize("contact_model", ["sliding", "fastsim", "kalker"])
