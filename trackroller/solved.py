@@ -204,12 +204,12 @@ def run(
     """
     checked = study if isinstance(study, Study) else load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
-        told: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
+        shown: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
         if results is None and not decides(checked):
             return Solved(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
         # the cases of a study that decides follow from stored results
         with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
-            return open_study(run_any(checked, place, **told).folder.root)
+            return open_study(run_any(checked, place, **shown).folder.root)
 
 
 def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = None) -> Solved:

@@ -66,9 +66,10 @@ def _of_indices(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarra
     """Return an output (n,) and the half widths of its headline indices; those of mu* over the output's range."""
     design, given = results.design, results.config.analysis
     y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
-    found = replicated(y, design, results.config.samples)
+    estimates = replicated(y, design, results.config.samples)
     scale = float(np.nanmax(y) - np.nanmin(y)) if design.method == "morris" and not constant(y) else 1.0
-    return y, np.concatenate([found[f"{index}_high"] - found[index] for index in HEADLINES[design.method]]) / scale
+    widths = [estimates[f"{index}_high"] - estimates[index] for index in HEADLINES[design.method]]
+    return y, np.concatenate(widths) / scale
 
 
 def _of_points(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarray]:

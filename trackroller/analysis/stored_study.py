@@ -110,13 +110,13 @@ def _gathered(path: Path) -> xr.Dataset | None:
 def _read_unfinished(folder: StudyFolder) -> StudyResults:
     """Return the solved cases of a study that is not gathered yet."""
     study = study_of_folder(folder)
-    design, found, place = locate(study, folder)
+    design, inventory, place = locate(study, folder)
     rows = np.flatnonzero(place >= 0)
     if len(rows) in (0, len(place)):
         state = "every case is solved, but not gathered into study.nc" if len(rows) else "no case is solved yet"
         raise InputError("study", str(folder.root), f"a study with results; {state}", "Run the study to its end first.")
     drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
-    data = labelled(study, drawn, cases, *collect(found, place[rows], folder.root)).assign_coords(case=rows)
+    data = labelled(study, drawn, cases, *collect(inventory, place[rows], folder.root)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
     only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
     notice = (

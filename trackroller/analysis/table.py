@@ -166,10 +166,10 @@ class StudyView:
         if table is None and name in self._levels:
             return list(self._levels[name])
         values = (self.table if table is None else table)[name].dropna().unique()
-        found = sorted(values.tolist()) if self.numeric(name) else list(values)
+        levels = sorted(values.tolist()) if self.numeric(name) else list(values)
         if table is None:  # a page asks a dozen times for the levels of each factor
-            self._levels[name] = found
-        return list(found)
+            self._levels[name] = levels
+        return list(levels)
 
     @cached_property
     def _levels(self) -> dict[str, list[Any]]:

@@ -137,13 +137,13 @@ def at_points(hits: np.ndarray, design: SampledDesign) -> Found:
     Probability, lower and upper bound [1], each of shape (points, m).
     """
     sizes, sample = np.array([rows.stop - rows.start for rows in design.points]), inner_sample(design)
-    found = np.empty((3, len(sizes), hits.shape[1]))
+    bounds = np.empty((3, len(sizes), hits.shape[1]))
     for size in np.unique(sizes):
         own = np.flatnonzero(sizes == size)
         cube = np.stack([hits[design.points[point]] for point in own], axis=1)
         parts = probabilities(cube.reshape(size, -1), *_first(sample, size))
-        found[:, own] = [part.reshape(len(own), -1) for part in parts]
-    return found[0], found[1], found[2]
+        bounds[:, own] = [part.reshape(len(own), -1) for part in parts]
+    return bounds[0], bounds[1], bounds[2]
 
 
 def _at_level(hits: np.ndarray, design: SampledDesign, level: Level, whole: Found) -> Found:

@@ -129,7 +129,7 @@ def _patch(patch: Patch) -> dict[str, Any]:
 
 def _sections(ds: xr.Dataset) -> list[dict[str, Any]]:
     """Return the von Mises stress below each contact of each body, in the plane across the track through the peak."""
-    found = []
+    fields = []
     for contact in ds["contact"].values.tolist():
         for body in ds["body"].values.tolist():
             own = ds.sel(contact=contact, body=body)
@@ -137,8 +137,8 @@ def _sections(ds: xr.Dataset) -> list[dict[str, Any]]:
             if np.isfinite(stress).any():
                 ends = {"x": [float(x[0]), float(x[-1])], "z": [float(z[0]), float(z[-1])], "size": [len(x), len(z)]}
                 field = _field(stress, "von Mises stress", "MPa")
-                found.append({"contact": contact, "body": body, **ends, "field": field})
-    return found
+                fields.append({"contact": contact, "body": body, **ends, "field": field})
+    return fields
 
 
 def sheet(values: Values) -> str:

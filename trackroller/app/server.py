@@ -129,8 +129,8 @@ class _Handler(tornado.web.RequestHandler):
         if isinstance(exc, InputError):
             errors = [{"field": e.field, "message": str(e)} for e in exc.errors]
         elif isinstance(exc, pydantic.ValidationError):
-            found = exc.errors()[0]
-            errors[0]["message"] = f"The request is wrong: {': '.join(map(str, (*found['loc'], found['msg'])))}."
+            first = exc.errors()[0]
+            errors[0]["message"] = f"The request is wrong: {': '.join(map(str, (*first['loc'], first['msg'])))}."
         elif not isinstance(exc, (tornado.web.HTTPError, WorkError)):
             errors[0]["message"] = f"Internal error, {type(exc).__name__}. The terminal shows more."
         self.finish({"errors": errors})
@@ -163,9 +163,9 @@ class _Answer(_Handler):
         if len(self.request.body) > LARGEST:
             raise Refused(413, f"The request is larger than {LARGEST // 1000} kB.")
         body = MAPPING.validate_json(self.request.body)
-        found = await self.answered(name, str(body.pop("page", "")), **body)
+        answer = await self.answered(name, str(body.pop("page", "")), **body)
         self.set_header("Content-Type", "application/json")
-        self.finish(json.dumps(plain(found), allow_nan=False).replace("<", "\\u003c"))
+        self.finish(json.dumps(plain(answer), allow_nan=False).replace("<", "\\u003c"))
 
 
 class _Sheet(_Handler):

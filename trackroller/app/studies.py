@@ -163,11 +163,11 @@ def _starts(name: str) -> bool:
 
 def listing() -> list[dict[str, Any]]:
     """Return the studies of the folder, the newest first."""
-    found = []
+    entries = []
     for path in RESULTS.glob("*"):
         with contextlib.suppress(InputError):  # a link, or a folder of something else
-            found.append(_entry(path.name))
-    return sorted((e for e in found if e is not None), key=lambda e: str(e["date"]), reverse=True)
+            entries.append(_entry(path.name))
+    return sorted((e for e in entries if e is not None), key=lambda e: str(e["date"]), reverse=True)
 
 
 def _entry(name: str) -> dict[str, Any] | None:

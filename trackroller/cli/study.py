@@ -120,10 +120,10 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     int
         The exit code: 1 if a file of the study is damaged or was altered.
     """
-    found = find_study(study, results)
-    status = status_of(found, results)
+    path = find_study(study, results)
+    status = status_of(path, results)
     print(
-        f"study     {found.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
+        f"study     {path.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
         f"{status.failed} failed"
     )
     _print_left(status)
@@ -142,7 +142,7 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        folder, drawn = draw_solved(study_folder(found.name, results))
+        folder, drawn = draw_solved(study_folder(path.name, results))
         print(f"figures   {len(drawn)} in {folder}")
     return int(bool(status.corrupt))
 

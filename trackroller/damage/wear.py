@@ -240,8 +240,8 @@ def check(given: dict[str, Any]) -> None:
     """Refuse a table whose lists differ in length, or whose work rates do not rise."""
     lengths = {key: len(values) for key, values in given.items()}
     if len(set(lengths.values())) > 1 or min(lengths.values()) < 2:
-        told = ", ".join(f"{key} {length}" for key, length in lengths.items())
-        raise InputError("wear_table", f"numbers of entries: {told}", "lists of equal length, at least 2")
+        listed = ", ".join(f"{key} {length}" for key, length in lengths.items())
+        raise InputError("wear_table", f"numbers of entries: {listed}", "lists of equal length, at least 2")
     if np.any(np.diff(given["work_rate"]) <= 0.0):
         raise InputError("wear_table.work_rate", given["work_rate"], "work rates that rise")
 

@@ -43,13 +43,13 @@ def lower_bounds(patches: np.ndarray, poisson_ratio: np.ndarray, fields: np.ndar
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
         some = patches[group], fields_of(fields, group), ratios[group], lengths(patches[group])
-        rule, found = unit_rule(int(_ORDER * factor)), np.empty((group.size, 2))
+        rule, largest = unit_rule(int(_ORDER * factor)), np.empty((group.size, 2))
 
-        def work(first: int, last: int, some=some, rule=rule, found=found) -> None:
-            _largest(first, last, some, rule, Room.empty(), found)
+        def work(first: int, last: int, some=some, rule=rule, largest=largest) -> None:
+            _largest(first, last, some, rule, Room.empty(), largest)
 
         share_rows(work, group.size, 2, 64)
-        out[group] = found
+        out[group] = largest
     return out
 
 

@@ -296,13 +296,13 @@ def find_peaks(
 
 def _found(patches: Patches, rules: Rules, effort: Effort) -> Peak:
     """Return the peaks of patches with the same rules, in normalised coordinates."""
-    found = np.zeros((len(patches.rows), 2, 6))
+    peaks = np.zeros((len(patches.rows), 2, 6))
 
     def work(first: int, last: int) -> None:
-        _search_rows(first, last, patches, rules, effort, Room.empty(), found)
+        _search_rows(first, last, patches, rules, effort, Room.empty(), peaks)
 
-    share_rows(work, len(found), 2, 64)
-    return Peak(*np.moveaxis(found, 2, 0))
+    share_rows(work, len(peaks), 2, 64)
+    return Peak(*np.moveaxis(peaks, 2, 0))
 
 
 def _hidden_error(patches: np.ndarray, settings: PeakSettings, stress: np.ndarray, slides: bool) -> np.ndarray:

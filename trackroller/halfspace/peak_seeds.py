@@ -166,15 +166,15 @@ def best_seeds(points, values, count, apart):
 
     The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
     """
-    left, chosen, found = values.copy(), np.empty(count, np.int64), 0
+    left, chosen, number = values.copy(), np.empty(count, np.int64), 0
     enough = SEED_WORTH * values.max()
-    while found < count:
+    while number < count:
         best = left.argmax()
         if not left[best] > enough:
             break
-        chosen[found] = best
-        found += 1
+        chosen[number] = best
+        number += 1
         for k in range(left.size):
             if ((points[k] - points[best]) ** 2).sum() < apart * apart:
                 left[k] = 0.0
-    return chosen[:found]
+    return chosen[:number]

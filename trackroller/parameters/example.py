@@ -60,8 +60,8 @@ def not_given_text(values: Mapping[str, Any]) -> str:
         (head, ", ".join(with_unit(name, value) for name, value in values.items() if (name in OF_LIMITS) is other))
         for head, other in (("taken from the paper's example", False), ("default", True))
     ]
-    told = "; ".join(f"{head}: {text}" for head, text in parts if text)
-    return f"not given, {told}" if told else ""
+    notes = "; ".join(f"{head}: {text}" for head, text in parts if text)
+    return f"not given, {notes}" if notes else ""
 
 
 def drive_question(values: Mapping[str, Any], named: Iterable[str]) -> str:

@@ -64,21 +64,21 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     list of str
         Sentences; empty if nothing is unusual.
     """
-    told = []
+    sentences = []
     for name, usual in USUAL.items():
         given = np.ravel(values.get(name, math.nan)).tolist()  # a friction coefficient may be a word
-        found = [float(v) for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0]
+        numbers = [float(v) for v in given if isinstance(v, (int, float)) and math.isfinite(v) and v != 0.0]
         places = (max, *(() if name in FROM_ZERO else (min,)))
-        ends = {place(found, key=abs) for place in places} if found else ()
-        told += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
+        ends = {place(numbers, key=abs) for place in places} if numbers else ()
+        sentences += [text for number in ends if (text := _unusual(name, number, PARAMETERS[name].unit, usual, ""))]
     for material in {m.name: m for m in materials}.values():
         for name, usual in OF_FAMILY.get(material.family, {}).items():
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
-            told += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
+            sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
     for name in ("guide_profile", "roller_profile"):
-        told += [_rough(name, profile) for profile in _profiles(values.get(name))]
-    return [text for text in told if text]
+        sentences += [_rough(name, profile) for profile in _profiles(values.get(name))]
+    return [text for text in sentences if text]
 
 
 def doubts_of_case(case: Case, database: MaterialDatabase) -> list[str]:

@@ -46,10 +46,10 @@ class _Course:
     def at(self, travel: float) -> tuple[Groove, str]:
         """Return the state at a travel [km], and why the march ends before it."""
         while not self._end and (not self._states or self._states[-1].travel < travel):
-            found = next(self._march, None)
-            if found is None:  # nothing wears
+            step = next(self._march, None)
+            if step is None:  # nothing wears
                 return replace(self.wearing.start, travel=travel), ""
-            state, results, _, self._end = found
+            state, results, _, self._end = step
             self._states.append(state if self.wearing.end(results) else self.wearing.turned(state, results))
         later = next((i for i, state in enumerate(self._states) if state.travel >= travel), None)
         if later is None:

@@ -78,14 +78,14 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
 
     folder = study_folder(study.name, results)
     study = as_planned(study, folder)
-    design, found, place = locate(study, folder)
+    design, inventory, place = locate(study, folder)
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
     if place[number] < 0:
         raise WorkError("this case is not solved by this version of the program: run the study first.")
     options, group = options_of_cases(design, {})
-    state = found.states.isel(case=place[[number]])
-    before = chunks.read(found.paths[state["file"].item()]).isel(case=state["row"].values)
+    state = inventory.states.isel(case=place[[number]])
+    before = chunks.read(inventory.paths[state["file"].item()]).isel(case=state["row"].values)
     row = design.drop_vars(list(design.coords)).drop_attrs().isel(case=[number])
     solved = solve(row, database=study.materials, **options[group[number]])
     again = chunks.from_results(solved, state["case"].values)

@@ -118,25 +118,25 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
     """
     folder = study_folder(study.name, results)
     study = as_planned(study, folder)
-    _, found, place = locate(study, folder)
+    _, inventory, place = locate(study, folder)
     solved = np.flatnonzero(place >= 0)
-    states = found.states.isel(case=place[solved])
+    states = inventory.states.isel(case=place[solved])
     bad = states["regime"].values == FAILED
-    failed, seconds = solved[bad], found.states.attrs["seconds"]
+    failed, seconds = solved[bad], inventory.states.attrs["seconds"]
     status = Status(
         total=len(place),
         done=len(solved),
         failed=len(failed),
         regimes={name: int((states["regime"] == code).sum()) for code, name in enumerate(REGIMES)},
         by_reason=dict(Counter(states["reason"].values[bad].tolist()).most_common()),
-        speed=found.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
+        speed=inventory.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
         outdated=folder.of_another_solver,
-        unused=unused_cases(study, folder, found, place),
+        unused=unused_cases(study, folder, inventory, place),
         upcoming=_upcoming(folder),
         corrupt=[
-            *found.corrupt.values(),
+            *inventory.corrupt.values(),
             *(f"{path}: it is gone" for path in folder.lost_files()),
             *filter(None, map(altered, (folder.design, folder.gathered))),
         ],

@@ -50,10 +50,10 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     caption += f" {'; '.join(f'{i}: {name}' for i, name in enumerate(names, 1))}." if numbered else ""
     what = "its worst condition, among designs that are valid in as many"
     what = "nine of ten sampled conditions" if designs.drawn else what
-    found = f"{names[0]} lasts longest in {what}."
+    finding = f"{names[0]} lasts longest in {what}."
     if designs.drawn and not table["b10"].max() > 0:
-        found = "For each design one in ten or more of the sampled conditions are not valid."
-    return figure, style.FigureInfo("designs", caption, found)
+        finding = "For each design one in ten or more of the sampled conditions are not valid."
+    return figure, style.FigureInfo("designs", caption, finding)
 
 
 def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -> None:

@@ -11,15 +11,15 @@ from trackroller.report.words.growth import quantity_words
 
 def looks_table(view: StudyView) -> Table | None:
     """List the widest interval of each output at each look; None for a study without the key `until`."""
-    found = looks_of(view.solved) if view.results is not None else None
-    if found is None:
+    growth = looks_of(view.solved) if view.results is not None else None
+    if growth is None:
         return None
     rows = []
-    for one in found["looks"]:
+    for one in growth["looks"]:
         row = {"Cases": one["cases"]}
         for name, width in one["half_width"].items():
             text = "–" if width is None else f"± {rounded(width, 2)} ({one['at'][name]})"
             row[capital(quantity_words(name, view.solved.design.method))] = text
         rows.append(row)
-    note = f"Widest 95 % interval at each look and where; wanted: ± {found['half_width']:g}."
-    return Table.of("looks", "Intervals as the sample grew", rows, f"{note} Stopped: {found['stopped']}.")
+    note = f"Widest 95 % interval at each look and where; wanted: ± {growth['half_width']:g}."
+    return Table.of("looks", "Intervals as the sample grew", rows, f"{note} Stopped: {growth['stopped']}.")

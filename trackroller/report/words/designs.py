@@ -29,8 +29,8 @@ def condition_words(designs: Designs, case: int) -> str:
     table, goal = designs.view.table, designs.view.column(designs.goal[0])
     own = designs.usable & (designs.place == designs.place[case])
     alike = own & (goal == goal[case])
-    told = [n for n in designs.conditions if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
-    return ", ".join(setting(name, table[name].iloc[case]) for name in told or designs.conditions)
+    varied = [n for n in designs.conditions if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
+    return ", ".join(setting(name, table[name].iloc[case]) for name in varied or designs.conditions)
 
 
 def alone(designs: Designs) -> bool:

@@ -30,13 +30,13 @@ def quantity_words(name: str, design: str) -> str:
 
 def grown(view: StudyView) -> Sentence | None:
     """Say what a growing sample was to reach, why it stopped, and what it reached; None for other studies."""
-    found = looks_of(view.solved) if view.results is not None else None
-    if found is None:
+    growth = looks_of(view.solved) if view.results is not None else None
+    if growth is None:
         return None
-    last, design = found["looks"][-1], view.solved.design.method
+    last, design = growth["looks"][-1], view.solved.design.method
     widths = [(quantity_words(n, design), width, last["at"][n]) for n, width in last["half_width"].items()]
     sens = view.analysis
     points = samples_of_points(sens) if sens is not None and "point_samples" in sens else ""
-    facts = {name: found[name] for name in ("half_width", "stopped", "replicates")}
+    facts = {name: growth[name] for name in ("half_width", "stopped", "replicates")}
     values = {"what": HEADLINE_WORDS[design], "cases": last["cases"], "widths": widths, "points": points}
     return say("growth", "grown", **values, **facts)

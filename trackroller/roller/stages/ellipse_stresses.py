@@ -188,10 +188,10 @@ class EllipseStresses(PatchStresses):
             self._search_doubled(search, peak, goal, doubt > goal, goal < 0.0)
             return peak
         peak.error[:] *= SAFETY
-        goal, told = peak_goal(results.scene.table, self.options)[results.rows[flat]], peak.error.max(axis=1)
+        goal, estimate = peak_goal(results.scene.table, self.options)[results.rows[flat]], peak.error.max(axis=1)
         small = self._small(flat)
-        hidden = small & ((np.abs(results.slip.sine[flat]) > STEEP) | (goal <= STRICT)) & (HIDES * told > goal)
-        doubt = ~hidden & (told > FADES[0] * goal)
+        hidden = small & ((np.abs(results.slip.sine[flat]) > STEEP) | (goal <= STRICT)) & (HIDES * estimate > goal)
+        doubt = ~hidden & (estimate > FADES[0] * goal)
         self._search_doubled(search, peak, goal, doubt, small)
         hidden |= small & (peak.error.max(axis=1) > goal)
         self._search_windows(search, peak, goal, hidden)

@@ -56,12 +56,12 @@ class Scene:
 
     def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool) -> Resultants:
         """Return the resultants on the roller; this is the contact law of the equilibrium."""
-        found = self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
+        resultants = self.model.law(patch, self.kinematics(slip, rows), friction, rows, fine)
         if self.inclined is None:
-            return found
+            return resultants
         # the pressure of a worn patch has a lateral part
         lateral = patch.normal_force * self.inclined[rows, (slip.sine < 0).astype(int)]
-        return replace(found, lateral_force=found.lateral_force + lateral)
+        return replace(resultants, lateral_force=resultants.lateral_force + lateral)
 
 
 @dataclass

@@ -65,18 +65,18 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
     study, folder = plan.study, plan.folder
     if not is_sealed(folder.design):
         write_design(plan)
-    design, found = plan.cases.design, take_inventory(folder)
-    place = found.find(plan.cases.fingerprints)
+    design, inventory = plan.cases.design, take_inventory(folder)
+    place = inventory.find(plan.cases.fingerprints)
     count = len(place)
     if missing := int((place < 0).sum()):
-        damaged = "".join(f" Corrupt: {why}." for why in found.corrupt.values())
+        damaged = "".join(f" Corrupt: {why}." for why in inventory.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
-    last = max(path.stat().st_mtime for path in found.paths)  # so that equal results are equal files
+    last = max(path.stat().st_mtime for path in inventory.paths)  # so that equal results are equal files
     date = datetime.datetime.fromtimestamp(last, datetime.UTC).isoformat(timespec="seconds")
 
     def save(beside: Path) -> None:
-        results = labelled(study, study.drawn, design, *collect(found, place, folder.root))
+        results = labelled(study, study.drawn, design, *collect(inventory, place, folder.root))
         results.assign_attrs({"date_created": date} | dict(attrs or {})).to_netcdf(beside, engine="netcdf4")
 
     before = recorded(folder.gathered) or {}

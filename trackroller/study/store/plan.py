@@ -82,8 +82,8 @@ def study_folder(study_name: str, results: Path | str = "results") -> StudyFolde
 
 def locate(study: Study, folder: StudyFolder) -> tuple[xr.Dataset, Inventory, np.ndarray]:
     """Return a study's design, its solved cases, and the index of each case of the design there; -1 if not solved."""
-    cases, found = Cases(study), take_inventory(folder)
-    return cases.design, found, found.find(cases.fingerprints)
+    cases, inventory = Cases(study), take_inventory(folder)
+    return cases.design, inventory, inventory.find(cases.fingerprints)
 
 
 def chunk_size(study: Study, cases: int) -> int:

@@ -75,18 +75,20 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     study = with_history(study, folder)  # before an altered study.nc, which also has the history, is removed
     _remove_altered(folder, tell)
-    found = _sound_inventory(folder, tell)
+    inventory = _sound_inventory(folder, tell)
     if rerun_failed:
-        tell(f"{forget_failed(folder, found)} failed cases are solved again")
-        found = take_inventory(folder)
-    plan, damaged = sound_plan(study, folder, found)
+        tell(f"{forget_failed(folder, inventory)} failed cases are solved again")
+        inventory = take_inventory(folder)
+    plan, damaged = sound_plan(study, folder, inventory)
     for line in damaged:
         tell(line)
     if plan is None:
         if study.config.grown_from:
             tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
-        plan = new_plan(study, folder, found)
-        if found.paths and (unused := unused_cases(study, folder, found, found.find(plan.cases.fingerprints))):
+        plan = new_plan(study, folder, inventory)
+        if inventory.paths and (
+            unused := unused_cases(study, folder, inventory, inventory.find(plan.cases.fingerprints))
+        ):
             tell(unused)
         discard(folder.design)
     _keep(plan)
@@ -105,12 +107,12 @@ def _remove_altered(folder: StudyFolder, tell: Tell) -> None:
 
 def _sound_inventory(folder: StudyFolder, tell: Tell) -> Inventory:
     """Return the solved cases after damaged and temporary files are removed."""
-    found = take_inventory(folder)
-    for path, why in found.corrupt.items():
+    inventory = take_inventory(folder)
+    for path, why in inventory.corrupt.items():
         tell(f"corrupt results, their cases are solved again: {why}")
         path.unlink(missing_ok=True)
     sweep(folder)
-    return found
+    return inventory
 
 
 def _keep(plan: Plan) -> None:
