@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import functools
+import itertools
 import json
 import math
 from dataclasses import asdict
@@ -129,16 +130,14 @@ def _patch(patch: Patch) -> dict[str, Any]:
 
 def _sections(ds: xr.Dataset) -> list[dict[str, Any]]:
     """Return the von Mises stress below each contact of each body, in the plane across the track through the peak."""
-    fields = []
-    for contact in ds["contact"].values.tolist():
-        for body in ds["body"].values.tolist():
-            own = ds.sel(contact=contact, body=body)
-            x, z, stress = (own[name].values for name in ("xz_x", "xz_z", "von_mises_xz"))
-            if np.isfinite(stress).any():
-                ends = {"x": [float(x[0]), float(x[-1])], "z": [float(z[0]), float(z[-1])], "size": [len(x), len(z)]}
-                field = _field(stress, "von Mises stress", "MPa")
-                fields.append({"contact": contact, "body": body, **ends, "field": field})
-    return fields
+    maps = []
+    for contact, body in itertools.product(ds["contact"].values.tolist(), ds["body"].values.tolist()):
+        own = ds.sel(contact=contact, body=body)
+        x, z, stress = (own[name].values for name in ("xz_x", "xz_z", "von_mises_xz"))
+        if np.isfinite(stress).any():
+            ends = {"x": [float(x[0]), float(x[-1])], "z": [float(z[0]), float(z[-1])], "size": [len(x), len(z)]}
+            maps.append({"contact": contact, "body": body, **ends, "field": _field(stress, "von Mises stress", "MPa")})
+    return maps
 
 
 def sheet(values: Values) -> str:
