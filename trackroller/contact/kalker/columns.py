@@ -13,10 +13,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from trackroller.contact.kalker.loops import ACROSS, ALONG, NORMAL_X, NORMAL_Y
 from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.lanes import LANES, multiply, subtract_multiple
 
-ALONG, ACROSS, NORMAL_X, NORMAL_Y = range(4)  # see `loops.jacobian`
 COLUMN, DIRECTION, FIRST, ROWS = range(4)  # of a system
 
 
@@ -36,7 +36,7 @@ class Systems(NamedTuple):
 
 @compiled
 def systems_for(ny, nx):
-    """Return room for the systems of ny x nx elements."""
+    """Return empty arrays that `factorise` fills with the systems of ny x nx elements."""
     groups = -(-2 * nx // LANES)
     return Systems(
         np.zeros((groups * LANES, 4), np.int64),

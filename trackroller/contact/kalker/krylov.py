@@ -13,7 +13,7 @@ import numpy as np
 
 from trackroller.contact.influence import convolve
 from trackroller.contact.kalker.columns import Systems, apply_inverse, factorise
-from trackroller.contact.kalker.loops import reals, row_means
+from trackroller.contact.kalker.loops import ACROSS, ALONG, NORMAL_X, NORMAL_Y, XX, XY, YX, YY, reals, row_means
 from trackroller.numerics.compiled import compiled, fast
 
 
@@ -107,12 +107,13 @@ def arnoldi(direction, product, mean, derivative, basis, k, triangle):
             bx, by = product[i, j, 0], product[i, j, 1]
             dx, dy = direction[i, j, 0], direction[i, j, 1]
             x, y = dx - rho * bx, dy - rho * by
-            c, s = projection[2, i, j], projection[3, i, j]
-            along, across = projection[0, i, j] * (c * x + s * y), projection[1, i, j] * (c * y - s * x)
+            c, s = projection[NORMAL_X, i, j], projection[NORMAL_Y, i, j]
+            along = projection[ALONG, i, j] * (c * x + s * y)
+            across = projection[ACROSS, i, j] * (c * y - s * x)
             mx, my = mean[i, j, 0], mean[i, j, 1]
             place = 2 * (i * nx + j)
-            v[place] = dx - c * along + s * across - turn[0, i, j] * mx - turn[1, i, j] * my
-            v[place + 1] = dy - s * along - c * across - turn[2, i, j] * mx - turn[3, i, j] * my
+            v[place] = dx - c * along + s * across - turn[XX, i, j] * mx - turn[XY, i, j] * my
+            v[place + 1] = dy - s * along - c * across - turn[YX, i, j] * mx - turn[YY, i, j] * my
     for i in range(k + 1):
         h = dot(basis[i], v)
         hessenberg[i, k] = h

@@ -9,6 +9,9 @@ import numpy as np
 from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import polyline
 
+ALONG, ACROSS, NORMAL_X, NORMAL_Y = range(4)  # of the derivative that `jacobian` writes
+XX, XY, YX, YY = range(4)  # of the `turn` that `jacobian` writes
+
 
 @compiled
 def reals(field):
@@ -68,9 +71,9 @@ def residual(traction, slip, bound, rho, out):
 def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
     """Write the derivative of P_g at z = tau - rho s into `derivative` (4, ny, nx).
 
-    It is 1 or 0 along z and a number across z, in this order; the direction of z in x and y follows.
-    Write n (dg/d|m|) m/|m| of the sliding elements into `turn` (4, ny, nx), order xx, xy, yx, yy. Here n is the
-    direction of z, and m is the `row_means` of the slip.
+    `ALONG` and `ACROSS` hold the derivatives along z and across z: 1 and 1 where an element sticks, 0 and g/|z| where
+    it slides, 0 and 0 without load. `NORMAL_X` and `NORMAL_Y` hold the direction n of z.
+    Write n (dg/d|m|) m/|m| of the sliding elements into `turn` (4, ny, nx). Here m is the `row_means` of the slip.
     """
     for i in range(bound.shape[0]):
         for j in range(bound.shape[1]):
@@ -80,16 +83,17 @@ def jacobian(traction, slip, mean, bound, slope, rho, derivative, turn):
             square = zx * zx + zy * zy
             steep = 0.0
             z = math.sqrt(square)
-            derivative[2, i, j], derivative[3, i, j] = (zx / z, zy / z) if z > 0.0 else (1.0, 0.0)
+            c, s = (zx / z, zy / z) if z > 0.0 else (1.0, 0.0)
+            derivative[NORMAL_X, i, j], derivative[NORMAL_Y, i, j] = c, s
             if square <= g * g:
-                derivative[0, i, j] = derivative[1, i, j] = 1.0 if g > 0.0 else 0.0
+                derivative[ALONG, i, j] = derivative[ACROSS, i, j] = 1.0 if g > 0.0 else 0.0
             else:
-                derivative[0, i, j], derivative[1, i, j] = 0.0, g / z
+                derivative[ALONG, i, j], derivative[ACROSS, i, j] = 0.0, g / z
                 sx, sy = mean[i, j, 0], mean[i, j, 1]
                 speed = math.sqrt(sx * sx + sy * sy)
                 steep = slope[i, j] / (z * speed) if speed > 0.0 else 0.0
-            turn[0, i, j], turn[1, i, j] = steep * zx * sx, steep * zx * sy
-            turn[2, i, j], turn[3, i, j] = steep * zy * sx, steep * zy * sy
+            turn[XX, i, j], turn[XY, i, j] = steep * zx * sx, steep * zx * sy
+            turn[YX, i, j], turn[YY, i, j] = steep * zy * sx, steep * zy * sy
 
 
 @compiled
@@ -117,6 +121,6 @@ def hold(held, slip, rho, value, derivative, turn):
         for j in range(held.shape[1]):
             if held[i, j]:
                 value[i, j, 0], value[i, j, 1] = rho * slip[i, j, 0], rho * slip[i, j, 1]
-                derivative[0, i, j] = derivative[1, i, j] = 1.0
+                derivative[ALONG, i, j] = derivative[ACROSS, i, j] = 1.0
                 for k in range(4):
                     turn[k, i, j] = 0.0
