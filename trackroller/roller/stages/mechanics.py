@@ -112,17 +112,17 @@ def force_error(results: Results, options: Options) -> None:
     measured = options.expected_errors(scene.model.name, not scene.loads.falling).get("friction_force")
     if measured is not None:
         error = np.where(np.isnan(error), max(measured.bound, measured.p99), error)
+    known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
     capacity = scene.loads.friction[:, None] * v["normal_force"]
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
         of_load = _load_error(results, error * scene.loads.friction[:, None])
-        forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
-        work = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
-        largest = np.fmax(error * work, LOAD_SHARE * of_load)
+        if options.settings.force_goal:
+            forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
+            work = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
+            largest = np.fmax(error * work, LOAD_SHARE * of_load)
+            results.tell(np.where(known[:, None], 0.0, largest / options.settings.force_goal))
         error = error + np.sqrt(used) * of_load
-    known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
-    if options.settings.force_goal:
-        results.tell(np.where(known[:, None], 0.0, largest / options.settings.force_goal))
     for name, estimate in (("force_error_estimate", error), ("normal_force_error_estimate", of_load)):
         estimate = np.where(known[:, None], 0.0, estimate)
         v[name] = np.where(np.isfinite(v["lateral_force"]), estimate, np.nan)
