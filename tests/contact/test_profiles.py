@@ -1,4 +1,4 @@
-"""Drawn and measured cross-sections: accepted inputs, resulting shapes, ends of the material."""
+"""Test which drawn and measured cross-sections are accepted, their shapes, and where their material ends."""
 
 import json
 import math
@@ -9,7 +9,16 @@ import xarray as xr
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.contact.cross_sections import arcs, drawn, noise_of, parabola, smoothed, with_edges, worn
+from trackroller.contact.cross_sections import (
+    CONTACT_SLOPE,
+    arcs,
+    drawn,
+    noise_of,
+    parabola,
+    smoothed,
+    with_edges,
+    worn,
+)
 from trackroller.contact.drawn_profiles import cross_section, gap, treats_sides_alike
 from trackroller.contact.normal.wearing import on_cells
 from trackroller.contact.profiles import canonical
@@ -57,7 +66,7 @@ def test_arcs_follow_one_another_tangentially():
 
 
 def test_points_of_a_circle_give_back_the_circle():
-    """Points of the whole cross-section, and points in a frame turned by the contact angle, give the same circle."""
+    """Points of the whole cross-section give the same circle as points in the frame of the contact."""
     u = np.linspace(-1.5, 1.0, 11)
     exact = np.sqrt(36 - u * u) - 6
     whole = cross_section(text({"points": circle_points(6.0)}), "guide_profile", 6.0, ALPHA, 6.0, 1)
@@ -89,7 +98,7 @@ def test_a_drawn_groove_leaves_the_gap_of_its_arcs_on_both_sides():
 
 
 def test_the_curvature_in_the_rolling_direction_is_that_of_bodies_of_revolution():
-    """k_y(x) against the distance of the surfaces of revolution, by finite differences."""
+    """Finite differences of the distance between both surfaces of revolution give k_y(x)."""
     g = gap("", "", 6.0, -7.0, ALPHA, 16.55, math.inf, 1)
     for x in (-0.5, 0.0, 0.7):
         height = -float(g.roller.height(np.array(x)))  # of the roller's flank over the tangent plane, along the normal
@@ -103,7 +112,7 @@ def test_the_curvature_in_the_rolling_direction_is_that_of_bodies_of_revolution(
 @pytest.mark.parametrize("n", [61, 91, 361])
 @pytest.mark.long
 def test_automatic_smoothing_leaves_the_curvature_of_a_circle(n):
-    """1 um of noise on points of a circle: wrong by less than 35 % of 1/r anywhere near the contact, in 32 draws."""
+    """Noise of 1 um on points of a circle changes the curvature near the contact by less than 35 %, in 32 draws."""
     u, near = np.linspace(-4.5, 4.5, n), np.linspace(-1.0, 1.0, 81)
     for seed in range(32):
         measured = -u * u / 12 + np.random.default_rng(seed).normal(0.0, 1e-3, n)
@@ -199,7 +208,7 @@ def test_a_curve_without_the_contacts_inclination_is_refused():
 
 
 def test_files_are_read_into_points(tmp_path, monkeypatch):
-    """Commas, semicolons or blanks, headings and remarks; the case keeps the numbers, not the name."""
+    """Commas, semicolons, tabs or blanks may part the columns; the case keeps the numbers, not the name of the file."""
     monkeypatch.chdir(tmp_path)
     rows = circle_points(6.0, n=9)
     for separator in (",", ";", "\t", "  "):
@@ -214,7 +223,7 @@ def test_files_are_read_into_points(tmp_path, monkeypatch):
 
 
 def test_steep_flanks_take_no_part_and_interlocking_shapes_are_refused():
-    """A groove that closes on the guide far from the contact does not carry; one that closes on it beside it cannot."""
+    """A groove may close on the guide far from the contact; one that closes on it beside the contact is refused."""
     mixed = gap(
         text({"parabola": 6}),
         text({"arcs": [{"radius": -7, "to": 0.2}, {"radius": -6.3}]}, "roller_profile"),
@@ -234,7 +243,7 @@ def test_steep_flanks_take_no_part_and_interlocking_shapes_are_refused():
 
 @pytest.mark.parametrize("factor", [1e3, 1e-3, 1 / 25.4])
 def test_points_in_other_units_are_refused_in_both_frames(factor):
-    """Micrometres, metres, inches: the contact would lie elsewhere than the nominal geometry says, or nowhere."""
+    """Points in micrometres, metres or inches would move the contact away from its nominal place."""
     scaled = (np.array(circle_points(6.0)) * factor).tolist()
     with pytest.raises(tr.InputError, match=r"guide_profile.*mm"):
         solve_sliding(tr.Case(guide_profile={"points": scaled}), normal="halfspace", outputs="forces")
@@ -256,7 +265,7 @@ def test_heights_in_micrometres_are_refused_where_x_is_in_mm(body):
 
 @pytest.mark.parametrize("groove", [{"arc": -5.9}, {"arcs": [{"radius": -7, "to": 0.4}, {"radius": -5.5}]}])
 def test_a_groove_that_touches_far_from_the_nominal_contact_is_refused(groove):
-    """Tighter than the guide it rides on the rim; a hollow worn beside the contact is no such thing."""
+    """A groove tighter than the guide would touch the guide at its rim; a hollow worn beside the contact is allowed."""
     with pytest.raises(tr.InputError, match=r"roller_profile.*outward of the nominal contact.*lever arms"):
         solve_sliding(tr.Case(roller_profile=groove), normal="halfspace", outputs="forces")
 
@@ -297,7 +306,7 @@ def test_order_duplicates_and_gaps_are_named_by_row(tmp_path, monkeypatch):
 
 
 def test_coarse_and_uneven_points_give_the_circle():
-    """Twenty points, or unevenly spaced ones, through an exact circle: pressure within 1 %."""
+    """Twenty points, or unevenly spaced ones, on an exact circle give its pressure within 1 %."""
     x = np.sort(np.random.default_rng(1).uniform(-4.2, 4.2, 120))
     uneven = np.stack([x, np.sqrt(36 - x * x)], axis=1).tolist()
     told = [None, {"points": circle_points(6.0, n=20)}, {"points": uneven}]
@@ -308,7 +317,7 @@ def test_coarse_and_uneven_points_give_the_circle():
 
 @pytest.mark.long
 def test_a_groove_worn_hollow_carries_in_two_patches():
-    """A hollow at the nominal contact: no pressure in the middle, the load on both sides; all stages run."""
+    """A hollow at the nominal contact has no pressure in its middle and the load on both sides; all stages run."""
     hollow = [[float(u), float(-u * u / 14 + 0.02 * math.exp(-((u / 0.3) ** 2)))] for u in np.linspace(-2, 2, 201)]
     case = tr.Case(roller_profile={"points": hollow, "frame": "contact"}, motor_force=0.0)
     for model in ("sliding", "kalker"):
@@ -326,7 +335,7 @@ def test_a_groove_worn_hollow_carries_in_two_patches():
 
 
 def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
-    """However the list is cut, alone or beside others."""
+    """A case fails for the same reason alone and beside other cases."""
     from trackroller.study.solve import solve_cases
 
     guide = text({"points": circle_points(6.0, high=3.5)})
@@ -346,10 +355,13 @@ def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
 
 
 def test_a_body_ends_before_its_axis():
-    """A steep contact of a small roller: the gap beyond the roller's axis would be endless, and so would the patch."""
+    """The patch of a small roller with a steep contact ends before the roller's axis; two parabolas have no axis."""
     radius, angle = 1.6373, np.radians(75.4)
     gap_of = gap("", "", 24.29, -36.22, angle, radius, math.inf, 1)
     assert gap_of.limits[0] == pytest.approx(-0.95 * radius / np.sin(angle))
+    shapes = text({"parabola": 24.29}), text({"parabola": -36.22}, "roller_profile")
+    of_hertz = gap(*shapes, 24.29, -36.22, angle, radius, math.inf, 1)
+    assert of_hertz.limits[0] == pytest.approx(-CONTACT_SLOPE * 24.29, rel=0.01)
     case = tr.Case(
         axis_distance=7.76,
         guide_profile_radius=24.29,

@@ -266,10 +266,17 @@ class Gap:
     rolling_radius: float
     guide_curve_radius: float
 
+    @property
+    def _parabolic(self) -> bool:
+        """Say whether the problem is that of Hertz, in which the bodies have no axes of revolution."""
+        return self.guide.parabolic and self.roller.parabolic
+
     @cached_property
     def limits(self) -> tuple[float, float]:
-        """Return the first ends of the two bodies inward and outward [mm]; a body ends before its axis, too."""
+        """Return the first ends of the two bodies inward and outward [mm]; each ends before its axis, if it has one."""
         (a, b), (c, d) = self.guide.limits, self.roller.limits
+        if self._parabolic:
+            return max(a, c), min(b, d)
         sine, curve = np.sin(self.alpha) / BEFORE_AXIS, self.guide_curve_radius
         return max(a, c, -self.rolling_radius / sine), min(b, d, curve / sine if curve > 0.0 else np.inf)
 
@@ -280,7 +287,7 @@ class Gap:
     def curvature(self, x: np.ndarray) -> np.ndarray:
         """Return k_y(x) [1/mm]."""
         s, c = np.sin(self.alpha), np.cos(self.alpha)
-        if self.guide.parabolic and self.roller.parabolic:
+        if self._parabolic:
             return np.full(np.shape(x), c / self.rolling_radius + c / self.guide_curve_radius)
         # counted outward, the slopes of both flanks change their inclination to the axes
         roller = (c - s * self.roller.slope(x)) / (self.rolling_radius + x * s)

@@ -181,9 +181,9 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     block.fail(list(lost))
     ds = with_reasons(assemble(block, options, single), table, options, temperature.reasons(block) | lost)
     tell_errors(ds, table, options)
-    notes_on_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
+    checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(table, block)
-    if notes_on_limits or warm or of_mechanics(options.outputs, options.life_criterion):
+    if checks_limits or warm or of_mechanics(options.outputs, options.life_criterion):
         ds.attrs[NOTES] = "\n".join([*stages_case.notes_on_limits(table, options), *warm])
     return ds
 
