@@ -237,9 +237,9 @@ def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterab
     return InputError(kind, name, allowed, f"Did you mean '{close}'?" if close else remedy)
 
 
-def either(words: Sequence[str]) -> str:
-    """Return words as 'a, b or c'."""
-    return " or ".join(filter(None, (", ".join(words[:-1]), words[-1])))
+def listing(words: Sequence[str], last: str = "and") -> str:
+    """Join words: 'a', 'a and b', 'a, b and c'; 'none' for an empty list."""
+    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else "none"
 
 
 def check_names(kind: str, names: Iterable[object], options: Iterable[str]) -> None:

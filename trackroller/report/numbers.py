@@ -9,6 +9,7 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from typing import Any
 
+from trackroller.errors import listing
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 from trackroller.roller.duty import duty_of, years
 from trackroller.study.design.levels import NAMED, short
@@ -191,11 +192,6 @@ def times(ratio: float) -> str:
 def capital(text: str) -> str:
     """Write the first letter large, the others as they are."""
     return text[:1].upper() + text[1:]
-
-
-def listing(words: Sequence[str], last: str = "and") -> str:
-    """Join words: 'a', 'a and b', 'a, b and c'; 'none' for an empty list."""
-    return words[0] if len(words) == 1 else f"{', '.join(words[:-1])} {last} {words[-1]}" if words else "none"
 
 
 def shortened(words: Sequence[str], most: int = 4) -> str:

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from trackroller.errors import InputError, either, unknown_name
+from trackroller.errors import InputError, listing, unknown_name
 from trackroller.study.design.factors import Factor
 from trackroller.study.design.kinds import those_that_take
 
@@ -63,7 +63,7 @@ def check_design(entries: Sequence[Entry], method: str) -> None:
     """Refuse rank correlations in a design that cannot have them; the message says what to take instead."""
     having = those_that_take(KEY)
     if entries and method not in having:
-        allowed = f"design {either(having)}, not {method}"
+        allowed = f"design {listing(having, 'or')}, not {method}"
         raise InputError(KEY, [list(e) for e in entries], allowed, REFUSALS.get(method, REFUSAL))
 
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, either, raise_all, unknown_name
+from trackroller.errors import Collector, InputError, listing, raise_all, unknown_name
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.accuracy import accuracy_settings
@@ -124,7 +124,7 @@ def _check_groups(
 ) -> None:
     names, seen = list(free), set()
     if not DESIGNS[config.design].grouped:
-        allowed = f"design {either(those_with('grouped'))}, not {config.design}"
+        allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
     for group, members in groups.items():
         where = f"analysis.groups.{group}"
@@ -147,7 +147,7 @@ def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     by_group = config.design == "saltelli" and bool(config.analysis.groups)
     if not DESIGNS[config.design].conditional or by_group:
         own = f"{config.design} with analysis.groups" if by_group else config.design
-        raise InputError(where, name, f"design {either(those_with('conditional'))}, not {own}")
+        raise InputError(where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}")
     if name not in free:
         raise unknown_name(where, name, [n for n, f in free.items() if f.discrete])
     if not free[name].discrete or len(free[name].levels) > MOST_LEVELS:

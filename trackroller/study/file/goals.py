@@ -23,7 +23,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
 
 from trackroller.damage import judged
-from trackroller.errors import InputError, collected, either, raise_all, unknown_name
+from trackroller.errors import InputError, collected, listing, raise_all, unknown_name
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity, without_units
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
@@ -295,7 +295,7 @@ def _check_constraints(config: Any, factors: Mapping[str, Factor], free: list[st
 def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable[str]) -> InputError:
     """Return the error for a name that is no result of these groups; it gives the nearest one."""
     if kinds := STATISTICS_OF.get(where) if "(" in name else None:
-        allowed = f"a result, or {either(kinds)} of one"
+        allowed = f"a result, or {listing(kinds, 'or')} of one"
         return InputError(where, name, allowed, f"For example {kinds[0]}({name.partition('(')[2].rstrip(') ')}).")
     variable = name.split("[")[0].strip()
     name_of = DEFAULTS[variable][0] if variable in DEFAULTS else variable

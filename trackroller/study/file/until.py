@@ -9,7 +9,7 @@ from typing import Any
 
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
-from trackroller.errors import InputError, either
+from trackroller.errors import InputError, listing
 from trackroller.parameters import REGIMES
 from trackroller.study.design.kinds import DESIGNS, those_with
 from trackroller.study.file.goals import output_names, statistic, unknown_result
@@ -55,7 +55,7 @@ def check_until(config: Any) -> None:
     if until is None:
         return
     if not DESIGNS[config.design].grows:
-        allowed = f"with until: {either(those_with('grows'))}, which grow by more samples"
+        allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
         raise InputError("design", config.design, allowed, "Choose one of them, or remove until.")
     if config.design == "saltelli" and config.analysis.groups:
         groups = list(config.analysis.groups)
