@@ -68,8 +68,18 @@ failure_probabilities: [0.1, 2]
 
 
 def lines(text: str) -> list[str]:
-    """Return the start of each message after the name of the program."""
+    """Return each message after the name of the program."""
     return [line.removeprefix("trackroller: ") for line in text.splitlines()]
+
+
+def planned(folder, study: str, table: str = "") -> list[str]:
+    """Return the messages of `trackroller plan` for a study file with this text and its table of cases `t.csv`."""
+    (folder / "s.yaml").write_text(study)
+    (folder / "t.csv").write_text(table)
+    return lines(trackroller("plan", "s.yaml", cwd=folder, code=2).stderr)
+
+
+OF_TABLE = "name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n"  # a study of the cases of a table
 
 
 def test_a_case_file_names_all_its_errors_in_order(tmp_path):
@@ -83,8 +93,7 @@ def test_a_case_file_names_all_its_errors_in_order(tmp_path):
 
 
 def test_a_study_file_names_all_its_errors_in_order(tmp_path):
-    (tmp_path / "s.yaml").write_text(STUDY)
-    told = lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr)
+    told = planned(tmp_path, STUDY)
     starts = ["line 1: study key = 'nmae'", "line 5: base = 'groove_width'", "line 7: factors.friction_coefficient"]
     starts += ["line 9: factors.velocity.uniform", "line 10: design = 'lsh'", "line 11: outputs = 'lief'"]
     assert [line[: len(start)] for line, start in zip(told, starts, strict=True)] == starts
@@ -92,10 +101,9 @@ def test_a_study_file_names_all_its_errors_in_order(tmp_path):
 
 def test_a_key_that_stands_in_the_wrong_mapping_has_its_line(tmp_path):
     factors = "name: a\nfactors: {friction_coefficient: {values: [0.1, 7]}}\n"
-    (tmp_path / "s.yaml").write_text(f"{factors}analysis:\n  keep: [valid]\n  pareto: {{max_pressure: min}}\n")
-    told = lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr)
-    assert starts_of(told)[0] == "line 2: factors.friction_coefficient.values = 7"
-    assert "line 5: analysis = 'pareto'" in starts_of(told)
+    told = starts_of(planned(tmp_path, f"{factors}analysis:\n  keep: [valid]\n  pareto: {{max_pressure: min}}\n"))
+    assert told[0] == "line 2: factors.friction_coefficient.values = 7"
+    assert "line 5: analysis = 'pareto'" in told
 
 
 def starts_of(told: list[str]) -> list[str]:
@@ -127,12 +135,7 @@ def test_an_added_material_names_all_its_errors_and_no_line_of_a_file_that_does_
 
 
 def test_a_table_of_cases_names_all_its_errors_in_order(tmp_path):
-    (tmp_path / "s.yaml").write_text(
-        "name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\npareto: {slip: min, slop: max}\n"
-    )
-    (tmp_path / "t.csv").write_text(TABLE)
-    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
-    assert told == [
+    assert starts_of(planned(tmp_path, OF_TABLE + "pareto: {slip: min, slop: max}\n", TABLE)) == [
         "line 5: pareto = 'slop'",
         "t.csv, line 1: table column = 'roller_materal'",
         "t.csv, line 4: radial_force = '0.3 kN'",
@@ -144,21 +147,21 @@ def test_a_table_of_cases_names_all_its_errors_in_order(tmp_path):
 
 
 def test_a_table_of_cases_names_the_lines_of_unknown_materials_and_of_impossible_geometry(tmp_path):
-    (tmp_path / "s.yaml").write_text("name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n")
-    (tmp_path / "t.csv").write_text("material_pair,mu\nPA6 / PA7,0.1\nPOM/PA6,0.2\nPA8 / PA7,0.1\n")
-    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
-    assert told == [
+    pairs = "material_pair,mu\nPA6 / PA7,0.1\nPOM/PA6,0.2\nPA8 / PA7,0.1\n"
+    assert starts_of(planned(tmp_path, OF_TABLE, pairs)) == [
         "t.csv, line 2: material_pair = 'PA7'",
         "t.csv, line 4: material_pair = 'PA8'",
         "t.csv, line 4: material_pair = 'PA7'",
     ]
-    (tmp_path / "t.csv").write_text("roller_profile_radius [cm]\n-0.7\n-0.5\n-1\n-0.4\n")
-    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
-    assert told == ["t.csv, line 3: roller_profile_radius = -5.0", "t.csv, line 5: roller_profile_radius = -4.0"]
+    told = planned(tmp_path, OF_TABLE, "roller_profile_radius [cm]\n-0.7\n-0.5\n-1\n-0.4\n")
+    assert starts_of(told) == [
+        "t.csv, line 3: roller_profile_radius = -5.0",
+        "t.csv, line 5: roller_profile_radius = -4.0",
+    ]
 
 
 def test_words_and_units_of_a_table_are_those_of_a_case(tmp_path):
-    (tmp_path / "s.yaml").write_text("name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n")
+    (tmp_path / "s.yaml").write_text(OF_TABLE)
     (tmp_path / "t.csv").write_text("axial_force,mu,material_pair\n10 N,0.25,PA6 / POM\n0.02 kN,typical,POM / PA6\n")
     design = tr.load_study(tmp_path / "s.yaml").design()
     typical = tr.load_database().friction("PA6", "POM").value
@@ -208,9 +211,7 @@ def test_options_and_duty_stand_among_the_errors_of_a_case(tmp_path):
 
 
 def test_a_file_with_very_many_errors_shows_the_first_and_counts_the_others(tmp_path):
-    (tmp_path / "s.yaml").write_text("name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n")
-    (tmp_path / "t.csv").write_text("axial_force\n" + "".join(f"x{i}\n" for i in range(100)))
-    told = lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr)
+    told = planned(tmp_path, OF_TABLE, "axial_force\n" + "".join(f"x{i}\n" for i in range(100)))
     assert len(told) == MOST_SHOWN + 1 and told[-1] == f"{100 - MOST_SHOWN} further errors are not shown."
 
 
@@ -311,8 +312,7 @@ duty: {hours: 12}
 
 
 def test_errors_of_names_stand_with_the_others_and_no_error_causes_another(tmp_path):
-    (tmp_path / "s.yaml").write_text(WRONG_WORDS)
-    told = trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr.splitlines()
+    told = planned(tmp_path, WRONG_WORDS)
     assert [int(line.split("line ")[1].split(":")[0]) for line in told] == [3, 4, 5, 7, 8, 9, 10, 11]
     for line, part in zip(
         told,
@@ -332,8 +332,7 @@ def test_errors_of_names_stand_with_the_others_and_no_error_causes_another(tmp_p
 
 
 def test_an_option_among_the_values_of_the_roller_is_told_where_it_belongs(tmp_path):
-    (tmp_path / "s.yaml").write_text("base: {contact_model: sliding, colour: red}")
-    told = trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr
+    told = " ".join(planned(tmp_path, "base: {contact_model: sliding, colour: red}"))
     assert "Write contact_model: sliding on a line of its own that is not indented." in told
     assert "'colour' is not usable: this name is not known. The page 'Parameters, options and results'" in told
 
@@ -349,9 +348,7 @@ def test_unknown_results_stand_with_the_errors_of_other_keys(tmp_path):
     text = (
         "name: x\nbase: {radial_force: 3}\noutputs: [forces]\nanalysis:\n  target: {slop: {min: 3}, lift: {max: 2}}\n"
     )
-    (tmp_path / "s.yaml").write_text(text)
-    told = starts_of(lines(trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr))
-    assert told == [
+    assert starts_of(planned(tmp_path, text)) == [
         "line 2: base.radial_force = 3",
         "line 5: analysis.target = 'slop'",
         "line 5: analysis.target = 'lift'",
