@@ -15,7 +15,9 @@ import numpy as np
 
 from trackroller.numerics.rows import Rows
 
-WORK_SHARE = 0.7  # see `error_of_work`; the work errs by more in 1 of 100 designs
+# Share of the largest possible error of the friction work, see `error_of_work`. The error exceeded this share in 1 of
+# 100 designs.
+WORK_SHARE = 0.7
 
 
 @dataclass(frozen=True)
@@ -206,8 +208,9 @@ def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
 def error_of_work(patch: Any, slip: Any, friction, driving: np.ndarray, moment: np.ndarray) -> np.ndarray:
     """Return the error of the friction work over that of the friction forces over mu F_N, at least 1, (m,) [1].
 
-    Errors of F_A by mu F_N and of M_R by mu F_N c change the work by that of both slips, of which WORK_SHARE remains:
-    the errors partly cancel. The work itself may be small, because the works of F_A and M_R cancel too.
+    Errors of F_A by mu F_N and of M_R by mu F_N c change the work by at most mu F_N (|xi| + |phi| c).
+    These errors partly cancel, so that WORK_SHARE of this bound is the estimate. The work itself may be small, because
+    the works of F_A and M_R cancel too.
 
     Parameters
     ----------

@@ -8,8 +8,7 @@ import numpy as np
 def determinant(sine: np.ndarray, cosine: np.ndarray, one: np.ndarray, two: np.ndarray) -> np.ndarray:
     """Return the determinant of eqs (7), (9) for the ratios F_T/F_N of contacts 1 (`one`) and 2 (`two`), (n,).
 
-    An error of F_T in one contact, divided by the determinant, is the
-    error of F_N that it causes in the other.
+    An error of F_T in one contact, divided by the determinant, is the error of F_N that it causes in the other contact.
 
     Examples
     --------

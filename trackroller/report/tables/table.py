@@ -29,7 +29,7 @@ class Table:
 
     @classmethod
     def of(cls, name: str, title: str, rows: Sequence[Mapping[str, Any]], note: str = "") -> Table | None:
-        """Return a table of rows that map each head to a cell; None without a row."""
+        """Return a table, or None if it has no row; each row maps the heads of all columns to its cells."""
         return cls(name, title, list(rows[0]), [list(row.values()) for row in rows], note) if rows else None
 
 

@@ -64,7 +64,10 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
 
 
 def _unknown(ds: xr.Dataset, body: str, damage: np.ndarray) -> dict[str, Any]:
-    """Return why the life of a body is not known, and a bound from the known blocks, 0 if they do no damage."""
+    """Return why the life of a body is not known, and the longest life that the damage of the known blocks allows.
+
+    `at_most` is this life [shifts]; it is 0 if the known blocks do no damage and so set no bound.
+    """
     unknown, known = ds["damage"].sel(body=body).isnull().any("contact").values, float(np.nansum(damage))
     blocks = zip(ds["block"].values[unknown], ds["regime"].values[unknown], strict=True)
     return {

@@ -221,7 +221,10 @@ def _data_of(path: Path) -> Iterator[Path]:
 
 @cache
 def _data_files(root: Path) -> dict[str, list[Path]]:
-    """Return the files of a package that are no Python, by their last name and by that of a folder without Python."""
+    """Return the data files of a package by their names.
+
+    A module may also name a folder that holds nothing but data files. The name of this folder stands for all of them.
+    """
     found: dict[str, list[Path]] = {}
     for folder, folders, names in os.walk(root):
         folders[:] = sorted(set(folders) - {"__pycache__"})
