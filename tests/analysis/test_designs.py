@@ -14,8 +14,7 @@ import trackroller as tr
 from trackroller.analysis.designs import Designs, lift_off_margin, slip_margin
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.report.pages.study import contents
-from trackroller.report.tables.designs import best_table
-from trackroller.report.words.designs import best_design, target_of_designs
+from trackroller.report.words.designs import best_design, best_table, target_of_designs
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.roller.limits import limits
 from trackroller.study.file.load import parse_study

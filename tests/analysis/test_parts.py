@@ -11,9 +11,8 @@ from trackroller.analysis.parts import of_groups, within_levels
 from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
-from trackroller.report.tables.indices import part_tables
 from trackroller.report.words.in_short import in_short
-from trackroller.report.words.indices import level_indices
+from trackroller.report.words.indices import level_indices, part_tables
 from trackroller.study.design.saltelli import pairs_sharing
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study, without_former

@@ -10,8 +10,7 @@ from synthetic_results import results_of, view_of
 
 from trackroller.analysis.sensitivity import analyse
 from trackroller.report.pages.study import contents
-from trackroller.report.tables.targets import target_tables
-from trackroller.report.words.targets import target
+from trackroller.report.words.targets import target, target_tables
 from trackroller.study.file.load import parse_study
 
 SHARE = r"([\d.]+) %"

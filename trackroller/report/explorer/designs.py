@@ -11,9 +11,8 @@ from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, with_unit
-from trackroller.report.tables.designs import first_words
 from trackroller.report.tables.table import cell, factor_cell, heading
-from trackroller.report.words.designs import alone
+from trackroller.report.words.designs import alone, first_words
 from trackroller.report.words.pareto import goal_heading
 from trackroller.study.file.goals import statistic
 

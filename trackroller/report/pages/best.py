@@ -7,11 +7,10 @@ from pathlib import Path
 from trackroller.analysis.table import StudyView
 from trackroller.report.html import render, write_page
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.tables.designs import best_table, optima_table
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.cases import valid_cases
-from trackroller.report.words.designs import best_design
-from trackroller.report.words.optimum import optimum_sentences
+from trackroller.report.words.designs import best_design, best_table
+from trackroller.report.words.optimum import optima_table, optimum_sentences
 
 NOTHING = "The study has no result that ranks designs. Add life or peak_stress to its outputs, and run it again."
 

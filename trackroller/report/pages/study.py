@@ -21,10 +21,7 @@ from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, lives_in_years, long_name, percent, rounded
-from trackroller.report.tables.cases import first_limit_table, reason_table, regime_table, validity_table
 from trackroller.report.tables.design_points import robust_tables
-from trackroller.report.tables.designs import best_table, optima_table
-from trackroller.report.tables.indices import index_table, measure_table, part_tables
 from trackroller.report.tables.inputs import (
     Row,
     as_material,
@@ -36,16 +33,18 @@ from trackroller.report.tables.inputs import (
     record_rows,
     stored_materials,
 )
-from trackroller.report.tables.looks import looks_table
-from trackroller.report.tables.pareto import pareto_table
 from trackroller.report.tables.table import Table, cell
-from trackroller.report.tables.targets import target_tables
 from trackroller.report.words.accuracy import friction_error
 from trackroller.report.words.comparison import report_section
-from trackroller.report.words.designs import size_words
+from trackroller.report.words.designs import best_table, size_words
+from trackroller.report.words.growth import looks_table
 from trackroller.report.words.in_short import in_short
-from trackroller.report.words.limits import limit_sentences
-from trackroller.report.words.pareto import pareto_sentence
+from trackroller.report.words.indices import index_table, measure_table, part_tables
+from trackroller.report.words.limits import first_limit_table, limit_sentences
+from trackroller.report.words.optimum import optima_table
+from trackroller.report.words.pareto import pareto_sentence, pareto_table
+from trackroller.report.words.regimes import reason_table, regime_table, validity_table
+from trackroller.report.words.targets import target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
 from trackroller.study.design.kinds import those_with

@@ -1,1 +1,1 @@
-"""Tables of a report, one file a subject."""
+"""Tables of inputs, of one roller and of design points, and how a table is written."""

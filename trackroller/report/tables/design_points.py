@@ -10,10 +10,9 @@ from trackroller.damage.sn_curve import DEVIATES_10_TO_90
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.numbers import Life, capital, chance, head_unit, listing, rounded
 from trackroller.report.tables.table import Table
-from trackroller.report.tables.targets import MAX_POINTS
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence
-from trackroller.report.words.targets import point_words
+from trackroller.report.words.targets import MAX_POINTS, point_words
 
 OTHERS = dict(zip(REGIMES[1:], REGIME_LABELS[1:], strict=True))  # regimes in which the roller does not roll, in words
 

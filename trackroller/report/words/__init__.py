@@ -1,1 +1,1 @@
-"""Sentences on a study, one file a subject; each returns its claim beside its text."""
+"""What a report says on a subject, sentences and tables in one file; a sentence holds its claim beside its text."""

@@ -1,10 +1,11 @@
-"""The sentence on a sample that grew until its intervals were narrow."""
+"""The sentence on a sample that grew until its intervals were narrow, and the table of its looks."""
 
 from __future__ import annotations
 
 from trackroller.analysis.looks import looks_of
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import plain
+from trackroller.report.numbers import capital, plain, rounded
+from trackroller.report.tables.table import Table
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import samples_of_points
 from trackroller.study.file.goals import statistic
@@ -40,3 +41,19 @@ def grown(view: StudyView) -> Sentence | None:
     facts = {name: growth[name] for name in ("half_width", "stopped", "replicates")}
     values = {"what": HEADLINE_WORDS[design], "cases": last["cases"], "widths": widths, "points": points}
     return say("growth", "grown", **values, **facts)
+
+
+def looks_table(view: StudyView) -> Table | None:
+    """List the widest interval of each output at each look; None for a study without the key `until`."""
+    growth = looks_of(view.solved) if view.results is not None else None
+    if growth is None:
+        return None
+    rows = []
+    for one in growth["looks"]:
+        row = {"Cases": one["cases"]}
+        for name, width in one["half_width"].items():
+            text = "–" if width is None else f"± {rounded(width, 2)} ({one['at'][name]})"
+            row[capital(quantity_words(name, view.solved.design.method))] = text
+        rows.append(row)
+    note = f"Widest 95 % interval at each look and where; wanted: ± {growth['half_width']:g}."
+    return Table.of("looks", "Intervals as the sample grew", rows, f"{note} Stopped: {growth['stopped']}.")

@@ -1,16 +1,19 @@
-"""Sentences on limits: which one the pair reaches first, how they change the order of designs, and what each costs."""
+"""Sentences and a table on limits: which one comes first, how they change the order of designs, what each costs."""
 
 from __future__ import annotations
 
+import numpy as np
+
 from trackroller.analysis.designs import Designs
-from trackroller.analysis.first_limits import Turn, first_limit, turn, without_first
+from trackroller.analysis.first_limits import Turn, deciding, first_limit, turn, without_first
 from trackroller.analysis.lives import FIRST_LIMIT, body_lives
 from trackroller.analysis.table import StudyView
 from trackroller.analysis.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
 from trackroller.damage import LIMITS
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.report.numbers import rounded
+from trackroller.report.numbers import capital, count, level_text, long_name, rounded
 from trackroller.report.tables.limits import guessed_values
+from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence, say
 
@@ -113,3 +116,36 @@ def _turned(designs: Designs, order: Turn) -> Sentence:
     values |= {"before": before.index(most) + 1, "after": after.index(most) + 1}
     name = design_words(designs, designs.table.iloc[after.index(most)])
     return say("limits", "turned", **values, correlation=order.correlation, name=name)
+
+
+def first_limit_table(view: StudyView) -> Table | None:
+    """Count the first limits of the valid cases over the two factors that decide most about them.
+
+    None for a study without limits, or if the first limit depends on no factor.
+    """
+    if view.life != FIRST_LIMIT:
+        return None
+    names = first_limit(view)
+    factors = deciding(view, names)
+    if not factors:
+        return None
+    first, *others = factors
+    across = {"All valid cases": view.valid}
+    for other in others:
+        across = {level_text(other, v): view.valid & (view.table[other] == v).to_numpy() for v in view.levels(other)}
+    rows = []
+    for level in view.levels(first):
+        own = (view.table[first] == level).to_numpy()
+        counts = {head: _counts(names[own & rows_there]) for head, rows_there in across.items()}
+        rows.append({heading(first): factor_cell(first, level)} | counts)
+    note = "Number of valid cases that each limit of the pair ends first."
+    if others:
+        note += f" {capital(long_name(others[0]))} across."
+    return Table.of("first_limits", "Which limit comes first", rows, note)
+
+
+def _counts(names: np.ndarray) -> str:
+    """Write 'shakedown 9, heat 3', the most frequent limit first; a dash without a valid case."""
+    known, counts = np.unique(names[names != ""].astype(str), return_counts=True)
+    order = np.argsort(-counts, kind="stable")
+    return ", ".join(f"{title(known[i])} {count(int(counts[i]))}" for i in order) or "–"

@@ -1,4 +1,4 @@
-"""Sentences on what a search for the best designs found."""
+"""Sentences and a table on what a search for the best designs found."""
 
 from __future__ import annotations
 
@@ -9,7 +9,9 @@ import numpy as np
 from trackroller.analysis.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
-from trackroller.report.numbers import lasting, long_name, quantity, setting
+from trackroller.report.numbers import Life, capital, lasting, long_name, percent, quantity, setting, with_unit
+from trackroller.report.tables.table import Table, factor_cell, heading
+from trackroller.report.words.designs import BEST, compared
 from trackroller.report.words.sentence import Sentence, say
 
 SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
@@ -98,3 +100,28 @@ def _tolerance(view: StudyView, search: dict[str, Any], best: dict[str, Any]) ->
         changes = zip(words, _changes(best["values"], near["values"]), strict=True)
         neighbours.append((long_name(name), moved, invalid, [pair for pair in changes if abs(pair[1]) > SMALL]))
     return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
+
+
+def optima_table(view: StudyView) -> Table | None:
+    """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
+    search = optimum_of(view.solved) if view.results is not None else None
+    if search is None or least_violation(search) == 1:
+        return None
+    shown = sorted(search["optima"], key=lambda one: one["design"] != search["recommended"])[:BEST]
+    choices = [choices_of(view.solved, one["design"]) for one in shown]
+    rows: list[list[Any]] = [[heading(n), *(factor_cell(n, own[n]) for own in choices)] for n in choices[0]]
+    for i, (goal, way) in enumerate(search["goals"].items()):
+        _, units, words = goal_column(view.solved, goal)
+        head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
+        for key, mark in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
+            numbers = [float(one[key][i]) for one in shown]
+            if "life" in goal and units == "h":
+                marked = beyond_data(view.solved, goal)
+                numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
+            rows.append([f"{head}{mark}", *numbers])
+    if any(one["violation"][0] for one in shown):
+        rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
+    first = "Closest to valid" if least_violation(search) else "Recommended"
+    heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
+    note = "Each design is judged over all its conditions. Bold: differs from the first design."
+    return compared("optima", "Optima of the search", heads, rows, note)

@@ -1,15 +1,19 @@
-"""Sentences on regimes and other events: how often they occur, and at which levels of the factors."""
+"""Sentences and tables on regimes, validity flags, reasons of failure and other events."""
 
 from __future__ import annotations
 
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.analysis.events import FEW, confining, meets, most_frequent
 from trackroller.analysis.table import StudyView
-from trackroller.parameters import REGIMES
-from trackroller.report.numbers import level_text, listing, long_name, number, setting
+from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.parameters.validity import VALIDITY
+from trackroller.report.numbers import level_text, listing, long_name, number, plain, setting, share
+from trackroller.report.tables.table import Table
+from trackroller.report.words.accuracy import bodies_of, words_of
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, say
 
@@ -84,3 +88,37 @@ def lift_off(view: StudyView) -> Sentence | None:
     if not lifted.any() or np.isnan(axial[lifted]).any():
         return None
     return say("regimes", "lift_off", count=int(lifted.sum()), least=float(axial[lifted].min()))
+
+
+def regime_table(view: StudyView) -> Table | None:
+    """Count the cases in each regime; In short says where each regime occurs."""
+    if "regime" not in view.table:
+        return None
+    counts = {name: int((view.regime == code).sum()) for code, name in enumerate(REGIME_LABELS)}
+    rows = [{"Regime": name, "Cases": n, "Share": share(n, len(view.table))} for name, n in counts.items() if n]
+    return Table.of("regimes", "Regimes", rows)
+
+
+def validity_table(view: StudyView) -> Table | None:
+    """Count the rolling cases that carry each validity flag, by body where it is known, and say where they occur."""
+    rows, rolling = [], int(view.rolling.sum())
+    for flag, body in [(name, body) for name in view.flags for body in bodies_of(name, view.by_body)]:
+        hit = view.flagged(flag, body) & view.rolling
+        said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
+        if said is not None:
+            row = {"Flag": plain(flag), "Body": body or "either"}
+            row |= {"Meaning": VALIDITY[flag].criterion if flag in VALIDITY else words_of(flag)}
+            cases = int(hit.sum())
+            rows.append(row | {"Cases": cases, "Share of the rolling": share(cases, rolling), "Where": said.text})
+    return Table.of("validity", "Validity flags of the rolling cases", rows)
+
+
+def reason_table(ds: xr.Dataset) -> Table | None:
+    """List why cases failed or miss their tolerance, the most frequent reason first, with the first case of each."""
+    if "reason" not in ds:
+        return None
+    texts, first, counts = np.unique(ds["reason"].values.astype(str).ravel(), return_index=True, return_counts=True)
+    known = zip(counts.tolist(), texts.tolist(), first.tolist(), strict=True)
+    rows = [{"Cases": cases, "Reason": text, "First case": case} for cases, text, case in known if text]
+    rows.sort(key=lambda row: -row["Cases"])
+    return Table.of("reasons", "Why cases failed or miss their tolerance", rows[:8])
