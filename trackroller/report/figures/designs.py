@@ -32,8 +32,7 @@ def lives_by_design(view: StudyView) -> style.Drawn:
         return None
     names = [capital(design_words(designs, row)) for _, row in table.iterrows()]
     numbered = max(map(len, names)) > LONGEST
-    figure = style.new_figure(30 + 5.0 * len(table))
-    axes = figure.subplots()
+    figure, (axes,) = style.panels("Life of the designs over their conditions", 30 + 5.0 * len(table))
     place = np.arange(len(table))[::-1]
     _draw(axes, designs, table, place)
     style.name_rows(axes, place, list(map(str, range(1, len(names) + 1))) if numbered else names)
@@ -41,7 +40,6 @@ def lives_by_design(view: StudyView) -> style.Drawn:
     axes.set(ylim=(-0.6, len(table) - 0.4), xlabel=f"life [{designs.goal[2]}]", xscale="log")
     style.log_ticks(axes.xaxis, *axes.get_xlim())
     figure.legend(loc="outside lower center", ncols=5, columnspacing=1.0, handletextpad=0.4)
-    style.head(figure, "Life of the designs over their conditions")
     caption = (
         "Designs in the order of the table of the best designs, over "
         f"{listing([long_name(n) for n in designs.conditions])}; {len(table)} of "

@@ -46,19 +46,19 @@ def by_factor(view: StudyView) -> style.Drawn:
     if not names:
         return None
     columns = min(3, len(names))
-    figure = style.new_figure(26 + 50 * -(-len(names) // columns))
-    first, levels = None, coloured(view, lead, rows)
+    lines = -(-len(names) // columns)
+    figure, levels = style.new_figure(26 + 50 * lines), coloured(view, lead, rows)
     colours = style.colours([text for text, _ in levels], lead in OF_MATERIALS)
     series = {name: _series(view, name, rows, levels, lead) for name in names}
-    for i, name in enumerate(names):
-        axes = figure.add_subplot(-(-len(names) // columns), columns, i + 1, sharey=first)
-        first = first or axes
+    panels = figure.subplots(lines, columns, sharey=True, squeeze=False).ravel()
+    for axes in panels[len(names) :]:
+        axes.remove()
+    for axes, name in zip(panels, names, strict=False):
         _panel(axes, groups(view, name, rows, BINS), values, series[name], colours)
-        axes.tick_params(labelleft=i % columns == 0)
         mark_unlimited(axes, top)
-    if first is not None and "life" in words:
-        first.set_yscale("log")
-        style.log_ticks(first.yaxis, *first.get_ylim())
+    if "life" in words:
+        panels[0].set_yscale("log")
+        style.log_ticks(panels[0].yaxis, *panels[0].get_ylim())
     figure.supylabel(with_unit(capital(words), unit), fontsize=7.5)
     apart = any(len(drawn) > 1 for drawn in series.values())
     if apart:

@@ -21,8 +21,7 @@ def intervals(view: StudyView) -> style.Drawn:
         return None
     cases = [one["cases"] for one in growth["looks"]]
     names = list(growth["looks"][0]["half_width"])
-    figure = style.new_figure(58)
-    axes = figure.add_subplot()
+    figure, (axes,) = style.panels("Intervals as the sample grew", 58)
     for i, (name, colour) in enumerate(zip(names, style.palette(len(names)), strict=True)):
         width = np.array([one["half_width"][name] for one in growth["looks"]], dtype=float)
         look = {"marker": style.MARKERS[i % len(style.MARKERS)], "linestyle": style.LINES[i % len(style.LINES)]}
@@ -33,6 +32,5 @@ def intervals(view: StudyView) -> style.Drawn:
     axes.minorticks_off()
     axes.set(ylim=(0.0, None), xlabel="cases [–]", ylabel="half width of the\nwidest interval [–]")
     figure.legend(loc="outside lower center", ncols=2)
-    style.head(figure, "Intervals as the sample grew")
     caption = f"95 % intervals from {growth['replicates']} independent replicates at each doubling of the sample."
     return figure, style.FigureInfo("intervals-against-cases", caption, said.text)

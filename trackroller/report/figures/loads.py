@@ -51,8 +51,9 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
     groups = [([text], rows[mask]) for text, mask in levels]
     single = view.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
     groups = _merged(groups, columns) if single else groups
-    figure = style.new_figure(64 + 3.6 * (len(groups) + 2))
-    panels = figure.subplots(1, len(bodies), sharex=True, sharey=True, squeeze=False)[0]
+    figure, panels = style.panels(
+        "Peak stress against fit", 64 + 3.6 * (len(groups) + 2), len(bodies), sharex=True, sharey=True
+    )
     entries: Entries = []
     names = [text for text, _ in levels]
     colours = style.colours(names, hue in OF_MATERIALS)
@@ -69,7 +70,6 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
         dot = {"color": "0.3", "marker": "o", "linestyle": "none"}
         entries += [("filled: at the surface", dot), ("hollow: below it", {**dot, "markerfacecolor": "white"})]
     legend(figure, entries, 2)
-    style.head(figure, "Peak stress against fit")
     marks = "Filled marks: the peak lies at the surface; hollow marks: below it." if single else MEDIANS
     caption = (
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
@@ -152,13 +152,11 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # otherwise one line for all drives
     shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
     rows, held = view.hold(shown)
-    figure = style.new_figure(74)
-    panels = figure.subplots(1, len(kinds), sharex=True, squeeze=False)[0]
-    looks: list[dict[str, Any]] = [
-        {"color": colour, "marker": mark} for colour, mark in zip(style.PAIR, "os", strict=True)
-    ]
-    looks = [look | {"markersize": size} for look, size in zip(looks, (3, 4.5), strict=True)] if view.grid else looks
-    looks[1] |= {"markerfacecolor": "white"} if view.grid else {}
+    figure, panels = style.panels("Forces of both contacts against axial force", 74, len(kinds), sharex=True)
+    marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
+    if view.grid:
+        marks = [{"marker": "o", "markersize": 3}, {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"}]
+    looks = [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
         for contact, (j, level) in ((c, d) for c in (1, 2) for d in enumerate(drives)):
             part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
@@ -176,7 +174,6 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     dashes = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
     entries += [(level_text("motor_force", d), look) for d, look in zip(drives, dashes, strict=True) if d is not None]
     legend(figure, entries, 5)
-    style.head(figure, "Forces of both contacts against axial force")
     each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
     caption = (
         f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}. "

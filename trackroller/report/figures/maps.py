@@ -45,8 +45,8 @@ def life_map(view: StudyView) -> style.Drawn:
     rows, held = view.hold(pair)
     if not np.isfinite(rows[column][view.rolling[rows.index]]).any():
         return None
-    figure = style.new_figure(84)
-    axes = figure.subplots()
+    over = capital(f"{words} over {long_name(pair[0])} and {long_name(pair[1])}")
+    figure, (axes,) = style.panels(over, 84)
     image = _life_cells(axes, view, rows, pair, column)
     bar = figure.colorbar(
         image, ax=axes, aspect=25, pad=0.02, extend="max" if np.isposinf(rows[column]).any() else "neither"
@@ -54,8 +54,6 @@ def life_map(view: StudyView) -> style.Drawn:
     bar.set_label(with_unit(capital(words), unit))
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    over = f"{words} over {long_name(pair[0])} and {long_name(pair[1])}"
-    style.head(figure, capital(over))
     how = "Grey cells have no life" if view.grid else "Each cell is the median of its cases; grey cells have no life"
     drawn = view.rolling[rows.index]
     beyond = int((view.beyond_data(column)[rows.index] & drawn).sum())
@@ -63,7 +61,7 @@ def life_map(view: StudyView) -> style.Drawn:
         how += f"; {count(beyond)} of the {count(int(drawn.sum()))} lives drawn lie beyond the S-N data (in brackets)"
     inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
     said = extremes(view, column, words, unit, pair, inside)
-    return figure, style.FigureInfo("life_map", f"{capital(over)}. {how}. {held_words(held)}".strip(), said.text)
+    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip(), said.text)
 
 
 def _life_pair(view: StudyView) -> Pair | None:
@@ -90,8 +88,10 @@ def _life_pair(view: StudyView) -> Pair | None:
 
 
 def cell_name(name: str, end: Any) -> str:
-    """Write the level of a cell, or the ends (low, high) of its class."""
-    return f"{end[0]:.3g}…{end[1]:.3g}" if isinstance(end, tuple) else tick_text(name, end)
+    """Write the level of a cell at an axis, short and without unit, or the ends (low, high) of its class."""
+    if isinstance(end, str):
+        return textwrap.fill(level_text(name, end).replace(" on ", " on\u00a0"), 24).replace("\u00a0", " ")
+    return f"{end[0]:.3g}…{end[1]:.3g}" if isinstance(end, tuple) else rounded(end)
 
 
 def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) -> np.ndarray:
@@ -102,12 +102,6 @@ def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) ->
     return cells
 
 
-def _norm(life: np.ndarray) -> LogNorm:
-    finite = life[np.isfinite(life) & (life > 0)]
-    low, high = finite.min(), finite.max()
-    return LogNorm(low, high if high > low else 10 * low)
-
-
 def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
     inside = np.isin(np.arange(len(view.table)), rows.index)
     sides = [classes(view, name, inside, None if view.grid else BINS) for name in pair]
@@ -115,7 +109,9 @@ def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, col
     life = _table(rows[column].where(view.rolling[rows.index]), keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
     cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
-    image = axes.pcolormesh(cells, cmap="cividis", norm=_norm(life), edgecolor="face", linewidth=0.1)
+    finite = life[np.isfinite(life) & (life > 0)]
+    norm = LogNorm(finite.min(), finite.max() if finite.max() > finite.min() else 10 * finite.min())
+    image = axes.pcolormesh(cells, cmap="cividis", norm=norm, edgecolor="face", linewidth=0.1)
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.grid(False)
@@ -143,13 +139,6 @@ def set_ticks(axis: Axis, texts: list[str]) -> None:
         axis.set_tick_params(rotation=35)
 
 
-def tick_text(name: str, value: Any) -> str:
-    """Write a level at an axis: short, without unit."""
-    if isinstance(value, str):
-        return textwrap.fill(level_text(name, value).replace(" on ", " on\u00a0"), 24).replace("\u00a0", " ")
-    return "∞" if np.isposinf(value) else rounded(value)
-
-
 def regime_map(view: StudyView) -> style.Drawn:
     """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
 
@@ -161,15 +150,12 @@ def regime_map(view: StudyView) -> style.Drawn:
     if len(view.table) - most < (1 if view.grid else FEWEST):
         return None
     ranked = sorted(view.factors, key=lambda f: -_regime_spread(view, f))
-    pair: Pair = (ranked[0], ranked[1])
-    pair = pair if len(view.levels(pair[0])) >= len(view.levels(pair[1])) else (pair[1], pair[0])
-    if not view.numeric(pair[0]):  # a factor with long names goes on the vertical axis, where its names have room
-        pair = (pair[1], pair[0])
-    figure = style.new_figure(76)
-    axes = figure.subplots()
+    # long names go on the vertical axis, where they have room; of two numbers the one with fewer levels goes there
+    x, y = sorted(ranked[:2], key=lambda f: (not view.numeric(f), -len(view.levels(f))))
+    pair = (x, y)
+    figure, (axes,) = style.panels("Regimes: rolling, full slip, lift-off", 76)
     note = _regime_shares(axes, view, pair)
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    style.head(figure, "Regimes: rolling, full slip, lift-off")
     said = [occurrence(view, view.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
     caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
     return figure, style.FigureInfo("regime_map", caption.strip(), " ".join(s.text for s in said if s))
@@ -177,12 +163,9 @@ def regime_map(view: StudyView) -> style.Drawn:
 
 def _regime_spread(view: StudyView, name: str) -> float:
     """Return how much the share of a regime changes over the levels of a factor; it decides which factor is drawn."""
-    index, ends = classes(view, name, np.ones(len(view.table), dtype=bool), BINS)
-    spread = 0.0
-    for code in (1, 2, 3):
-        shares = [float((view.regime[index == k] == code).mean()) for k in range(len(ends)) if (index == k).any()]
-        spread = max(spread, max(shares) - min(shares))
-    return spread
+    index, _ = classes(view, name, np.ones(len(view.table), dtype=bool), BINS)
+    shares = pd.crosstab(index, view.regime, normalize="index").reindex(columns=[1, 2, 3], fill_value=0.0)
+    return float(np.ptp(shares.to_numpy(), axis=0).max())
 
 
 def _regime_shares(axes: Axes, view: StudyView, pair: Pair) -> str:

@@ -51,16 +51,13 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
     goals = goals_of(front)
     if not (front["optimal"].values == 1).any() or min(front.sizes["row"], len(goals)) < 2:
         return None
-    others = goals[1:4]
-    figure = style.new_figure(78)
-    panels = figure.subplots(1, len(others), squeeze=False)[0]
+    others, kind = goals[1:4], str(front.attrs.get("kind", "design"))
+    figure, panels = style.panels(f"Pareto-optimal {kind}s", 78, len(others))
     colour, entries = _colours(front, view, goals[0][0])
     for axes, goal in zip(panels, others, strict=True):
         _trade(axes, front, goal, goals[0], colour, joined=len(goals) == 2)
     entries.append(("Pareto set", {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"}))
     legend(figure, entries)
-    kind = str(front.attrs.get("kind", "design"))
-    style.head(figure, f"Pareto-optimal {kind}s")
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
     caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front)}"
     return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, view).text)

@@ -46,8 +46,7 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     ranks, said = order(sens, output)[:MAX_BARS], indices.tornado(sens, output)
     if said.kind != "index":  # a figure without a finding is left out
         return None
-    figure = style.new_figure(22 + 6.0 * len(ranks))
-    axes = figure.add_subplot()
+    figure, (axes,) = style.panels(f"{title(sens, output)}: what decides it", 22 + 6.0 * len(ranks))
     place = np.arange(len(ranks))[::-1].astype(float)
     drawn = ("ST", "S1") if index == "ST" else (index,)
     for i, name in enumerate(drawn):
@@ -65,7 +64,6 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     style.name_rows(axes, place, [capital(r.name) for r in ranks])
     axes.axvline(0, color="0.2", linewidth=0.7)
     axes.set_xlabel(_axis(sens, output, index))
-    style.head(figure, f"{title(sens, output)}: what decides it")
     caption = (
         f"{capital(indices.INDEX_WORDS[index])} of each factor on {indices.of_output(sens, output)}; whiskers: 95 % "
         f"intervals. {sens.attrs.get('treatment', '')}."
@@ -78,19 +76,18 @@ def _axis(sens: xr.Dataset, output: str, index: str) -> str:
     return with_unit(text, indices.effect_unit(sens, output)) if index in SIZED else f"{text}: share of variance [–]"
 
 
-def _heat(table: np.ndarray, rows: list[str], columns: list[str], label: str, head: str) -> Figure:
-    """Draw a heat map with its values written in."""
-    figure = style.new_figure(34 + 5.2 * len(rows))
+def _heat(table: np.ndarray, names: list[str], label: str, head: str) -> Figure:
+    """Draw a heat map of pairs with its values written in."""
+    figure, (axes,) = style.panels(head, 34 + 5.2 * len(names))
     texts = [[f"{v:.2f}".removeprefix("0") if abs(v) < 10 else f"{v:.3g}" for v in row] for row in table]
     top = max(float(np.nanmax(np.abs(table))), 1e-9)
     look: Look = {"cmap": "Greys", "vmin": 0.0, "vmax": top, "annot": np.array(texts), "annot_kws": {"size": 7}}
     bar = {"label": label, "shrink": 0.9, "pad": 0.02}
-    axes = seaborn.heatmap(table, ax=figure.add_subplot(), fmt="", cbar_kws=bar, **look)
-    axes.set_yticks(0.5 + np.arange(len(rows)), rows, rotation=0)
-    axes.set_xticks(0.5 + np.arange(len(columns)), columns, rotation=25, ha="right", rotation_mode="anchor")
+    seaborn.heatmap(table, ax=axes, fmt="", cbar_kws=bar, **look)
+    axes.set_yticks(0.5 + np.arange(len(names)), names, rotation=0)
+    axes.set_xticks(0.5 + np.arange(len(names)), names, rotation=25, ha="right", rotation_mode="anchor")
     axes.tick_params(length=0)
     axes.grid(visible=False)
-    style.head(figure, head)
     return figure
 
 
@@ -103,8 +100,7 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
     ranks = order(sens, output)[:5]
     if f"{index}_course" not in sens or not ranks or sens.sizes.get("sample_size", 0) < 2:
         return None
-    figure = style.new_figure(62)
-    axes = figure.add_subplot()
+    figure, (axes,) = style.panels(f"{title(sens, output)}: course of the indices", 62)
     part = sens.sel(output=output)
     for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
         one = part.sel(factor=rank.factor)
@@ -120,7 +116,6 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set(xlabel=f"{unit} [–]", ylim=(min(0.0, -0.1 * top), 1.35 * top))
     axes.set_ylabel(_axis(sens, output, index).replace(": ", ":\n").replace("effect [", "effect\n["))
     figure.legend(loc="outside lower center", ncols=3)
-    style.head(figure, f"{title(sens, output)}: course of the indices")
     caption = f"{capital(indices.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
     return figure, style.FigureInfo(f"convergence-{output}", caption, indices.convergence(sens, output).text)
 
@@ -136,8 +131,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     x, y = part["mu_star"].values, part["sigma"].values
     if not np.isfinite(x).any():
         return None
-    figure = style.new_figure(64 + 1.2 * int(np.isfinite(x).sum()))
-    axes = figure.add_subplot()
+    figure, (axes,) = style.panels(f"{title(sens, output)}: elementary effects", 64 + 1.2 * int(np.isfinite(x).sum()))
     top = float(np.nanmax(x)) * 1.15 or 1.0
     for share, dash in ((1.0, "--"), (0.5, ":")):
         label = "σ = μ*" if share == 1 else "σ = μ*/2"
@@ -153,7 +147,6 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set(xlabel=f"mean absolute effect μ* [{unit}]", ylabel=f"spread of the effects σ [{unit}]")
     axes.set(xlim=(0, top), ylim=(0, float(np.nanmax(y)) * 1.15 or 1.0))
     figure.legend(loc="outside right upper")
-    style.head(figure, f"{title(sens, output)}: elementary effects")
     caption = (
         "Elementary effects over each factor's whole range. A factor further to the right matters more. Above the "
         "lines its effect differs from place to place: it is curved or depends on other factors. Whiskers: 95 % "
@@ -171,23 +164,19 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
     if not name or not np.isfinite(part[name].values).any():
         return None
-    said = indices.interactions(sens, output)
-    shares = name != "interaction"
-    if said.kind != "interaction" or (
-        shares and said.values["value"] < WORTH
-    ):  # a figure without a finding is left out
+    said, sized = indices.interactions(sens, output), name == "interaction"
+    # a figure without a finding is left out
+    if said.kind != "interaction" or (not sized and said.values["value"] < WORTH):
         return None
-    table = np.array(part[name].values, dtype=float)
-    table = np.where(np.isfinite(table), table, table.T)
-    if name != "interaction":
-        table = np.where(np.isfinite(table), np.maximum(table, 0.0), table)  # estimates may be negative
     fitted = name == "interaction_share" and "main_share" not in part
     own = "fit_alone" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
-    np.fill_diagonal(table, np.abs(part[own].values) if own == "effect" else np.maximum(part[own].values, 0.0))
-    table = np.where(np.triu(np.ones_like(table, dtype=bool)), np.abs(table), np.nan)
+    table = np.where(np.isfinite(part[name].values), part[name].values, part[name].values.T)
+    np.fill_diagonal(table, part[own].values)
+    table = np.abs(table) if sized else np.maximum(table, 0.0)  # estimates of a share may be negative
+    table = np.where(np.triu(np.ones_like(table, dtype=bool)), table, np.nan)
     names = [capital(str(n)) for n in part["factor_name"].values]
-    label = f"size [{indices.effect_unit(sens, output)}]" if name == "interaction" else "share of variance [–]"
-    figure = _heat(table, names, names, label, f"{title(sens, output)}: interactions")
+    label = f"size [{indices.effect_unit(sens, output)}]" if sized else "share of variance [–]"
+    figure = _heat(table, names, label, f"{title(sens, output)}: interactions")
     caption = "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
     return figure, style.FigureInfo(f"interactions-{output}", caption, said.text)

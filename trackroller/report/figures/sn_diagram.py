@@ -42,8 +42,9 @@ def sn_diagram(view: StudyView) -> style.Drawn:
         return None
     names = list(dict.fromkeys(name for _, points in shown for name in points))[:MAX_MATERIALS]
     colours = dict(zip(names, style.colours(names, True), strict=True))
-    figure = style.new_figure(68 + 2.4 * (len(names) + 3))
-    panels = figure.subplots(1, len(shown), sharey=True, squeeze=False)[0]
+    figure, panels = style.panels(
+        "S-N diagram with the cases of the study", 68 + 2.4 * (len(names) + 3), len(shown), sharey=True
+    )
     for axes, (body, points) in zip(panels, shown, strict=True):
         for i, name in enumerate(names):
             if name not in points:
@@ -55,7 +56,6 @@ def sn_diagram(view: StudyView) -> style.Drawn:
         style.log_ticks(axes.yaxis, *axes.get_ylim())
     panels[0].set_ylabel(with_unit(capital(_WORDS[_amplitude(view)]), "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
-    style.head(figure, "S-N diagram with the cases of the study")
     return figure, _info(view, shown, known, rule, ends[1])
 
 

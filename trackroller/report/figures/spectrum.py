@@ -37,8 +37,9 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     order = order[~unknown[order]]
     shown, rest = order[:MOST], order[MOST:]
     words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
-    figure = style.new_figure(24 + 6.0 * len(words))
-    panels = figure.subplots(1, len(shares), sharey=True, squeeze=False)[0]
+    figure, panels = style.panels(
+        f"Damage by block: {ds.attrs['title']}", 24 + 6.0 * len(words), len(shares), sharey=True
+    )
     worst_blocks = []
     for axes, colour, (body, part) in zip(panels, style.PAIR, shares.items(), strict=False):
         values = np.append(part[shown], part[rest].sum()) if len(rest) else part[shown]
@@ -49,7 +50,6 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
         most = int(np.argmax(part))
         worst_blocks.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
     panels[0].invert_yaxis()
-    style.head(figure, f"Damage by block: {ds.attrs['title']}")
     caption = "Share of each block in the damage of a shift, in the track of each body that fails first."
     if unknown.any():
         caption += f" Blocks without known damage are not counted: {listing(ds['block'].values[unknown].tolist())}."

@@ -99,6 +99,13 @@ def head(figure: Figure, title: str, subtitle: str = "") -> None:
     figure.suptitle("\n".join(filter(None, (title, subtitle))), x=0.015, ha="left", wrap=True)
 
 
+def panels(title: str, height_mm: float, count: int = 1, **shared: bool) -> tuple[Figure, Any]:
+    """Return a figure with its title, and its empty axes side by side; `shared` says which axes they share."""
+    figure = new_figure(height_mm)
+    head(figure, title)
+    return figure, figure.subplots(1, count, squeeze=False, **shared)[0]
+
+
 def name_rows(axes: Axes, places: Sequence[float] | np.ndarray, names: Sequence[str]) -> None:
     """Write names beside the rows of a figure, in place of ticks and grid lines."""
     axes.set_yticks(places, names)

@@ -33,8 +33,9 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     middle, half = outward * own["pressure_centre"].values, own["semi_axis_lateral"].values
     reach = ROOM * float(np.max(np.abs(middle) + half))
     near = own.sel(place=slice(-reach, reach))
-    figure = style.new_figure(62)
-    panels = figure.subplots(1, len(shown), sharex=True, sharey=True, squeeze=False)[0]
+    figure, panels = style.panels(
+        f"Profiles of contact {contact} while they wear", 62, len(shown), sharex=True, sharey=True
+    )
     colours = style.PAIR
     for axes, row in zip(panels, shown, strict=True):
         surfaces = {b: 1e3 * near[f"{b}_surface"].isel(travel=row).values for b in BODIES}
@@ -50,7 +51,6 @@ def profiles(ds: xr.Dataset) -> style.Drawn:
     panels[len(shown) // 2].set_xlabel("lateral place, outward [mm]")
     panels[-1].legend(loc="upper center", frameon=False)
     magnified = reach * 1e3 / max(float(np.ptp(new)), 1e-9)
-    style.head(figure, f"Profiles of contact {contact} while they wear")
     caption = (
         "Worn surfaces of roller and guide over the new surface of the guide, moved together until they touch. Grey: "
         f"width of the patch under load. Heights are magnified about {rounded(magnified, 1)} times."
@@ -107,8 +107,7 @@ def course(ds: xr.Dataset) -> style.Drawn:
     travel, contacts = ds["travel"].values, ds["contact"].values.tolist()
     rows = [("groove_depth", "depth [µm]", 1e3), ("max_pressure", "largest pressure [MPa]", 1.0)]
     rows += [("fatigue_damage", "damage sum [–]", 1.0)] if "fatigue_damage" in ds else []
-    figure = style.new_figure(58)
-    panels = figure.subplots(1, len(rows), squeeze=False)[0]
+    figure, panels = style.panels("Depth, pressure and fatigue over the travel", 58, len(rows))
     for axes, (name, words, scale) in zip(panels, rows, strict=True):
         for body, colour in zip(BODIES, style.PAIR, strict=False):
             for contact, line in zip(contacts, style.LINES, strict=False):
@@ -121,7 +120,6 @@ def course(ds: xr.Dataset) -> style.Drawn:
         axes.set(title=words, xlabel="travel [km]")
         axes.set_ylim(0.0, (1.6 if "body" in ds[name].dims else 1.0) * axes.get_ylim()[1])  # room for the legend
         axes.legend(frameon=False)
-    style.head(figure, "Depth, pressure and fatigue over the travel")
     error, relative = 1e3 * float(ds["groove_depth_error"][-1]), 100 * float(ds["pressure_error"].max())
     caption = (
         "Points are solved states. Steps and elements cause an estimated error of the depth of "
