@@ -19,7 +19,7 @@ from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import render
-from trackroller.report.pages.sheet_facts import Facts, collect
+from trackroller.report.pages.sheet_facts import collect
 from trackroller.roller.case import Case
 from trackroller.roller.duty import with_duty
 from trackroller.roller.limits import Limits
@@ -84,14 +84,14 @@ def picture(values: Values, accuracy: str = "preview", complete: bool = False, i
 
 @lives_in_years
 def _facts(ds: xr.Dataset, ranges: Limits | None) -> dict[str, Any]:
-    facts: Facts = collect(ds, ranges)
+    facts = vars(collect(ds, ranges))
     words = ("verdict", "reason", "not_checked", "guesses", "doubts")
     rows = ("inputs", "whole", "lives", "flags")
     return {
-        **{name: getattr(facts, name) for name in words},
-        **{name: [asdict(row) for row in getattr(facts, name)] for name in rows},
-        "lines": facts.lines,
-        "margins": [asdict(m) | {name: getattr(m, name) for name in DERIVED} for m in facts.margins],
+        **{name: facts[name] for name in words},
+        **{name: [asdict(row) for row in facts[name]] for name in rows},
+        "lines": facts["lines"],
+        "margins": [asdict(m) | {name: getattr(m, name) for name in DERIVED} for m in facts["margins"]],
     }
 
 

@@ -5,6 +5,7 @@ They show what Wenzel et al. 2022 show in their figures 6, 7 and 11, for any cas
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
@@ -42,5 +43,10 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
         if ds.sizes["case"] != 1:
             raise InputError("ds", f"{ds.sizes['case']} cases", "one case is drawn at a time", "Use ds.isel(case=i).")
         ds = ds.isel(case=0)
-    jobs = [partial(shear_arrows, ds), partial(friction_energy, ds)]
-    return style.draw_all([*jobs, *(partial(sections, ds, int(contact)) for contact in ds["contact"])], Path(out_dir))
+    return style.draw_all(figures_of(ds), Path(out_dir))
+
+
+def figures_of(ds: xr.Dataset) -> list[Callable[[], style.Drawn]]:
+    """Return the functions that draw the figures of one case without the dimension `case`."""
+    of_contacts = [partial(sections, ds, int(contact)) for contact in ds["contact"]]
+    return [partial(shear_arrows, ds), partial(friction_energy, ds), *of_contacts]

@@ -53,12 +53,9 @@ def render(ds: xr.Dataset, name: str = "") -> str:
     """Return the sheet as HTML text; see `write_sheet`."""
     drawn = {}
     if any(v.ndim > 2 for v in ds.values()):
-        from trackroller.report.figures.contact import plot_case  # heavy: matplotlib
+        from trackroller.report.figures import contact, wear  # heavy: matplotlib
 
-        drawn = _pictures(partial(plot_case, ds))
-        from trackroller.report.figures import style, wear
-
-        drawn |= _pictures(partial(style.draw_all, [partial(wear.over_patch, ds)]))
+        drawn = pictures(*contact.figures_of(ds), partial(wear.over_patch, ds))
     facts = collect(ds)
     content = {
         "facts": facts,
@@ -71,7 +68,7 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         "full": FULL,
         "probability": f"{100 * float(ds.attrs['failure_probability']):g} %",
     }
-    return html.render("sheet.html.j2", content, bar=bar)
+    return html.render("sheet.html.j2", content)
 
 
 def _less_stressed(ds: xr.Dataset) -> str:
@@ -80,13 +77,10 @@ def _less_stressed(ds: xr.Dataset) -> str:
     return f"contact_{np.argmin(peaks) + 1}_stress"
 
 
-def bar(share: float) -> float:
-    """Return the length of a bar in percent of its full length."""
-    return round(min(100.0 * share, FULL) / FULL * 100.0, 1)
-
-
-def _pictures(draw: Callable[[Path], list[Any]]) -> dict[str, dict[str, str]]:
+def pictures(*jobs: Callable[[], Any]) -> dict[str, dict[str, str]]:
     """Draw figures, and return the data URI, caption and sentence of each by its name."""
+    from trackroller.report.figures import style  # heavy: matplotlib
+
     with tempfile.TemporaryDirectory() as place:
-        folder = Path(place)
-        return {i.name: vars(i) | {"source": html.data_uri(folder / f"{i.name}.svg")} for i in draw(folder)}
+        infos = style.draw_all(jobs, Path(place))
+        return {i.name: vars(i) | {"source": html.data_uri(Path(place, f"{i.name}.svg"))} for i in infos}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -26,7 +26,7 @@ from trackroller.report.tables.limits import (
     placeholders,
 )
 from trackroller.report.tables.lives import life_rows
-from trackroller.report.words.accuracy import Flag, flags_of
+from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.assumptions import (
     assumptions,
     friction_sentence,
@@ -52,34 +52,8 @@ from trackroller.study.store.provenance import versions
 ROUNDING = 1e-9  # N, mm, MPa, 1: results below are rounding errors of a zero, as the drive torque of a free roller
 
 
-@dataclass(frozen=True)
-class Facts:
-    """All statements of a sheet on one roller."""
-
-    verdict: str
-    reason: str
-    inputs: list[Row]
-    not_given: str
-    doubts: list[str]
-    materials: list[tuple[str, list[Row], str]]
-    lines: list[list[str]]
-    whole: list[Row]
-    lives: list[Row]
-    margins: list[Margin]
-    first: list[str]
-    not_checked: list[str]
-    flags: list[Flag]
-    assumptions: list[str]
-    standards: str
-    data: list[str]
-    guesses: list[str]
-    options: str
-    command: str
-    versions: str
-
-
-def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
-    """Return the facts of a solved case.
+def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
+    """Return the statements of the sheet of a solved case: texts, rows and margins by name.
 
     Parameters
     ----------
@@ -104,7 +78,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> Facts:
     reason = str(ds["reason"].item()) if "reason" in ds else ""
     summed = {"reserve": min(above, below), "toward": "more" if above <= below else "less", "axial": ranges.axial_force}
     said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
-    return Facts(
+    return SimpleNamespace(
         verdict=_verdict(regime, ds, lives, lifeless, own, reason=reason, **summed),
         reason=reason,
         inputs=input_rows(inputs, given),
@@ -197,7 +171,7 @@ def _verdict(
         overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if "tensile strength" in why],
         exceeded=[f"{title} ({listing(bodies)})" for title, bodies in passed.items()],
         lives=list(map(_hours, of_roller[:2])) if known else [],
-        contact=_weakest(ds) if known else None,
+        contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known else None,
         guide=_hours(lives[-1]) if first == "guide" else "",
         **values,
     )
@@ -207,11 +181,6 @@ def _hours(row: Row) -> str:
     """Return the hours of a life with its failure probability, and whether it lies beyond the S-N data."""
     remarks = [row.words.partition("until ")[2].partition(" have")[0] or "median"]
     return f"{row.value.partition(';')[0]} ({', '.join(remarks + [BEYOND] * (BEYOND in row.value))})"
-
-
-def _weakest(ds: xr.Dataset) -> int:
-    hours = ds["life_hours"].sel(body="roller")
-    return int(ds["contact"].values[int(np.nanargmin(hours.values))])
 
 
 def quantity_rows(ds: xr.Dataset, names: Iterable[str]) -> list[Row]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -10,7 +11,7 @@ import xarray as xr
 
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.sheet_facts import Facts, collect
+from trackroller.report.pages.sheet_facts import collect
 from trackroller.report.pages.spectrum import assumed, block_table, life_rows, limit_table, warnings
 from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text
@@ -54,7 +55,7 @@ def print_facts(ds: xr.Dataset) -> None:
     print_margins(facts, float(ds.attrs["failure_probability"]))
 
 
-def print_margins(facts: Facts, probability: float) -> None:
+def print_margins(facts: SimpleNamespace, probability: float) -> None:
     """Print the table of margins, what comes first for roller, guide and pair, and what was not checked."""
     rows = [[m.title, "both" if m.body == BOTH else m.body, m.now, m.required, m.share, m.life] for m in facts.margins]
     if rows:

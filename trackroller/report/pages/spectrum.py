@@ -27,7 +27,7 @@ from trackroller.report.numbers import (
     unit_text,
     with_unit,
 )
-from trackroller.report.pages.sheet import _pictures
+from trackroller.report.pages.sheet import pictures
 from trackroller.report.pages.sheet_facts import body_materials, versions_text
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.tables.table import Table, cell
@@ -138,10 +138,10 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
     Path
         The file.
     """
-    from trackroller.report.figures import spectrum, style  # heavy: matplotlib
+    from trackroller.report.figures import spectrum  # heavy: matplotlib
 
     inputs, given = json.loads(ds.attrs["roller"]), json.loads(ds.attrs[NOT_GIVEN])
-    drawn = _pictures(partial(style.draw_all, [partial(spectrum.damage_by_block, ds)]))
+    drawn = pictures(partial(spectrum.damage_by_block, ds))
     content = {
         "name": capital(str(ds.attrs["title"])),
         "description": str(ds.attrs.get("description", "")),

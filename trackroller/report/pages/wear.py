@@ -11,7 +11,7 @@ import xarray as xr
 from trackroller.parameters import BODIES
 from trackroller.report import html
 from trackroller.report.numbers import capital, with_unit
-from trackroller.report.pages.sheet import _pictures
+from trackroller.report.pages.sheet import pictures
 from trackroller.report.pages.sheet_facts import body_materials, command_of, versions_text
 from trackroller.report.tables.inputs import input_rows
 from trackroller.report.tables.limits import placeholders
@@ -78,9 +78,9 @@ def write_wear(ds: xr.Dataset, path: Path | str) -> Path:
     Path
         The file.
     """
-    from trackroller.report.figures import style, wear  # heavy: matplotlib
+    from trackroller.report.figures import wear  # heavy: matplotlib
 
-    drawn = _pictures(partial(style.draw_all, [partial(wear.profiles, ds), partial(wear.course, ds)]))
+    drawn = pictures(partial(wear.profiles, ds), partial(wear.course, ds))
     flags = {f"{flag.sentence} {flag.remedy}" for i in (0, -1) for flag in flags_of(ds.isel(travel=i))}
     content = {
         "name": "A track roller while it wears",
