@@ -134,6 +134,11 @@ def count(cases: int) -> str:
     return f"{cases:,}"
 
 
+def part_of(part: float, whole: float) -> str:
+    """Write how many cases of all of them: '3 of 1,200'."""
+    return f"{count(int(part))} of {count(int(whole))}"
+
+
 def share(part: int, whole: int) -> str:
     """Write a share of cases in percent.
 

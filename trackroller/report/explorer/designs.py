@@ -10,7 +10,7 @@ from trackroller.analysis.designs import Designs, hardest_first
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
-from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, with_unit
+from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, heading
 from trackroller.report.words.designs import alone, first_words
 from trackroller.report.words.pareto import goal_heading
@@ -67,7 +67,7 @@ def _designs(designs: Designs, worst: str) -> dict[str, Any]:
     for _, row in designs.table.head(MOST_LISTED).iterrows():
         key = tuple(row[n] for n in designs.choices)
         lives = [Life(row[name], row[f"{name}_beyond"]) for name in (["b10", "worst"] if nine else ["worst"])]
-        valid = f"{count(int(row['valid']))} of {count(int(row['cases']))}"
+        valid = part_of(row["valid"], row["cases"])
         further = [*map(cell, lives if designs.rising else map(float, lives)), valid]
         further += [] if alone(designs) else [first_words(row) or "–"]
         further += cells.get(key, ["–"] * len(heads))
@@ -109,7 +109,7 @@ def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: 
     for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
         cases = np.flatnonzero(there & designs.usable)
         ranked = cases[np.argsort(sign * values[cases], kind="stable")]
-        cells = [f"{count(len(cases))} of {count(int(there.sum()))}", "–", "–"]
+        cells = [part_of(len(cases), there.sum()), "–", "–"]
         if cases.size:
             least, most = ranked[0], ranked[-1]
             cells[1:] = [cell(Life(values[least], beyond[least])), count(int(number[most]) + 1)]

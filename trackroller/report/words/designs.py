@@ -19,16 +19,17 @@ from trackroller.report.numbers import (
     head_unit,
     lasting,
     long_name,
+    part_of,
     percent,
     quantity,
     rounded,
     setting,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.sentence import Sentence, say
+from trackroller.report.words.sentence import Sentence, phrase, say
 
-BEYOND_MEANS = "Beyond the S-N data: below the fatigue limit, or above 10⁸ overrollings."
 MOST_TIES = 3  # designs with equal lives that are named
+BEST = 5  # designs that stand side by side
 
 
 def design_words(designs: Designs, row: pd.Series) -> str:
@@ -166,9 +167,6 @@ def _unanswered(designs: Designs) -> Sentence:
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
 
-BEST = 5  # designs that stand side by side
-
-
 def best_table(view: StudyView) -> Table | None:
     """List the best valid designs as columns, each over all its conditions.
 
@@ -179,21 +177,22 @@ def best_table(view: StudyView) -> Table | None:
         return None
     best = [row for _, row in designs.table.head(BEST).iterrows() if row["valid"]]
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in designs.choices]
-    rows += _lives(designs, best) if designs.rising else _stresses(designs, best)
+    rows += _judged(designs, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
             rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
-    if designs.conditions:
-        for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")):
-            rows.append([words, *(f"{count(int(row[name]))} of {count(int(row['cases']))}" for row in best)])
-    if (met := designs.targets_met()) is not None:
-        places = designs.table.index[: len(best)]
-        rows.append(
-            ["Meets the targets in", *(f"{count(int(met[i]))} of {count(int(designs.size[i]))}" for i in places)]
-        )
-    if not designs.choices:
-        return compared("best_designs", "Life of the design", ["All conditions"], rows, _note(designs))
-    return compared("best_designs", "Best valid designs", _heads(best), rows, _note(designs))
+    several, met = bool(designs.conditions), designs.targets_met()
+    for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")) if several else ():
+        rows.append([words, *(part_of(row[name], row["cases"]) for row in best)])
+    if met is not None:
+        rows.append(["Meets the targets in", *(part_of(met[row.name], row["cases"]) for row in best)])
+    ranks = [int(row["rank"]) for row in best]
+    heads = [f"Best {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
+    title = "Best valid designs" if designs.choices else "Life of the design"
+    model = view.held_level("contact_model") if "contact_model" in view.factors else ""
+    facts = {"several": several, "drawn": designs.drawn, "rising": designs.rising, "goal": designs.goal[1]}
+    note = phrase("designs", "note", model=model, **facts)
+    return compared("best_designs", title, heads if designs.choices else ["All conditions"], rows, note)
 
 
 def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], note: str) -> Table:
@@ -202,66 +201,31 @@ def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], not
     return Table(name, title, ["", *heads], rows, note, frozenset(marks))
 
 
-def _heads(best: list[pd.Series]) -> list[str]:
-    """Return 'Best 1', or 'Best 1 (tie)' for designs that share a rank."""
-    ranks = [int(row["rank"]) for row in best]
-    return [f"Best {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
+def _judged(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
+    """Return the rows on the goal of the designs, on the worst condition, and on the body that fails first."""
+    unit, rising = head_unit(designs.goal[2]), designs.rising
 
+    def row_of(key: str, head: str, place: str = "") -> list[Any]:
+        cells = (Life(row[key], row[f"{key}_beyond"]) if rising else float(row[key]) for row in best)
+        return [f"{head}{', ' * bool(place)}{place} [{unit}]", *cells]
 
-def _lives(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
-    """Return the rows on lives, with the worst condition and the body that fails first."""
-    words, unit = designs.goal[1], head_unit(designs.goal[2])
-    several = bool(designs.conditions)
-    rows: list[list[Any]] = []
-    if designs.drawn:
-        rows.append([f"Nine of ten reach [{unit}]", *(Life(row["b10"], row["b10_beyond"]) for row in best)])
+    rows, places = [], {"worst": "worst condition", "median": "median", "best": "best condition"}
+    if rising and designs.drawn:
+        rows.append(row_of("b10", "Nine of ten reach"))
         rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
-    shown = (
-        [("worst", "worst condition"), ("median", "median"), ("best", "best condition")] if several else [("worst", "")]
-    )
-    for key, place in shown:
-        head = f"{capital(words)}{f', {place}' if place else ''} [{unit}]"
-        rows.append([head, *(Life(row[key], row[f"{key}_beyond"]) for row in best)])
-    if several:
+    places = places if rising else {"worst": "largest", "median": "median"}
+    places = places if designs.conditions else {"worst": ""}
+    rows += [row_of(key, capital(designs.goal[1]), place) for key, place in places.items()]
+    if designs.conditions:
         rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
-    if not alone(designs):
-        for body in BODIES:
-            if any(np.isfinite(row[f"worst_{body}"]) for row in best):
-                head = f"Life of the {body}{', worst condition' if several else ''} [{unit}]"
-                rows.append([head, *(Life(row[f"worst_{body}"], row[f"worst_{body}_beyond"]) for row in best)])
+    if rising and not alone(designs):
+        known = [body for body in BODIES if any(np.isfinite(row[f"worst_{body}"]) for row in best)]
+        rows += [row_of(f"worst_{body}", f"Life of the {body}", places["worst"]) for body in known]
         rows.append(["Fails first", *(first_words(row) for row in best)])
     return rows
 
 
 def first_words(row: pd.Series) -> str:
     """Say which body fails first, and in how many cases if it is not always the same."""
-    counts = {word: int(row[f"first_{word}"]) for word in FIRST_TO_FAIL}
-    parts = [f"{word} in {count(n)}" for word, n in counts.items() if n]
-    return next(word for word, n in counts.items() if n) if len(parts) == 1 else ", ".join(parts)
-
-
-def _stresses(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
-    words = capital(designs.goal[1])
-    keys = (("worst", "largest"), ("median", "median")) if designs.conditions else (("worst", ""),)
-    rows = [[f"{words}{f', {of}' if of else ''} [MPa]", *(float(row[key]) for row in best)] for key, of in keys]
-    if designs.conditions:
-        rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
-    return rows
-
-
-def _note(designs: Designs) -> str:
-    """Say how designs are ranked, and what the table's terms mean."""
-    view = designs.view
-    by = "longer life" if designs.rising else "lower peak stress"
-    note = f"Designs that are valid in more conditions come first, then those with a {by} at their worst condition."
-    if designs.drawn and designs.rising:
-        note = (
-            "Designs by the life that nine of ten sampled conditions reach; a condition that is not valid counts as 0."
-        )
-    if not designs.conditions:
-        note = f"Designs by {designs.goal[1]}."
-    note += f" {BEYOND_MEANS}" if designs.rising else ""
-    note += " Margin to slip: share of the transmissible force that the drive leaves. Margin to lift-off: load of the "
-    note += "lighter over that of the heavier contact. Bold: differs from the best."
-    model = f" Designs solved with {view.held_level('contact_model')}." if "contact_model" in view.factors else ""
-    return note + model
+    counts = {word: n for word in FIRST_TO_FAIL if (n := int(row[f"first_{word}"]))}
+    return next(iter(counts)) if len(counts) == 1 else ", ".join(f"{word} in {count(n)}" for word, n in counts.items())

@@ -14,7 +14,7 @@ from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import Life, capital, lasting, long_name, quantity, with_unit
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
-from trackroller.report.words.sentence import Sentence, say
+from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.study.file.goals import statistic
 
 
@@ -86,13 +86,12 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
         columns[goal_heading(front, name) + arrows.get(name, "")] = _column(front, name, shown)
     if kind != "design point":
         columns["Model"] = ["inside" if view.valid[row] else "outside" for row in columns[head]]
-    wishes = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
-    note = f"{capital('; '.join(wishes))}."
-    note += f" Allowed where {front.attrs['constraints']}." if front.attrs.get("constraints") else ""
-    if len(best) > len(shown):
-        note += f" The table shows {len(shown)} of the {len(best)} {kind}s, spread evenly along the first goal, and the"
-        note += " best of each goal."
-    note += f" {error.text}" if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
+    values: dict[str, Any] = {
+        "wishes": [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
+    }
+    values |= {"constraints": front.attrs.get("constraints"), "shown": len(shown), "of": len(best), "kind": kind}
+    about_friction = any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals)
+    note = phrase("pareto", "note", **values, error=error.text if error and about_friction else "")
     rows = list(zip(*columns.values(), strict=True))
     return Table("pareto", f"Pareto-optimal {kind}s", list(columns), rows, note)
 

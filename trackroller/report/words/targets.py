@@ -9,7 +9,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.ranking import estimate
 from trackroller.analysis.table import StudyView
 from trackroller.analysis.targets import most_apart
-from trackroller.report.numbers import capital, chance, count, level_text, long_name, number, quantity, setting
+from trackroller.report.numbers import capital, chance, level_text, long_name, number, part_of, quantity, setting
 from trackroller.report.tables.table import Table
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.study.design.levels import in_words
@@ -153,4 +153,4 @@ def _designs_that_meet(table: xr.Dataset, view: StudyView) -> list[str]:
             else own.between(low, high)
         )
         chosen.append(np.asarray(at))
-    return [f"{count(int(every[at].sum()))} of {count(int(at.sum()))}" if at.any() else "–" for at in chosen]
+    return [part_of(every[at].sum(), at.sum()) if at.any() else "–" for at in chosen]
