@@ -117,7 +117,7 @@ DECISIONS = {
     "all-targets": ("analysis/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
-    "fold": ("report/words/factors.py", "times(max(effect.ratio, 1", "times(min(effect.ratio, 1", WORDS),
+    "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
     "rounded-outwards": ("analysis/events.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
     "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
     "pareto-end": (

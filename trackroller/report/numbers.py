@@ -19,7 +19,6 @@ UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm", "mm
 SMALL_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
-
 BEYOND = "beyond the S-N data"
 NO_FAILURE = "no failure"
 GUIDE_UNKNOWN = (
@@ -190,7 +189,8 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
 
 
 def times(ratio: float) -> str:
-    """Write a ratio above 1 as '26-fold', one below 10 in three figures: '2.64-fold'."""
+    """Write a ratio, or the inverse of one below 1, as '26-fold'; below 10 in three figures: '2.64-fold'."""
+    ratio = max(ratio, 1 / ratio)
     return f"{rounded(ratio, 3 if ratio < 10 else 2)}-fold"
 
 

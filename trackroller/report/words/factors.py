@@ -50,7 +50,7 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     parts = strata(view, column, effect, rows)
     beyond = int((rows & view.beyond_data(column)).sum())
     values = {"column": column, "words": words, **vars(effect), "beyond": beyond}
-    values |= {"fold": _fold(effect), "verb": _verb(words, effect.ratio > 1)}
+    values |= {"fold": times(effect.ratio), "verb": _change(words, effect.ratio)[0]}
     said = (_of_pairs if paired else _of_classes)(view, effect, parts, values, rows)
     if beyond:
         own = f"{count(beyond)} of the {count(int(rows.sum()))} lives lie {BEYOND}"
@@ -77,12 +77,17 @@ def _span(view: StudyView, effect: Effect) -> str:
     return f"{capital(long_name(effect.factor))} {high} instead of {low}"
 
 
-def _fold(effect: Effect) -> str:
-    return times(max(effect.ratio, 1 / effect.ratio))
+def _change(words: str, ratio: float) -> tuple[str, str]:
+    """Return the verb and the adjective of a change: 'lengthens', 'longer' for a life."""
+    if "life" in words:
+        return ("lengthens", "longer") if ratio > 1 else ("shortens", "shorter")
+    return ("raises", "higher") if ratio > 1 else ("lowers", "lower")
 
 
-def _verb(words: str, up: bool) -> str:
-    return ("lengthens" if up else "shortens") if "life" in words else ("raises" if up else "lowers")
+def _within(parts: Strata, words: str) -> list[str]:
+    """Return the words on the change within each level: '2.1-fold longer with PA6 on itself'."""
+    said = [(setting(c, v), e.ratio) for c, v, e in parts]
+    return [f"{times(r)} {_change(words, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
 
 
 def _of_pairs(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
@@ -97,25 +102,18 @@ def _of_pairs(view: StudyView, effect: Effect, parts: Strata, values: dict[str, 
     if max(effect.ratio, 1 / effect.ratio) <= 1 + UNCHANGED and not against:
         return say("factors", "pairs_same", rows, **values)
     if against or same < MOST * effect.size:
-        medians = _by_category(parts, values["words"]) if against else []
-        strata = [(c, v, e.ratio) for c, v, e in parts] if against else []
-        return say("factors", "pairs_both", rows, **values, strata=strata, medians=medians)
+        medians = _within(_most_spread(parts), values["words"]) if against else []
+        return say("factors", "pairs_both", rows, **values, medians=medians)
     return say("factors", "pairs", rows, **values, same=same)
 
 
-def _by_category(parts: Strata, words: str) -> list[str]:
-    """Return the words on the median change within each level of the category whose levels disagree most."""
+def _most_spread(parts: Strata) -> Strata:
+    """Return the effects within the levels of the category whose levels disagree most."""
     spread: dict[str, list[float]] = {}
     for category, _, effect in parts:
         spread.setdefault(category, []).append(np.log(effect.ratio))
     category = max(spread, key=lambda c: max(spread[c]) - min(spread[c]))
-    return [
-        f"{_fold(e)} {_direction(words, e.ratio > 1)} with {setting(c, v)}"
-        if e.ratio != 1
-        else f"unchanged with {setting(c, v)}"
-        for c, v, e in parts
-        if c == category
-    ]
+    return [part for part in parts if part[0] == category]
 
 
 def _of_classes(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
@@ -123,17 +121,12 @@ def _of_classes(view: StudyView, effect: Effect, parts: Strata, values: dict[str
     own = view.table[effect.factor].to_numpy(dtype=float)[rows]
     values |= {"low_class": at_most(effect.factor, effect.low, own.min()), "name": long_name(effect.factor)}
     values |= {"high_class": at_least(effect.factor, effect.high, own.max())}
-    values["strata"] = [(c, v, e.ratio, e.interval) for c, v, e in parts]
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     if len({e.ratio > 1 for _, _, e in opposed}) == 2:
-        turns = [f"{_fold(e)} {_direction(values['words'], e.ratio > 1)} with {setting(c, v)}" for c, v, e in opposed]
+        turns = _within(opposed, values["words"])
         return say("factors", "classes_both", rows, **values, turns=turns)
     if effect.interval[0] <= 1 <= effect.interval[1] or against:
         kinds = sorted({long_name(c) for c, _, _ in against})
         return say("factors", "classes_none", rows, **values, kinds=kinds)
     return say("factors", "classes", rows, **values)
-
-
-def _direction(words: str, up: bool) -> str:
-    return ("longer" if up else "shorter") if "life" in words else ("higher" if up else "lower")

@@ -148,14 +148,14 @@ def group_indices(sens: xr.Dataset, output: str) -> Sentence | None:
     if "group_ST" not in sens:
         return None
     part = sens.sel(output=output)
-    value, low, high = estimate(part, "group_ST")
-    if not np.isfinite(value).all():
+    part = part.isel(group=np.argsort(-part["group_ST"].values, kind="stable"))
+    if part["group_ST"].isnull().any():
         return None
-    order = np.argsort(-value, kind="stable")
-    names, shares = part["group_name"].values, [percent(*one) for one in zip(value, low, high, strict=True)]
-    ranks = [(str(part["group"].values[i]), float(value[i]), float(low[i]), float(high[i])) for i in order]
+    found = estimate(part, "group_ST").T.tolist()
+    ranks = [(str(group), *one) for group, one in zip(part["group"].values, found, strict=True)]
+    parts = [(str(name), percent(*one)) for name, one in zip(part["group_name"].values, found, strict=True)]
     values = {"output": output, "what": of_output(sens, output), "words": INDEX_WORDS["ST"], "ranks": ranks}
-    return say("indices", "groups", **values, parts=[(str(names[i]), shares[i]) for i in order])
+    return say("indices", "groups", **values, parts=parts)
 
 
 def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
@@ -245,9 +245,8 @@ def _level_table(sens: xr.Dataset) -> Table | None:
     rows = []
     for output in _with_index(sens, name):
         for level in sens["level"].values:
-            part = sens.sel(output=output, level=level)
-            ranked = (-part[name]).dropna("factor").argsort(kind="stable").values
-            ones = [part.dropna("factor", subset=[name]).isel(factor=int(i)) for i in ranked[:4]]
+            part = sens.sel(output=output, level=level).dropna("factor", subset=[name])
+            ones = [part.isel(factor=i) for i in np.argsort(-part[name].values, kind="stable")[:4]]
             ranks = [f"{one['factor_name'].item()} {index_text(one, name)}" for one in ones]
             row = {"Output": capital(of_output(sens, output))}
             row[capital(category(sens))] = level_text(str(sens["level"].attrs["factor"]), level)
