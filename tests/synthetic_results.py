@@ -159,7 +159,7 @@ def _finish(ds: xr.Dataset, factors: dict, design: str) -> xr.Dataset:
         "design_meta": json.dumps({"columns": list(factors), "size": ds["regime"].size, "shape": ds["regime"].shape}),
         "seed": 1,
         "accuracy": "standard",
-        "date": "2026-01-02T03:04:05+00:00",
+        "date_created": "2026-01-02T03:04:05+00:00",
     }
     return ds
 

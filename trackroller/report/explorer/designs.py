@@ -85,7 +85,7 @@ def _goals(designs: Designs) -> tuple[list[str], dict[tuple[Any, ...], list[str]
     -------
     Heads, cells by design, and what a reader has to know; empty if the goals of the study are those of single cases.
     """
-    goals = designs.view.study.get("pareto") or {}
+    goals = designs.view.study["pareto"]
     if not any(statistic(name)[0] for name in goals):
         return [], {}, ""
     note = "The goals of this study are statistics over its scatter: they compare designs. Goals below compares cases."

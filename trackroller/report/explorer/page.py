@@ -56,15 +56,15 @@ def explorer(view: StudyView) -> dict[str, Any]:
         columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
     packed, block = pack(columns)
     header = {
-        "name": str(view.study.get("name") or ds.attrs.get("study_name") or "study"),
+        "name": view.study["name"],
         "rows": len(rows),
         "cases": cases,
         "grid": view.grid and len(rows) == cases,
         "settings": settings,
         "strengths": strengths(ds),
         "states": list(STATES),
-        "goals": view.study.get("pareto") or default_objectives(ds),
-        "constraints": list(view.study.get("constraints") or ()),
+        "goals": view.study["pareto"] or default_objectives(ds),
+        "constraints": view.study["constraints"],
         "compared": view.held_level(MODEL) if MODEL in view.factors else "",
         "lists": lists,
         "columns": packed,
@@ -95,7 +95,7 @@ def _numbers(view: StudyView) -> np.ndarray | None:
 def pareto_rows(view: StudyView, cases: int) -> np.ndarray:
     """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False without goals."""
     marked = np.zeros(cases, dtype=bool)
-    goals = view.study.get("pareto") or default_objectives(view.data)
+    goals = view.study["pareto"] or default_objectives(view.data)
     if not goals or view.solved.design.method == "inner_outer":
         return marked
     front = pareto(view.solved, goals, view.solved.config.constraints)
@@ -140,8 +140,8 @@ def write_explorer(view: StudyView, out: Path) -> Path:
         The path of the page.
     """
     content = {
-        "name": str(view.study.get("name", "")),
-        "description": str(view.study.get("description", "")),
+        "name": view.study["name"],
+        "description": view.study["description"],
         "notice": view.attrs.get("notice", ""),
         "explorer": explorer(view),
     }

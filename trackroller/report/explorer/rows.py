@@ -114,8 +114,8 @@ def coded(
 
 def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
     """Return the usual outputs and those that the study file names as goals."""
-    named = [n for text in view.study.get("constraints") or () for n in goals.names_in(text) if n != "regime"]
-    named += [n for n in view.study.get("pareto") or {} if not goals.statistic(n)[0]]
+    named = [n for text in view.study["constraints"] for n in goals.names_in(text) if n != "regime"]
+    named += [n for n in view.study["pareto"] if not goals.statistic(n)[0]]
     inputs = {*view.table, *PARAMETERS, *MATERIAL_FIELDS}
     names = dict.fromkeys([*default_names(ds, dims, dims), *(n for n in named if n not in inputs)])
     return [_output(one, "output", view) for one in _outputs(ds, dims, list(names))]
@@ -258,7 +258,7 @@ def _fixed(ds: xr.Dataset, view: StudyView, name: str) -> Any:
         return ds[name].item()
     if name in OPTIONS:
         return view.study.get(name, ds.attrs.get(name))
-    return view.study.get("base", {}).get(name, getattr(PARAMETERS.get(name), "default", None))
+    return view.study["base"].get(name, getattr(PARAMETERS.get(name), "default", None))
 
 
 def strengths(ds: xr.Dataset) -> dict[str, list[float]]:

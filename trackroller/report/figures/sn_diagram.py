@@ -32,7 +32,7 @@ def sn_diagram(view: StudyView) -> style.Drawn:
     It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
     A body without a life on the axis gets no panel, because marks piled up at the edge would not be readable.
     """
-    known, rule = _known(view), str(view.study.get("life_rule", "elementary"))
+    known, rule = _known(view), view.study["life_rule"]
     bodies = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]
     if not bodies:
         return None

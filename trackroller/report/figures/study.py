@@ -74,8 +74,7 @@ def _jobs(view: StudyView) -> Iterator[Draw]:
     yield from (partial(draw, view) for draw in OF_CASES)
     if (front := study_pareto(view)) is not None:
         yield partial(pareto_front, front, view)
-    if view.results is not None:
-        yield partial(intervals, view)
+    yield partial(intervals, view)
 
 
 def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:

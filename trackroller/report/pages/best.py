@@ -30,5 +30,5 @@ def best_of(view: StudyView) -> tuple[list[str], Table | None]:
 def write_best(view: StudyView, out: Path) -> Path:
     """Write the comparison of the best designs as one page (.html or .pdf), and return its path."""
     said, table = best_of(view)
-    name = str(view.study.get("name") or "study")
-    return write_page(out, render("best.html.j2", {"name": name, "said": said, "table": table}, cell=cell))
+    content = {"name": view.study["name"], "said": said, "table": table}
+    return write_page(out, render("best.html.j2", content, cell=cell))

@@ -20,7 +20,7 @@ from trackroller.files import write_text
 from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.numbers import capital, count, lives_in_years, long_name, percent, rounded
+from trackroller.report.numbers import capital, count, lives_in_years, long_name, part_of, percent, plain, rounded
 from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.inputs import (
     Row,
@@ -47,7 +47,7 @@ from trackroller.report.words.regimes import reason_table, regime_table, validit
 from trackroller.report.words.targets import target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
-from trackroller.study.design.kinds import those_with
+from trackroller.study.design.kinds import DESIGNS
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -99,19 +99,19 @@ def page_text(view: StudyView, content: dict[str, Any], figures_dir: Path) -> st
 def contents(view: StudyView) -> dict[str, Any]:
     """Return everything the template needs from the study and its analysis, except figures and explorer."""
     settings, attrs = view.study, dict(view.attrs)
-    merged = {**{k: settings[k] for k in (*OPTIONS, "design") if k in settings}, **attrs}
+    merged = {name: settings[name] for name in OPTIONS if name in settings} | attrs
     models = report_section(view)
     options = [Row(capital(long_name(k)), text) for k in OPTIONS if (text := _option_text(merged.get(k, "")))]
     return {
-        "name": str(settings.get("name") or attrs.get("study_name") or "Parameter study"),
-        "description": str(settings.get("description") or attrs.get("comment") or ""),
+        "name": settings["name"],
+        "description": settings["description"] or attrs.get("comment", ""),
         "facts": _facts(view, merged),
         "summary": in_short(view, models.get("short", [])),
         **sections(view, models),
         "factors": factor_table(view),
         "base": base_rows(view),
         "doubts": _doubts(view),
-        "not_given": not_given_text(settings.get("not_given", {})),
+        "not_given": not_given_text(settings["not_given"]),
         "options": options + models_used(view.data) + correlation_row(view),
         "materials": [t for t in (materials_table(attrs), friction_table(attrs)) if t],
         "solution": solution_facts(view),
@@ -157,19 +157,16 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
 
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     """Return the line under the title: date, design, size, model, accuracy."""
-    design = str(merged.get("design", "grid" if view.grid else "sample")).replace("_", " ")
-    uncounted = design.replace(" ", "_") in (*those_with("array"), "table", "sample", "optimise")
-    samples = None if uncounted else view.study.get("samples")
-    most = "up to " if view.study.get("point_samples") else ""
-    date = str(merged.get("date_created") or merged.get("date") or merged.get("created") or "")
+    design, most = view.study["design"], "up to " if view.study.get("point_samples") else ""
+    sampled = not DESIGNS[design].array and design not in ("table", "optimise")
     parts = [
-        date[:10],
-        f"design of experiments {design}{f' with {most}{count(samples)} samples' if samples else ''}",
+        str(merged.get("date_created", ""))[:10],
+        f"design of experiments {plain(design)}" + f" with {most}{count(view.study['samples'])} samples" * sampled,
         size_words(view),
-        f"contact model {_option_text(merged['contact_model'])}" if merged.get("contact_model") else "",
-        f"accuracy {_option_text(merged['accuracy'])}" if merged.get("accuracy") else "",
+        f"contact model {_option_text(merged['contact_model'])}",
+        f"accuracy {_option_text(merged['accuracy'])}",
     ]
-    return " · ".join(p for p in parts if p)
+    return " · ".join(filter(None, parts))
 
 
 def _option_text(value: Any) -> str:
@@ -181,13 +178,11 @@ def models_used(ds: xr.Dataset) -> list[Row]:
     """Say how many cases each contact model solved, where another model than the chosen one solved some of them."""
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
-    names = str(ds["contact_model_used"].attrs.get("flag_meanings", "")).split()
-    used = ds["contact_model_used"].values.astype(float)
-    counts = {name: count for i, name in enumerate(names) if (count := int((used == i).sum()))}
-    asked = ds.attrs.get("contact_model")
-    if not counts or (len(counts) == 1 and asked in (None, *counts)):
+    used = ds["contact_model_used"].values
+    counts = {name: cases for i, name in enumerate(parameters.CONTACT_MODELS) if (cases := int((used == i).sum()))}
+    if not counts or list(counts) == [ds.attrs.get("contact_model")]:
         return []
-    said = ", ".join(f"{name} in {count}" for name, count in counts.items())
+    said = ", ".join(f"{name} in {cases}" for name, cases in counts.items())
     return [Row("Contact model used", f"{said} of {used.size} cases")]
 
 
@@ -196,7 +191,7 @@ def solution_facts(view: StudyView) -> list[Row]:
     ds, rows = view.data, []
     if "converged" in view.table:
         done = int((view.table["converged"] == 1).sum())
-        rows.append(Row("Converged cases", f"{count(done)} of {count(len(view.table))}"))
+        rows.append(Row("Converged cases", part_of(done, len(view.table))))
     if (known := _finite(ds, "residual")).size:
         rows.append(Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
     if (known := _finite(ds, "error_estimate")).size:
@@ -221,15 +216,9 @@ def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:
     placed: dict[str, list[dict[str, Any]]] = {key: [] for key in PLACES}
     for item in listed:
         section = next((key for key, starts in SECTIONS.items() if item["name"].startswith(starts)), "why")
-        if source := _data_uri(folder, item["name"]):
-            placed[section].append(item | {"source": source})
+        drawn = folder / f"{item['name']}.svg"
+        drawn = drawn if drawn.stat().st_size <= MAX_SVG else drawn.with_suffix(".png")
+        placed[section].append(item | {"source": data_uri(drawn)})
     for number, item in enumerate((item for items in placed.values() for item in items), 1):
         item["number"] = number
     return placed
-
-
-def _data_uri(folder: Path, name: str) -> str:
-    svg, png = folder / f"{name}.svg", folder / f"{name}.png"
-    if svg.is_file() and (svg.stat().st_size <= MAX_SVG or not png.is_file()):
-        return data_uri(svg)
-    return data_uri(png) if png.is_file() else ""

@@ -82,8 +82,7 @@ def material_rows(material: Material) -> list[Row]:
 
 def factor_table(view: StudyView) -> Table | None:
     """List factors and derived parameters: symbol, unit, values as found and as set, number of levels."""
-    given = view.study.get("factors", {})
-    specs = {name: _spec(spec) for name, spec in given.items()} if isinstance(given, Mapping) else {}
+    specs = {name: _spec(spec) for name, spec in view.study["factors"].items()}
     follows = [n for n, spec in specs.items() if n not in view.factors and spec.startswith("=") and n in view.table]
     rows = []
     for name in (*view.factors, *follows):
@@ -116,8 +115,7 @@ def _spec(spec: Any) -> str:
 def correlation_row(view: StudyView) -> list[Row]:
     """Return the rank correlations of the study file as one row, if there are any."""
     said = [
-        f"{long_name(one)} with {long_name(other)} {number(rho)}"
-        for one, other, rho in view.study.get("rank_correlations", ())
+        f"{long_name(one)} with {long_name(other)} {number(rho)}" for one, other, rho in view.study["rank_correlations"]
     ]
     return [Row("Rank correlations", "; ".join(said))] if said else []
 

@@ -14,7 +14,7 @@ from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.report.numbers import hour_unit, lasting, number, rounded
+from trackroller.report.numbers import BEYOND, hour_unit, lasting, number, rounded
 from trackroller.report.tables.inputs import Row
 from trackroller.roller.geometry import rolling_radius
 
@@ -87,12 +87,9 @@ def _life(cycles: float, body: str, inputs: Mapping[str, Any], material: Materia
 def _text(hours: float, inputs: Mapping[str, Any], beyond: bool, further: str = "") -> str:
     if math.isinf(hours):
         return lasting(hours)
-    lengths = [
-        f"{rounded(hours)} {hour_unit(hours)}",
-        f"{rounded(hours * inputs['velocity'] * 60.0 / 1e3)} km",
-        *filter(None, [further]),
-    ]
-    return lasting(1.0, beyond=beyond).replace("1", "; ".join(lengths), 1)
+    way = hours * inputs["velocity"] * 60.0 / 1e3
+    lengths = [f"{rounded(hours)} {hour_unit(hours)}", f"{rounded(way)} km", *([further] if further else [])]
+    return "; ".join(lengths) + f" ({BEYOND})" * beyond
 
 
 def _of_pair(

@@ -21,6 +21,7 @@ from trackroller.report.numbers import (
     long_name,
     part_of,
     percent,
+    plain,
     quantity,
     rounded,
     setting,
@@ -114,8 +115,7 @@ def target_of_designs(view: StudyView, words: str) -> Sentence | None:
     values = {"met": met.tolist(), "every": int((met == designs.size).sum()), "best": best, "words": words}
     row = designs.table[designs.table.index == best].iloc[0]
     values |= {"name": design_words(designs, row), "several": bool(designs.conditions)}
-    named = dict((view.study.get("analysis") or {}).get("target") or {})
-    unknown = "pair_life_hours" in named and alone(designs)
+    unknown = "pair_life_hours" in view.study["analysis"]["target"] and alone(designs)
     return say("designs", "target_of_designs", **values, conditions=int(designs.size[best]), alone=unknown)
 
 
@@ -163,7 +163,7 @@ def _unanswered(designs: Designs) -> Sentence:
     roles = factor_roles(designs.view)
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(designs.size), "least": int(designs.size.min()), "most": int(designs.size.max())}
-    method = str(designs.view.study.get("design", "")).replace("_", " ")
+    method = plain(designs.view.study["design"])
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
 

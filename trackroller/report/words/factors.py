@@ -57,7 +57,7 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
         said = replace(said, text=f"{said.text.removesuffix('.')}; {own}.")
     if paired:
         return said
-    pairs = [pair for pair in view.study.get("rank_correlations", ()) if factor in pair[:2] and pair[2]]
+    pairs = [pair for pair in view.study["rank_correlations"] if factor in pair[:2] and pair[2]]
     tied = [one if other == factor else other for one, other, _ in pairs]
     if not tied:
         return said

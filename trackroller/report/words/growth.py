@@ -31,7 +31,7 @@ def quantity_words(name: str, design: str) -> str:
 
 def grown(view: StudyView) -> Sentence | None:
     """Say what a growing sample was to reach, why it stopped, and what it reached; None for other studies."""
-    growth = looks_of(view.solved) if view.results is not None else None
+    growth = looks_of(view.solved)
     if growth is None:
         return None
     last, design = growth["looks"][-1], view.solved.design.method
@@ -45,7 +45,7 @@ def grown(view: StudyView) -> Sentence | None:
 
 def looks_table(view: StudyView) -> Table | None:
     """List the widest interval of each output at each look; None for a study without the key `until`."""
-    growth = looks_of(view.solved) if view.results is not None else None
+    growth = looks_of(view.solved)
     if growth is None:
         return None
     rows = []

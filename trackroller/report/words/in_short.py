@@ -37,7 +37,7 @@ def in_short(view: StudyView, models: list[str]) -> list[Line]:
     """
     sens = view.analysis
     complete = sens if "missing_cases" not in view.attrs else None  # the study asks for more samples than are solved
-    enough = samples(complete, int(view.study.get("samples", 0))) if complete is not None else None
+    enough = samples(complete, view.study["samples"]) if complete is not None else None
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         # first, so that the first screen answers what to build

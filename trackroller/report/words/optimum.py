@@ -24,7 +24,7 @@ def optimum_sentences(view: StudyView) -> list[Sentence]:
     -------
     The sentences; none for a study that is no search.
     """
-    search = optimum_of(view.solved) if view.results is not None else None
+    search = optimum_of(view.solved)
     if search is None:
         return []
     least = least_violation(search)
@@ -104,7 +104,7 @@ def _tolerance(view: StudyView, search: dict[str, Any], best: dict[str, Any]) ->
 
 def optima_table(view: StudyView) -> Table | None:
     """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
-    search = optimum_of(view.solved) if view.results is not None else None
+    search = optimum_of(view.solved)
     if search is None or least_violation(search) == 1:
         return None
     shown = sorted(search["optima"], key=lambda one: one["design"] != search["recommended"])[:BEST]

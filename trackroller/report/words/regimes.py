@@ -20,7 +20,7 @@ from trackroller.report.words.sentence import Sentence, say
 
 def silent_drive(view: StudyView) -> Sentence | None:
     """Say that a motor force which the study does not name drives the cases that skid; None if there are none."""
-    force = view.study.get("not_given", {}).get("motor_force")
+    force = view.study["not_given"].get("motor_force")
     skid = view.regime == REGIMES.index("full_slip")
     if not force or not skid.any():
         return None
