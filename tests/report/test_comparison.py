@@ -57,9 +57,15 @@ def study(place, factors, base=None, models=MODELS, outputs=OUTPUTS, **more):
 
 
 def shown(gathered, place):
-    """Return the captions of all figures by name, each rendered and not saved, and the text of the report."""
+    """Return the captions of all figures by name, each rendered and saved as an empty file, and the report's text."""
+
+    def save(figure, out_dir, name):
+        figure.draw_without_rendering()
+        out_dir.mkdir(exist_ok=True)
+        (out_dir / f"{name}.svg").touch()
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(style, "save", lambda figure, out_dir, name: figure.draw_without_rendering())
+        patch.setattr(style, "save", save)
         infos = draw_all(view_of(gathered), place / "figures")
     text = write_report(view_of(gathered), place / "figures", place / "report.html").read_text(encoding="utf-8")
     return {i.name: i for i in infos}, re.sub(r'src="data[^"]*"', "", text)

@@ -47,8 +47,8 @@ _PROPERTIES = (
     _number("fatigue_strength_ratio", "sigma_D/R_m", "-", "fatigue limit over tensile strength", 0.0, 1.0),
     _number("cycles_at_tensile_strength", "N_Rm", "-", "cycles at the tensile strength", 0.0, math.inf),
     _number("cycles_at_fatigue_limit", "N_k", "-", "cycles at the fatigue limit", 0.0, math.inf),
-    _number("scatter_in_cycles", "T_N", "-", "scatter of life N_90/N_10", 1.0, 1e6, True, True),
-    _number("scatter_in_stress", "T_S", "-", "scatter of strength S_90/S_10", 1.0, 1e3, True, True),
+    _number("scatter_in_cycles", "T_N", "-", "scatter of the life T_N = N_90/N_10", 1.0, 1e6, True, True),
+    _number("scatter_in_stress", "T_S", "-", "scatter of the strength T_S = S_90/S_10", 1.0, 1e3, True, True),
 )
 OF_LIMITS: dict[str, Parameter] = {row["name"]: Parameter(**row) for row in declared()["materials"]}
 PROPERTIES: dict[str, Parameter] = {p.name: p for p in _PROPERTIES} | OF_LIMITS

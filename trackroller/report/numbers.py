@@ -16,6 +16,7 @@ from trackroller.study.design.levels import NAMED, short
 
 UNITS = {"1": "–", "-": "–", "degree": "°", "deg": "°"}
 UNITS |= {"m min-1": "m/min", "h-1": "1/h", "J m-1": "J/m", "N mm": "N·mm", "mm km-1": "mm/km", "mm3 km-1": "mm³/km"}
+UNITS["mm3/(N m)"] = "mm³/(N m)"
 SMALL_NUMBERS = {2: "two", 3: "three", 4: "four", 5: "five", 6: "six", 7: "seven", 8: "eight", 9: "nine"}
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
@@ -212,6 +213,11 @@ def unit_text(units: str) -> str:
     return UNITS.get(units, units)
 
 
+def row_unit(units: str) -> str:
+    """Write a CF unit behind a number in a row; a pure number has none."""
+    return unit_text(units).replace("–", "")
+
+
 def head_unit(units: str) -> str:
     """Return the unit at the head of a column or axis; behind hours the hours of a year, if the duty is known."""
     duty = _duty.get() if units == "h" else None
@@ -283,27 +289,6 @@ def setting(name: str, value: Any) -> str:
     text = level_text(name, value)
     spoken = name in NAMED and not (name == "guide_curve_radius" and text == "straight")
     return text if spoken else "straight track" if name == "guide_curve_radius" else f"{long_name(name)} {text}"
-
-
-def short_levels(names: Sequence[str]) -> list[str]:
-    """Drop the part of names of pairs that all pairs share, because it does not distinguish them."""
-    parts = [_parts(name) for name in names]
-    if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
-        for keep in (0, 1):
-            if len({p[1 - keep] for p in parts}) == 1:
-                return [p[keep] for p in parts]
-    return list(names)
-
-
-def material_of_level(text: str) -> str:
-    """Return the material that a level names, of a pair that of the roller."""
-    return _parts(text)[0]
-
-
-def _parts(name: str) -> list[str]:
-    if name.endswith(" on itself"):
-        return [name.removesuffix(" on itself")] * 2
-    return name.split(" / " if " / " in name else " on ")
 
 
 def _pair(label: str) -> str:

@@ -25,7 +25,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from trackroller.files import write_text, write_whole
 from trackroller.materials import builtin_database
-from trackroller.report.numbers import material_of_level, number, short_levels
+from trackroller.report.numbers import number
+from trackroller.report.words.levels import material_of_level, short_levels
 
 log = logging.getLogger("trackroller")
 COLUMN_MM = 85.0  # a column of a two-column page
@@ -99,7 +100,7 @@ def head(figure: Figure, title: str, subtitle: str = "") -> None:
     figure.suptitle("\n".join(filter(None, (title, subtitle))), x=0.015, ha="left", wrap=True)
 
 
-def panels(title: str, height_mm: float, count: int = 1, **shared: bool) -> tuple[Figure, Any]:
+def panels(title: str, height_mm: float, count: int = 1, **shared: Any) -> tuple[Figure, Any]:
     """Return a figure with its title, and its empty axes side by side; `shared` says which axes they share."""
     figure = new_figure(height_mm)
     head(figure, title)

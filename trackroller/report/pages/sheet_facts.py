@@ -14,7 +14,7 @@ from trackroller.analysis.columns import at_surface
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OPTIONS, REGIMES
 from trackroller.parameters.example import not_given_text
-from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, unit_text
+from trackroller.report.numbers import BEYOND, listing, number, plain, rounded, row_unit
 from trackroller.report.tables.inputs import Row, as_material, input_rows, material_rows, material_source
 from trackroller.report.tables.limits import (
     GUESSED,
@@ -143,7 +143,7 @@ def _contact_lines(ds: xr.Dataset) -> list[list[str]]:
             lines.append((f"peak stress of the {body} (von Mises)", peak, "MPa"))
             lines.append((f"depth of the peak in the {body}", depth.sel(body=body).values, "mm"))
     known = [line for line in lines if np.isfinite(line[1]).all()]
-    return [[words, *map(_number, values), _unit(units)] for words, values, units in known]
+    return [[words, *map(_number, values), row_unit(units)] for words, values, units in known]
 
 
 def _no_life(regime: str, ds: xr.Dataset, body: str, material: Material) -> str:
@@ -186,15 +186,11 @@ def _hours(row: Row) -> str:
 def quantity_rows(ds: xr.Dataset, names: Iterable[str]) -> list[Row]:
     """Return the finite ones of some results, each with its symbol and unit."""
     stated = [(n, float(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds]
-    return [Row(_words(name), _number(value), _unit(units)) for name, value, units in stated if np.isfinite(value)]
+    return [Row(_words(name), _number(value), row_unit(units)) for name, value, units in stated if np.isfinite(value)]
 
 
 def _number(value: float) -> str:
     return number(value if abs(value) > ROUNDING else 0.0)
-
-
-def _unit(units: str) -> str:
-    return unit_text(units).replace("–", "")
 
 
 def _words(name: str) -> str:

@@ -9,25 +9,17 @@ from typing import Any
 
 from trackroller.analysis.table import StudyView
 from trackroller.materials import Material
-from trackroller.materials.properties import PROPERTIES, REQUIRED
+from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
-from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, unit_text
+from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.roller.record import friction_records, is_default
 from trackroller.study.design.levels import NAMED, entries
 
-MATERIAL_ROWS = (  # attribute, words, unit
-    ("youngs_modulus", "Young's modulus E", "MPa"),
-    ("poisson_ratio", "Poisson's ratio nu", ""),
-    ("tensile_strength", "tensile strength R_m", "MPa"),
-    ("fatigue_limit", "fatigue limit sigma_D", "MPa"),
-    ("cycles_at_tensile_strength", "cycles at the tensile strength N_Rm", ""),
-    ("cycles_at_fatigue_limit", "cycles at the fatigue limit N_k", ""),
-    ("scatter_in_cycles", "scatter of the life T_N = N_90/N_10", ""),
-    ("scatter_in_stress", "scatter of the strength T_S = S_90/S_10", ""),
-    ("yield_strength", "yield strength R_e", "MPa"),
-    ("hardness", "Brinell hardness", "HB"),
-    ("wear_coefficient", "wear coefficient k_W", "mm³/(N m)"),
+SHOWN = (  # values of a material on a sheet
+    *("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit"),
+    *("cycles_at_tensile_strength", "cycles_at_fatigue_limit", "scatter_in_cycles", "scatter_in_stress"),
+    *("yield_strength", "hardness", "wear_coefficient"),
 )
 
 
@@ -61,7 +53,7 @@ def input_row(name: str, value: Any) -> Row:
         parameter = PARAMETERS[name]
         shown = "not given" if value is None else number(value) if isinstance(value, (int, float)) else str(value)
         words = f"{parameter.long_name} {parameter.symbol}"
-        return Row(words, shown, unit_text(parameter.unit).replace("–", ""), is_default(name, value))
+        return Row(words, shown, row_unit(parameter.unit), is_default(name, value))
     if name in MAPPING_FIELDS and name not in MECHANICAL_MAPPINGS:
         shown = entries(json.loads(value) if isinstance(value, str) else value)
     elif name in MAPPING_FIELDS:
@@ -73,11 +65,13 @@ def input_row(name: str, value: Any) -> Row:
 
 def material_rows(material: Material) -> list[Row]:
     """Return the values of a material."""
-    rows = [
-        Row(words, "not given") if (value := getattr(material, name)) is None else Row(words, number(value), unit)
-        for name, words, unit in MATERIAL_ROWS
-    ]
-    return [Row("name", material.name), *rows, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
+    rows = [Row("name", material.name)]
+    for one in map({**PROPERTIES, **ALTERNATIVES}.__getitem__, SHOWN):
+        value = getattr(material, one.name)
+        # a symbol that the words or the unit hold already is not repeated
+        words = one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
+        rows.append(Row(words, "not given") if value is None else Row(words, number(value), row_unit(one.unit)))
+    return [*rows, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
 
 
 def factor_table(view: StudyView) -> Table | None:

@@ -14,7 +14,7 @@ from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS, heat
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.materials import Material
-from trackroller.report.numbers import lasting, listing, number, rounded, unit_text
+from trackroller.report.numbers import lasting, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
 from trackroller.roller import temperature
 from trackroller.roller.dataset import NOTES
@@ -152,7 +152,7 @@ def _of_limits(
         limit = LIMITS[name]
         variable = next((one for one in limit.compares[0].split() if one in ds), "utilisation")
         words = f": {limit.compares[1]}" if limit.compares[1] else ""
-        unit = unit_text(ds.variables[variable].attrs["units"]).replace("–", "")
+        unit = row_unit(ds.variables[variable].attrs["units"])
         timed = bool(np.any(~np.isnan(_at(ds, "life_hours_by_limit", places, limit=name))))
         for body in limit.bodies:
             here = {"limit": name, "body": body}

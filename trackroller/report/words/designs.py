@@ -185,7 +185,8 @@ def best_table(view: StudyView) -> Table | None:
     for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")) if several else ():
         rows.append([words, *(part_of(row[name], row["cases"]) for row in best)])
     if met is not None:
-        rows.append(["Meets the targets in", *(part_of(met[row.name], row["cases"]) for row in best)])
+        places = designs.table.index[: len(best)]
+        rows.append(["Meets the targets in", *(part_of(met[i], designs.size[i]) for i in places)])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Best {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
     title = "Best valid designs" if designs.choices else "Life of the design"

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from trackroller.analysis.groups import DRIVE, Groups, classes
 from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import level_text, long_name, number, rounded, setting, short_levels
+from trackroller.report.numbers import level_text, long_name, number, rounded, setting
 
 LOADS = ("radial_force", "axial_force", "motor_force")  # their sign is a direction: less may mean more load
 COLOURS = 5  # most groups that get a colour each
@@ -21,6 +21,27 @@ def group_texts(along: Groups) -> list[str]:
     if along.name == DRIVE and not along.ordered:
         return [_drive(*pair) for pair in ends]
     return short_levels([span(along.name, *pair) for pair in ends])
+
+
+def short_levels(names: Sequence[str]) -> list[str]:
+    """Drop the part of names of pairs that all pairs share, because it does not distinguish them."""
+    parts = [_parts(name) for name in names]
+    if len(set(names)) > 1 and all(len(p) == 2 for p in parts):
+        for keep in (0, 1):
+            if len({p[1 - keep] for p in parts}) == 1:
+                return [p[keep] for p in parts]
+    return list(names)
+
+
+def material_of_level(text: str) -> str:
+    """Return the material that a level names, of a pair that of the roller."""
+    return _parts(text)[0]
+
+
+def _parts(name: str) -> list[str]:
+    if name.endswith(" on itself"):
+        return [name.removesuffix(" on itself")] * 2
+    return name.split(" / " if " / " in name else " on ")
 
 
 def _drive(low: float, high: float) -> str:
