@@ -1,7 +1,7 @@
-"""How each method draws its rows: first quantiles or codes, then the values of each factor.
+"""How each method draws its rows: quantiles, codes or numbers of listed values of each factor.
 
 Each function takes the independent factors, the number of samples, the seed and the options of the method. It returns
-(columns, unit, meta) as `trackroller.study.design.sampling.SampledDesign` describes them.
+(unit, meta) as `trackroller.study.design.sampling.SampledDesign` describes them.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design import correlation, saltelli
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
 from trackroller.study.design.evolution import Gene, first_generation
-from trackroller.study.design.factors import TAIL, Factor, column
+from trackroller.study.design.factors import Factor, column
 from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
 from trackroller.study.design.growth import check_point_samples
 from trackroller.study.design.kinds import those_with
@@ -30,13 +30,9 @@ from trackroller.study.design.saltelli import all_groups
 from trackroller.study.file.csv import read_rows
 
 MAX_ROWS = 50_000_000  # a larger number is a typing error
-Drawn = tuple[dict[str, np.ndarray], np.ndarray, dict[str, Any]]
+Drawn = tuple[np.ndarray, dict[str, Any]]
 Factors = Mapping[str, Factor]
 Settings = Mapping[str, Any]
-
-
-def _map(free: Factors, unit: np.ndarray) -> dict[str, np.ndarray]:
-    return {name: f.from_unit(unit[:, j]) for j, (name, f) in enumerate(free.items())}
 
 
 def _crossed(outer: np.ndarray, inner: np.ndarray) -> np.ndarray:
@@ -68,8 +64,7 @@ def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         size = f"grid of {' x '.join(map(str, shape))}"
         raise InputError("design", size, f"at most {MAX_ROWS} rows", "Take fewer levels or a sampled design.")
     index = np.indices(shape).reshape(len(shape), int(np.prod(shape))).T  # the last factor runs fastest
-    columns = {name: f.take(index[:, j]) for j, (name, f) in enumerate(free.items())}
-    return columns, index.astype(float), {"shape": shape}
+    return index.astype(float), {"shape": shape}
 
 
 def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -82,8 +77,7 @@ def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -
             return grown_lhs(len(free), [size // copies for size in (*earlier, n)], seed, root)
         return correlation.correlate(sobol_rows(len(free), n // copies, seed), root, strata=False)
 
-    unit = in_turn(one, seed, copies)
-    return _map(free, unit), unit, {correlation.KEY: entries} | _of_replicates(settings)
+    return in_turn(one, seed, copies), {correlation.KEY: entries} | _of_replicates(settings)
 
 
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -98,8 +92,8 @@ def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     if settings["groups"]:
         meta["groups"] = order
     draw = partial(saltelli.draw, blocks, [order.index(owner) for owner in owners], second)
-    unit = in_turn(lambda own: draw(own).reshape(blocks, -1, len(free)), seed, copies).reshape(-1, len(free))
-    return _map(free, unit), unit, meta
+    unit = in_turn(lambda own: draw(own).reshape(blocks, -1, len(free)), seed, copies)
+    return unit.reshape(-1, len(free)), meta
 
 
 def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -123,16 +117,12 @@ def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     meta = {"trajectories": n, "levels": levels} | _of_replicates(settings)
     path = unit.reshape(n, count + 1, count)
     drawers = [np.random.default_rng([s, 1]) for s in seeds]
-    columns = {}
-    for j, (name, factor) in enumerate(free.items()):
-        if not factor.discrete:
-            columns[name] = factor.from_unit(unit[:, j], TAIL)
-            continue
-        pair = np.array([rng.choice(len(factor.levels), 2, replace=False) for rng in drawers])
-        moved = path[:, :, j] != path[:, :1, j]
-        path[:, :, j] = np.where(moved, pair[:, 1:], pair[:, :1])
-        columns[name] = factor.take(path[:, :, j].ravel())
-    return columns, path.reshape(-1, count), meta
+    for j, factor in enumerate(free.values()):
+        if factor.discrete:
+            pair = np.array([rng.choice(len(factor.levels), 2, replace=False) for rng in drawers])
+            moved = path[:, :, j] != path[:, :1, j]
+            path[:, :, j] = np.where(moved, pair[:, 1:], pair[:, :1])
+    return path.reshape(-1, count), meta
 
 
 def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -148,13 +138,9 @@ def _coded(method: str, free: Factors, n: int, seed: int, settings: Settings) ->
     from trackroller.study.design import arrays  # heavy: pydoe
 
     coded = getattr(arrays, method)(len(numeric))
-    crossing = _grid({name: free[name] for name in listed}, n, seed, {})[1]
+    crossing = _grid({name: free[name] for name in listed}, n, seed, {})[0]
     unit = _in_order(_crossed(crossing, coded), [*listed, *numeric], free)
-    columns = {
-        name: factor.take(places) if name in listed else factor.from_unit((places + 1) / 2, TAIL)
-        for (name, factor), places in zip(free.items(), unit.T, strict=True)
-    }
-    return columns, unit, {"runs": len(coded), "crossed": listed}
+    return unit, {"runs": len(coded), "crossed": listed}
 
 
 def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
@@ -169,15 +155,14 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         raise InputError(
             "factors", list(free), allowed, "Give one factor a distribution such as {normal: [0.1, 0.02]}."
         )
-    drawn, sample, more = _random(settings["inner"], inner, n, seed, settings)
-    points, index, meta = _grid(outer, 0, 0, {})
+    sample, more = _random(settings["inner"], inner, n, seed, settings)
+    index, meta = _grid(outer, 0, 0, {})
     sizes = check_point_samples(settings["point_samples"], n, len(index))
-    point, row = np.repeat(np.arange(len(index)), sizes), np.concatenate([np.arange(size) for size in sizes])
-    columns = {name: values[point] for name, values in points.items()} | {n: v[row] for n, v in drawn.items()}
-    unit = _in_order(np.concatenate([index[point], sample[row]], axis=1), [*outer, *inner], free)
+    sides = np.repeat(index, sizes, axis=0), np.concatenate([sample[:size] for size in sizes])
+    unit = _in_order(np.concatenate(sides, axis=1), [*outer, *inner], free)
     meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": len(index)}
     meta |= {"point_samples": sizes} if min(sizes) < n else {}
-    return columns, unit, meta
+    return unit, meta
 
 
 def genes_of(choices: Factors) -> list[Gene]:
@@ -200,14 +185,12 @@ def _optimise(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     else:
         lines = read_rows(Path(settings["table"]), "table", "design", Collector(), most=math.inf).lines
         genes = np.array([[read_number(cell) for cell in line] for line in lines.values()])
-    random = {name: f for name, f in inner.items() if not f.discrete}
-    listed, index, _ = _grid({name: f for name, f in inner.items() if f.discrete}, 0, 0, {})
-    drawn, sample, _ = _random("sobol", random, n, seed, {}) if random else ({}, np.zeros((1, 0)), {})
-    conditions = _crossed(index, sample)
+    listed, drawn = ({name: f for name, f in inner.items() if f.discrete is discrete} for discrete in (True, False))
+    sample = _random("sobol", drawn, n, seed, {})[0] if drawn else np.zeros((1, 0))
+    conditions = _crossed(_grid(listed, 0, 0, {})[0], sample)
     unit = _in_order(_crossed(genes, conditions), [*choices, *listed, *drawn], free)
-    columns = {n: f.take(u) if f.discrete else f.from_unit(u) for (n, f), u in zip(free.items(), unit.T, strict=True)}
     meta = {"design_points": len(genes), "inner_samples": len(conditions)}
-    return columns, unit, meta | {"outer": list(choices), "inner": list(inner)}
+    return unit, meta | {"outer": list(choices), "inner": list(inner)}
 
 
 DRAW: dict[str, Callable[..., Drawn]] = {
@@ -222,9 +205,7 @@ DRAW: dict[str, Callable[..., Drawn]] = {
 }
 
 
-def table(
-    path: Any, used: Collection[str] = ()
-) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarray, dict[str, Any]]:
+def table(path: Any, used: Collection[str] = ()) -> tuple[dict[str, np.ndarray], dict[str, Factor], np.ndarray]:
     """Read the user's own cases from a CSV file.
 
     Parameters
@@ -234,7 +215,7 @@ def table(
 
     Returns
     -------
-    Columns (name -> shape (n,)), then as `of_columns`, and an empty dictionary.
+    Columns (name -> shape (n,)), then as `of_columns`.
 
     Raises
     ------
@@ -250,7 +231,7 @@ def table(
         numbers = _numbers_of(name, cells)
         columns[name] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
     wrong.check()
-    return columns, *of_columns(columns), {}
+    return columns, *of_columns(columns)
 
 
 def table_lines(path: Path) -> list[int]:

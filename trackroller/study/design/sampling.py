@@ -19,13 +19,22 @@ import numpy as np
 from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.parameters import PARAMETERS, expressions
 from trackroller.study.design.draws import DRAW, MAX_ROWS, table
-from trackroller.study.design.factors import Factor, parse
+from trackroller.study.design.factors import TAIL, Factor, parse
 from trackroller.study.design.kinds import DESIGNS, those_that_take, those_with
 
 
 def is_random(factor: Factor, method: str) -> bool:
     """Return whether a design draws the values of a factor at random."""
     return DESIGNS[method].weighs or (method == "inner_outer" and factor.scatter)
+
+
+def values_at(factor: Factor, places: np.ndarray, method: str) -> np.ndarray:
+    """Return the values of a factor at its places in a design, a column of `SampledDesign.unit`, shape (n,)."""
+    coded = DESIGNS[method].coded
+    if factor.discrete and method != "plackett_burman" and not is_random(factor, method):
+        return factor.take(places)
+    tail = TAIL if coded or method == "morris" else 0.0
+    return factor.from_unit((places + 1) / 2 if coded else places, tail)
 
 
 @dataclass(frozen=True)
@@ -127,7 +136,8 @@ def sample(
     settings = _settings(method, options)
     if method == "table":
         used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
-        columns, free, unit, meta = table(settings["table"], used)
+        columns, free, unit = table(settings["table"], used)
+        meta: dict[str, Any] = {}
         parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
         for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
             allowed = "a table has its factors as columns"
@@ -140,10 +150,11 @@ def sample(
         _check_weights(free, method)
         if not DESIGNS[method].array and int(n) < 1:
             raise InputError("samples", n, "a whole number >= 1")
-        columns, unit, meta = DRAW[method](free, int(n), int(seed), settings)
-    if columns and len(unit) > MAX_ROWS:
-        raise InputError("design", method, f"at most {MAX_ROWS} rows")
+        unit, meta = DRAW[method](free, int(n), int(seed), settings)
+        columns = {name: values_at(f, unit[:, j], method) for j, (name, f) in enumerate(free.items())}
     rows = len(unit)
+    if rows > MAX_ROWS:
+        raise InputError("design", method, f"at most {MAX_ROWS} rows")
     for name, factor in parsed.items():
         if len(factor.levels) == 1:
             columns[name] = factor.take(np.zeros(rows, dtype=int))

@@ -16,9 +16,9 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.study.design.draws import of_columns
-from trackroller.study.design.factors import TAIL, Factor
+from trackroller.study.design.factors import Factor
 from trackroller.study.design.kinds import DESIGNS
-from trackroller.study.design.sampling import SampledDesign
+from trackroller.study.design.sampling import SampledDesign, values_at
 from trackroller.study.outputs import flat
 
 PLACE, FACTOR, META = "design_place", "design_factor", "design_meta"
@@ -80,16 +80,18 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
         unit = flat(ds, PLACE, dims)
         if [str(name) for name in ds[FACTOR].values] != list(free):
             raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", remedy)
-    design = SampledDesign({}, free, method, unit, meta)
-    places = dict(zip(free, _levels(design).T, strict=True))
+    drawn = {name: values_at(factor, unit[:, j], method) for j, (name, factor) in enumerate(free.items())}
+    for name, values in drawn.items():
+        known = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
+        if known and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
+            raise InputError("study", name, "the values of its design", remedy)
+    columns = {}
     for name in names:
-        factor = parsed[name]
-        if factor.discrete:
-            design.columns[name] = factor.take(places.get(name, np.zeros(rows)))
+        if not parsed[name].discrete:
+            columns[name] = _column(ds, name, dims)
         else:
-            design.columns[name] = _column(ds, name, dims)
-    _check_rows(ds, design, dims, remedy)
-    return design
+            columns[name] = drawn[name] if name in drawn else parsed[name].take(np.zeros(rows))
+    return SampledDesign(columns, free, method, unit, meta)
 
 
 def solved_part(design: SampledDesign, rows: np.ndarray) -> SampledDesign:
@@ -116,24 +118,3 @@ def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:
         raise InputError("study", name, "a column of the results", "Gather the study again.")
     values = flat(ds, name, dims)
     return values.astype(float if values.dtype.kind in "fiu" else object)
-
-
-def _levels(design: SampledDesign) -> np.ndarray:
-    """Return the places with the number of the listed value for each list, shape (n, factors)."""
-    return (design.unit + 1) / 2 if design.method == "plackett_burman" else design.places
-
-
-def _check_rows(ds: xr.Dataset, design: SampledDesign, dims: tuple[str, ...], remedy: str) -> None:
-    """Refuse results whose values are not those of the stored places."""
-    for j, (name, factor) in enumerate(design.factors.items()):
-        if name not in ds.variables or not factor.ordered or ds[name].dtype.kind not in "fiu":
-            continue
-        if factor.discrete:
-            wanted = design.columns[name]
-        else:
-            unit = design.unit[:, j]
-            coded = DESIGNS[design.method].coded
-            tail = TAIL if coded or design.method == "morris" else 0.0
-            wanted = factor.from_unit((unit + 1) / 2 if coded else unit, tail)
-        if not np.allclose(flat(ds, name, dims), wanted, rtol=1e-6, atol=1e-12):
-            raise InputError("study", name, "the values of its design", remedy)
