@@ -11,7 +11,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.lives import FIRST_LIMIT, first_failing
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import hours_until_reached
+from trackroller.damage.verdict import until_reached
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.study.outputs import flat
 
@@ -84,9 +84,8 @@ def turn(designs: Designs) -> Turn | None:
 def reached_hours(view: StudyView) -> np.ndarray:
     """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
     used, hours = (flat(view.data, name, view.dims) for name in ("utilisation", "life_hours_by_limit"))
-    at_once = np.array([LIMITS[name].ends_at_once for name in view.data["limit"].values.tolist()])[:, None]
-    timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values[:, None]
-    reached = hours_until_reached(used, hours, timed, at_once)
+    timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values
+    reached = until_reached(used, hours, timed, [LIMITS[name] for name in view.data["limit"].values.tolist()])
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
 
 

@@ -33,22 +33,24 @@ RESULTS = variables(
 )
 
 
-def hours_until_reached(used: np.ndarray, hours: np.ndarray, timed: np.ndarray, at_once: np.ndarray) -> np.ndarray:
-    """Return the hours until limits are reached [h]; NaN where they are not known. The arrays broadcast.
+def until_reached(used: np.ndarray, life: np.ndarray, timed: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
+    """Return when limits are reached, (..., limit, body), in the unit of `life`; NaN where it is not known.
 
     Parameters
     ----------
-    used, hours : numpy.ndarray
-        Utilisation [1] and life [h], NaN where they are not known.
-    timed, at_once : numpy.ndarray of bool
-        Whether a limit has a life, and whether a utilisation of 1 ends the life at once although it has one. A limit
-        without a life is reached at once or never.
+    used, life : numpy.ndarray
+        Utilisation [1] and life in hours or shifts, (..., limit, body), NaN where they are not known.
+    timed : numpy.ndarray of bool
+        Whether a limit has a life, (limit,). A limit without a life is reached at once or never.
+    limits : sequence of Limit
+        The limits, some of which a utilisation of 1 ends at once although they have a life.
     """
+    at_once = ~timed | np.array([limit.ends_at_once for limit in limits], dtype=bool)
     never = np.where(np.isnan(used), np.nan, np.inf)
-    return np.where((used >= 1.0) & (at_once | ~timed), 0.0, np.where(timed, hours, never))
+    return np.where((used >= 1.0) & at_once[:, None], 0.0, np.where(timed[:, None], life, never))
 
 
-def first_of(reached: np.ndarray, used: np.ndarray, concerned: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def first_of(reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit]) -> tuple[np.ndarray, np.ndarray]:
     """Return when the first limit is reached, and which one it is.
 
     Parameters
@@ -57,20 +59,21 @@ def first_of(reached: np.ndarray, used: np.ndarray, concerned: np.ndarray) -> tu
         When each limit is reached, in hours or shifts, (n, limit, body); NaN where it is not known.
     used : numpy.ndarray
         Utilisation, (n, limit, body) [1], which ranks limits that are reached together.
-    concerned : numpy.ndarray of bool
-        Bodies that a limit concerns, (limit, body).
+    limits : sequence of Limit
+        The limits; a body that a limit does not concern does not lack it.
 
     Returns
     -------
     tuple of numpy.ndarray
         The first one, (n, body), NaN where no known limit is ever reached and another one is not known; and the place
-        of its limit, (n, body).
+        of its limit, (n, body), -1 where no limit is known.
     """
-    known = ~np.isnan(reached)
+    known, concerned = ~np.isnan(reached), np.array([[body in limit.bodies for body in BODIES] for limit in limits])
     first = np.min(np.where(known, reached, np.inf), axis=1)
     rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
     missing = (~known & concerned).any(axis=1)
-    return np.where(np.isinf(first) & missing, np.nan, first), np.argmax(rank, axis=1)
+    place = np.where(known.any(axis=1), np.argmax(rank, axis=1), -1)
+    return np.where(np.isinf(first) & missing, np.nan, first), place
 
 
 def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
@@ -98,27 +101,20 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
     A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. A limit
     that lacks a value is left out.
     """
-    n = len(solved.rolling_radius)
-    used, hours, reached = (np.full((n, len(limits), 2), np.nan) for _ in range(3))
-    concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits]).reshape(-1, 2)
+    used, hours = (np.full((len(solved.rolling_radius), len(limits), 2), np.nan) for _ in range(2))
+    timed = np.zeros(len(limits), dtype=bool)
     for i, limit in enumerate(limits):
         assert limit.verdict is not None
         own = limit.verdict(solved, dict(solved.values))
-        if own.utilisation is not None:
-            used[:, i] = own.utilisation
-        if own.life_hours is not None:
-            hours[:, i] = own.life_hours
-        timed, at_once = np.array(own.life_hours is not None), np.array(limit.ends_at_once)
-        reached[:, i] = hours_until_reached(used[:, i], hours[:, i], timed, at_once)
-    for values in (used, hours, reached):
-        values[:, ~concerned] = np.nan
-    lives, first = first_of(reached, used, concerned)
-    known = ~np.isnan(reached).all(axis=1)
-    which = np.asarray(numbers, dtype=int)[first]
+        timed[i] = own.life_hours is not None
+        for values, given in ((used, own.utilisation), (hours, own.life_hours)):
+            if given is not None:
+                values[:, i] = np.where([body in limit.bodies for body in BODIES], given, np.nan)
+    lives, first = first_of(until_reached(used, hours, timed, limits), used, limits)
     return {
         "utilisation": used,
         "life_hours_by_limit": hours,
         "life_to_first_limit_hours": lives,
         "pair_life_to_first_limit_hours": first_failure(*lives.T)[0],
-        "limiting_mechanism": np.where(known, which, unknown),
+        "limiting_mechanism": np.array([*numbers, unknown])[first],  # the place -1 is that of the last one
     }

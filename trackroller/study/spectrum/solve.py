@@ -18,7 +18,7 @@ import xarray as xr
 from trackroller.damage import LIMITS, fatigue, miner
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
-from trackroller.damage.verdict import first_of, hours_until_reached
+from trackroller.damage.verdict import first_of, until_reached
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
@@ -272,14 +272,11 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray) -> di
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
     critical = np.array([spectrum.critical_damage if limit.name == "fatigue" else 1.0 for limit in limits])[:, None]
     shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
-    timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values[:, None]
-    at_once = np.array([limit.ends_at_once for limit in limits])[:, None]
-    concerned = np.array([[body in limit.bodies for body in BODIES] for limit in limits])
-    reached = np.where(concerned, hours_until_reached(most, shifts, timed, at_once), np.nan)
-    first, which = (one[0] for one in first_of(reached[None], most[None], concerned))
+    timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
+    reached = until_reached(most, shifts, timed, limits)
+    first, which = (one[0] for one in first_of(reached[None], most[None], limits))
     words = (*LIMITS, "unknown")
-    numbers = np.array([words.index(limit.name) for limit in limits])
-    names = np.where(np.isnan(reached).all(axis=0), len(words) - 1, numbers[which])
+    names = np.array([words.index(name) for name in (*(limit.name for limit in limits), "unknown")])[which]
     flag = {"long_name": "limit that the body reaches first", "flag_meanings": " ".join(words)}
     return {
         "damage_by_limit": (
