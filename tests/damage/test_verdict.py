@@ -65,6 +65,8 @@ def test_asked_limits_follow_from_the_groups():
     assert [own.name for own in asked(("forces", "life", "limits"))] == ["fatigue"]
     everything = [name for name in NAMES if name != "multiaxial"]  # which has no verdict
     assert [own.name for own in asked(("forces", "limits"))] == everything
+    # a group without a verdict names no limit that could come first
+    assert [own.name for own in asked(("multiaxial", "limits"))] == list(LIMITS)
     assert asked(("forces", "contact")) == ()
 
 

@@ -27,11 +27,10 @@ LIMITS |= {path.stem: own.load(path) for path in own_limits.digests()}
 
 
 def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
-    """Return the limits that groups of outputs ask for; `limits` without another one asks for all with a verdict."""
-    named = tuple(limit for limit in LIMITS.values() if limit.group in outputs)
-    if verdict.GROUP in outputs and not named:
-        return tuple(limit for limit in LIMITS.values() if limit.verdict is not None)
-    return named
+    """Return the limits that groups of outputs ask for; `limits` asks for all with a verdict unless one is named."""
+    named = [limit for limit in LIMITS.values() if limit.group in outputs]
+    every = verdict.GROUP in outputs and all(limit.verdict is None for limit in named)
+    return tuple(limit for limit in LIMITS.values() if limit in named or (every and limit.verdict is not None))
 
 
 def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
