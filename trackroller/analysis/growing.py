@@ -44,11 +44,6 @@ class Growing:
         self.folder, self.found = folder, take_inventory(folder)
         self.looks: list[dict[str, Any]] = []
 
-    @property
-    def hours(self) -> float:
-        """Return the time of solving, of all runs together [h]."""
-        return float(self.found.states.attrs["seconds"]) / 3600
-
     def advance(self) -> str:
         """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
         self.found = take_inventory(self.folder)
@@ -85,9 +80,9 @@ class Growing:
         if until.hours is None:
             return ""
         missing = int((self.found.find(Cases(larger).fingerprints) < 0).sum())
-        needed = self.hours * missing / max(1, self.found.states.sizes["case"])
-        if missing and self.hours + needed > until.hours:
-            spent = duration(3600 * self.hours)
+        needed = self.found.hours * missing / max(1, self.found.states.sizes["case"])
+        if missing and self.found.hours + needed > until.hours:
+            spent = duration(3600 * self.found.hours)
             left = f"about {duration(3600 * needed)} of solving"
             return f"{spent} of the {until.hours:g} h are spent, and the next step needs {left}"
         return ""

@@ -57,11 +57,6 @@ class _Search:
     def __post_init__(self) -> None:
         self.found = take_inventory(self.folder)
 
-    @property
-    def hours(self) -> float:
-        """Return the time of solving, of all runs together [h]."""
-        return float(self.found.states.attrs["seconds"]) / 3600
-
     def of(self, study: Study, genes: np.ndarray) -> Study:
         """Return a study with these designs, which stand in `designs.csv`."""
         path, choices = self.folder.root / "designs.csv", study.drawn.meta["outer"]
@@ -151,7 +146,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
     genes, known, number, why = genes_of(choices), None, 0, "every design is solved"
     drawn = first_generation(genes, min(budget.generation, budget.designs), study.config.seed)
     while len(drawn):
-        if known is not None and budget.hours is not None and search.hours >= budget.hours:
+        if known is not None and budget.hours is not None and search.found.hours >= budget.hours:
             if not search.stored(Cases(search.of(study, drawn))):
                 why = f"the {budget.hours:g} hours are spent"
                 break

@@ -32,6 +32,11 @@ class Inventory:
     paths: list[Path]
     corrupt: dict[Path, str]
 
+    @property
+    def hours(self) -> float:
+        """Return the time of solving, of all runs together [h]."""
+        return float(self.states.attrs["seconds"]) / 3600
+
     def find(self, wanted: np.ndarray) -> np.ndarray:
         """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
         cases = self.states["case"].values
