@@ -62,10 +62,14 @@ def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase |
     """
     if STUDY not in design.attrs:
         return ds
+    own = {MATERIALS: materials_of_design(design, load_database() if database is None else database)}
+    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs | own)
+
+
+def materials_of_design(design: xr.Dataset, database: MaterialDatabase) -> str:
+    """Return the values of all materials of a design with their sources, as JSON by name."""
     names = sorted({str(name) for field in MATERIAL_FIELDS for name in np.unique(design[field].values.astype(str))})
-    known = load_database() if database is None else database
-    values = json.dumps({name: known.material(name).with_sources() for name in names}, default=str)
-    return ds.assign_coords(dict(design.variables)).assign_attrs(design.attrs | {MATERIALS: values})
+    return json.dumps({name: database.material(name).with_sources() for name in names}, default=str)
 
 
 def plain_inputs(case: Case) -> dict[str, Any]:

@@ -11,6 +11,7 @@ import xarray as xr
 from trackroller.materials.database import FRICTION
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
+from trackroller.roller.record import MATERIALS, materials_of_design
 from trackroller.study.design.factors import Factor, readable
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.design.stored import FACTOR, META, PLACE
@@ -68,12 +69,11 @@ def labelled(
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
-    names = sorted({str(m) for name in MATERIAL_FIELDS for m in np.unique(design[name].values.astype(str))})
     kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in {*study.factors, "seconds"}}
     # what `solve` recorded of its materials holds, whatever the database says by now
-    recorded = {"materials": attrs["materials"]} if "materials" in attrs else {}
-    provenance_attrs = provenance.attributes(study, [] if recorded else names)
-    return kept | {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs} | provenance_attrs | recorded
+    materials = attrs[MATERIALS] if MATERIALS in attrs else materials_of_design(design, study.materials)
+    stated = {k: design.attrs[k] for k in (META, FRICTION) if k in design.attrs}
+    return kept | stated | provenance.attributes(study) | {MATERIALS: materials}
 
 
 def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) -> Variables:

@@ -64,10 +64,9 @@ def _packages() -> dict[str, str]:
     return versions
 
 
-def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
-    """Return the global attributes of the gathered file for a study that uses the named materials."""
+def attributes(study: Study) -> dict[str, Any]:
+    """Return the global attributes of the gathered file for a study, those of its materials left out."""
     config = study.config
-    values = {name: study.materials.material(name).with_sources() for name in materials}
     stated = {
         **file_attributes(f"Parameter study '{study.name}' of locating-bearing track rollers", "solved and gathered"),
         "comment": config.description or f"Results of the study {study.name}",
@@ -80,7 +79,6 @@ def attributes(study: Study, materials: list[str]) -> dict[str, Any]:
         "store_format": STORE_FORMAT,
         "versions": json.dumps(versions()),
         "git_commit": git_commit(),
-        "materials": json.dumps(values, default=str),
         "date_created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
     }
     if study.path is not None:
