@@ -5,7 +5,6 @@ A design is one combination of choices. It is judged over all conditions in whic
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,7 +16,6 @@ from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.factors import parse
 from trackroller.study.design.roles import roles_of
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
@@ -27,10 +25,8 @@ TIED = 1e-9  # relative difference of lives that count as equal
 
 def factor_roles(view: StudyView) -> dict[str, str]:
     """Return the role of each factor of a study that varies: `choice` or `condition`."""
-    given = view.study.get("factors")
-    specs = given if isinstance(given, Mapping) else {}
-    parsed = {name: parse(name, spec) for name, spec in specs.items() if isinstance(spec, Mapping) and spec}
-    return roles_of(view.factors, parsed, view.study.get("roles") or {}, str(view.study.get("design", "")))
+    study = view.solved.study
+    return roles_of(view.factors, study.parsed, study.config.roles, study.config.design)
 
 
 def slip_margin(view: StudyView) -> np.ndarray:
@@ -128,7 +124,7 @@ class Designs:
     @property
     def drawn(self) -> bool:
         """Return whether the conditions are a random sample, so that a worst case depends on its size."""
-        return bool(self.conditions) and (not self.matched or self.view.study.get("design") in DRAWN)
+        return bool(self.conditions) and (not self.matched or self.view.solved.config.design in DRAWN)
 
     @property
     def comparable(self) -> bool:

@@ -29,10 +29,11 @@ def study_pareto(view: StudyView) -> xr.Dataset | None:
         Otherwise see `pareto`; rows that differ in conditions have the attribute `kind` = `case`, and there is no set
         without the key, because the conditions cannot be chosen.
     """
-    given = view.study.get("pareto")
-    if view.study.get("design") == "optimise":
+    config = view.solved.config
+    given = config.pareto
+    if config.design == "optimise":
         return pareto_of_search(view.solved)
-    if view.study.get("design", view.attrs.get("design")) == "inner_outer":
+    if config.design == "inner_outer":
         return pareto_of_points(view.analysis, given) if view.analysis is not None and given else None
     goals = given or default_objectives(view.data)
     if not goals:
@@ -43,7 +44,7 @@ def study_pareto(view: StudyView) -> xr.Dataset | None:
     mixed = designs is not None and bool(designs.conditions)
     if mixed and not given:
         return None
-    front = pareto(view.solved, goals, view.study.get("constraints") or ())
+    front = pareto(view.solved, goals, config.constraints)
     front = front.assign(_beyond(view, dict.fromkeys(goals, front["row"].values)))
     return front.assign_attrs(kind="case" if mixed else "design")
 
@@ -77,7 +78,7 @@ def pareto_of_designs(designs: Designs, objectives: Mapping[str, str]) -> xr.Dat
     left = len(held) - len(kept)
     excluded = f"{left} that are valid in no condition" if left else ""
     attrs = {
-        "constraints": "; ".join(view.study.get("constraints") or ()),
+        "constraints": "; ".join(view.solved.config.constraints),
         "rows": len(held),
         "model": str(view.held_level("contact_model")) if "contact_model" in view.factors else "",
         "judged": "each goal at the worst of the conditions in which the design is valid",

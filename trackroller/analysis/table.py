@@ -158,18 +158,15 @@ class StudyView:
         """Return the dimensions of the data that count cases."""
         return self.solved.dims
 
-    def levels(self, name: str, table: pd.DataFrame | None = None) -> list[Any]:
+    def levels(self, name: str) -> list[Any]:
         """List the values of a factor.
 
         Numbers in rising order, categories in order of appearance.
         """
-        if table is None and name in self._levels:
-            return list(self._levels[name])
-        values = (self.table if table is None else table)[name].dropna().unique()
-        levels = sorted(values.tolist()) if self.numeric(name) else list(values)
-        if table is None:  # a page asks a dozen times for the levels of each factor
-            self._levels[name] = levels
-        return list(levels)
+        if name not in self._levels:  # a page asks a dozen times for the levels of each factor
+            values = self.table[name].dropna().unique()
+            self._levels[name] = sorted(values.tolist()) if self.numeric(name) else list(values)
+        return list(self._levels[name])
 
     @cached_property
     def _levels(self) -> dict[str, list[Any]]:
