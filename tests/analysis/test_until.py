@@ -18,7 +18,7 @@ from trackroller.analysis.looks import looks_of
 from trackroller.analysis.replicates import first_indices, jackknife, log_b10, share
 from trackroller.analysis.table import OUTSIDE
 from trackroller.errors import InputError
-from trackroller.report.words.growth import grown
+from trackroller.report.words.samples import grown
 from trackroller.study.design.growth import doubled
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import load_study

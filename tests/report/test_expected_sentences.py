@@ -22,8 +22,8 @@ from trackroller.report.figures import style
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.numbers import shortened
 from trackroller.report.pages.study import contents
+from trackroller.report.words.cases import occurrence
 from trackroller.report.words.pareto import pareto_table
-from trackroller.report.words.regimes import occurrence
 
 CALM = {"friction_coefficient": [0.2, 0.3, 0.4], "roller_profile_radius": [-9.0, -8.0, -7.0]}  # all of it rolls
 GRIDS = {

@@ -8,9 +8,9 @@ import xarray as xr
 import yaml
 from synthetic_results import view_of
 
+from trackroller.report.words.cases import occurrence
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import at_least, at_most
-from trackroller.report.words.regimes import occurrence
 
 
 @pytest.mark.parametrize(

@@ -19,7 +19,7 @@ from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
 from trackroller.report.pages.study import contents, models_used, write_report
 from trackroller.report.tables.inputs import Row
-from trackroller.report.words.regimes import occurrence, regime_table, validity_table
+from trackroller.report.words.cases import occurrence, regime_table, validity_table
 from trackroller.study.store.folder import StudyFolder
 
 FACTORS = {

@@ -14,10 +14,9 @@ from random_studies import FLAGS, random_study
 from synthetic_results import view_of
 
 from trackroller.report.words.accuracy import accuracy, friction_error
-from trackroller.report.words.cases import extremes, strength, surface, valid_cases
+from trackroller.report.words.cases import extremes, lift_off, occurrence, strength, surface, valid_cases
 from trackroller.report.words.designs import best_design
 from trackroller.report.words.factors import effect_of
-from trackroller.report.words.regimes import lift_off, occurrence
 
 STUDIES = 150
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")

@@ -25,11 +25,11 @@ def test_every_kind_of_sentence_has_words_and_every_block_is_a_kind():
 
 
 def test_words_stand_in_one_line_with_the_numbers_as_claims():
-    said = say("regimes", "lift_off", count=3, least=12345.6)
+    said = say("cases", "lift_off", count=3, least=12345.6)
     assert said.text == "The smallest axial force at which a case lifts off is 12,300 N."
     assert said.values == {"count": 3, "least": 12345.6} and said.kind == "lift_off"
 
 
 def test_a_number_that_is_missing_is_an_error():
     with pytest.raises(jinja2.UndefinedError, match="'least' is undefined"):
-        phrase("regimes", "lift_off", count=3)
+        phrase("cases", "lift_off", count=3)

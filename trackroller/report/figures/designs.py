@@ -1,4 +1,4 @@
-"""The life of designs over their conditions."""
+"""Figures of designs: their life over their conditions, and the Pareto front."""
 
 from __future__ import annotations
 
@@ -6,12 +6,21 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
 from trackroller.analysis.designs import Designs
+from trackroller.analysis.pareto import goals_of
+from trackroller.analysis.ranking import ranked_factors
 from trackroller.analysis.table import StudyView
+from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
-from trackroller.report.numbers import capital, count, listing, long_name
+from trackroller.report.figures.panels import Entries, legend
+from trackroller.report.numbers import capital, count, listing, long_name, plain
 from trackroller.report.words.designs import alone, design_words
+from trackroller.report.words.levels import coloured
+from trackroller.report.words.pareto import goal_heading, pareto_sentence
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.levels import OF_MATERIALS
 
 MOST = 20  # designs shown
 LONGEST = 48  # letters of a name beside the axis; longer names are numbered
@@ -69,3 +78,91 @@ def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -
         faces = np.where(beyond, "white", colour).tolist()
         look = {"marker": marker, "s": 26, "edgecolors": colour, "linewidths": 1.1, "zorder": 3}
         axes.scatter(lives, place, c=faces, label=f"worst of the {body}", **look)
+
+
+OTHER = "0.65"  # grey of the designs without a level of their own
+_WAYS = {"max": "up", "min": "down"}
+_ARROWS = {"max": "→", "min": "←"}
+
+
+def _given(front: xr.Dataset) -> str:
+    """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
+    names = front.attrs["factors"].split(", ")
+    given = [plain(n) for n in names if ROLE_OF.get(n) == "condition" or "load" in n or "drive" in n]
+    warning = f" Factors that the use sets and a designer cannot choose: {listing(given)}." if given else ""
+    models = [long_name(n) for n in names if n in OPTION_FACTORS]
+    return warning + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")
+
+
+def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Drawn:
+    """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto set.
+
+    It answers: what does more of one goal cost in another, and which choice leads to which end of the set? The panels
+    show the first goal over each other one.
+
+    Parameters
+    ----------
+    front : dataset of `trackroller.analysis.pareto.pareto`
+    view : the study, for the validity and the deciding factor of the designs
+
+    Returns
+    -------
+    Figure and what it shows; None for fewer than two goals or designs, or without a Pareto set.
+    """
+    goals = goals_of(front)
+    if not (front["optimal"].values == 1).any() or min(front.sizes["row"], len(goals)) < 2:
+        return None
+    others, kind = goals[1:4], str(front.attrs.get("kind", "design"))
+    figure, panels = style.panels(f"Pareto-optimal {kind}s", 78, len(others))
+    colour, entries = _colours(front, view, goals[0][0])
+    for axes, goal in zip(panels, others, strict=True):
+        _trade(axes, front, goal, goals[0], colour, joined=len(goals) == 2)
+    entries.append(("Pareto set", {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"}))
+    legend(figure, entries)
+    wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
+    caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front)}"
+    return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, view).text)
+
+
+def _colours(front: xr.Dataset, view: StudyView | None, goal: str) -> tuple[np.ndarray, Entries]:
+    """Return the colour of each row by the factor that decides the goal, and the entries of the legend."""
+    rows = front["row"].values
+    colour = np.full(len(rows), OTHER, dtype=object)
+    entries: Entries = []
+    if view is not None and view.factors and front.attrs.get("kind", "design") != "design point":
+        allowed = np.isin(np.arange(len(view.table)), rows)
+        lead = next(iter(ranked_factors(view.analysis, goal, view.factors)))
+        place = np.searchsorted(np.flatnonzero(allowed), rows)
+        groups = coloured(view, lead, allowed)
+        for (text, mask), own in zip(groups, style.colours([t for t, _ in groups], lead in OF_MATERIALS), strict=True):
+            colour[mask[place]] = own
+            entries.append((text, {"marker": "o", "color": own, "linestyle": "none"}))
+    if (colour == OTHER).any():
+        entries.append(("other designs", {"marker": "o", "color": OTHER, "linestyle": "none"}))
+    return colour, entries
+
+
+def _trade(
+    axes: Any, front: xr.Dataset, across: tuple[str, str], upwards: tuple[str, str], colour: np.ndarray, joined: bool
+) -> None:
+    """Draw one goal over another; steps join the Pareto set of a study with two goals.
+
+    The designs are drawn in random order, so that in a dense cloud no level hides the others.
+    """
+    (x, up_x), (y, up_y) = across, upwards
+    xs, ys = front[x].values.astype(float), front[y].values.astype(float)
+    finite = np.isfinite(xs) & np.isfinite(ys)
+    shown = (front["optimal"].values == 1) & finite
+    rest = np.random.default_rng(1).permutation(np.flatnonzero(finite & ~shown))
+    size = 6 if len(rest) > 500 else 14
+    axes.scatter(xs[rest], ys[rest], s=size, c=colour[rest].tolist(), alpha=0.6, linewidth=0, rasterized=True)
+    if joined:
+        order = np.argsort(xs[shown])
+        step = {"max": "steps-pre", "min": "steps-post"}[up_x]
+        axes.plot(xs[shown][order], ys[shown][order], color="0.1", linewidth=0.8, drawstyle=step)
+    axes.scatter(xs[shown], ys[shown], s=18, c=colour[shown].tolist(), marker="D", edgecolor="0.1", zorder=3)
+    for name, axis, values in ((x, axes.xaxis, xs[finite]), (y, axes.yaxis, ys[finite])):
+        if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
+            (axes.set_xscale if name == x else axes.set_yscale)("log")
+            style.log_ticks(axis, values.min(), values.max())
+    axes.set(xlabel=f"{goal_heading(front, x)} {_ARROWS[up_x]}", ylabel=f"{goal_heading(front, y)} {_ARROWS[up_y]}")

@@ -13,10 +13,9 @@ from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
 from trackroller.report.numbers import factor_label, level_text, listing, number, quantity, symbol, with_unit
-from trackroller.report.words.cases import surface
+from trackroller.report.words.cases import lift_off, surface
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured, held_words
-from trackroller.report.words.regimes import lift_off
 from trackroller.study.design.levels import OF_MATERIALS
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit

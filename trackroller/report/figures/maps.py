@@ -19,9 +19,8 @@ from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, factor_label, level_text, long_name, rounded, with_unit
-from trackroller.report.words.cases import extremes
+from trackroller.report.words.cases import extremes, occurrence
 from trackroller.report.words.levels import held_words
-from trackroller.report.words.regimes import occurrence
 
 FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 MAX_TICKS = 9

@@ -1,22 +1,27 @@
-"""Figures of sensitivities: ranked indices, convergence, Morris plane, interactions.
+"""Figures of sensitivities: ranked indices, convergence, growth of a sample, Morris plane, interactions.
 
-Every function takes the dataset of `trackroller.analysis.sensitivity.analyse` and returns a figure with its
-caption and sentence, or None where the design does not support it.
+Those of an analysis take the dataset of `trackroller.analysis.sensitivity.analyse`. Every function returns a figure
+with its caption and sentence, or None where the design does not support it.
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import seaborn
 import xarray as xr
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trackroller.analysis.looks import looks_of
 from trackroller.analysis.ranking import SIGNED, SIZED, headline, order
+from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
-from trackroller.report.numbers import capital, with_unit
+from trackroller.report.numbers import capital, count, with_unit
 from trackroller.report.words import indices
+from trackroller.report.words.samples import grown, quantity_words
 from trackroller.study.outputs import DEFAULTS
 
 Look = dict[str, Any]
@@ -91,6 +96,14 @@ def _heat(table: np.ndarray, names: list[str], label: str, head: str) -> Figure:
     return figure
 
 
+def _doubled(axes: Axes, sizes: Sequence[int], unit: str) -> None:
+    """Write the sizes of a sample that doubles under the axis."""
+    axes.set_xscale("log", base=2)
+    axes.set_xticks(sizes, [count(int(size)) for size in sizes])
+    axes.minorticks_off()
+    axes.set_xlabel(f"{unit} [–]")
+
+
 def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw the headline index of the leading factors over the number of samples, with 95 % bands.
 
@@ -108,12 +121,10 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
         axes.fill_between(size, low, high, color=colour, alpha=0.15, linewidth=0)
         look = {"marker": style.MARKERS[i], "linestyle": style.LINES[i % len(style.LINES)]}
         axes.plot(size, one[f"{index}_course"], color=colour, label=capital(rank.name), **look)
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(part["sample_size"].values, [str(n) for n in part["sample_size"].values])
-    axes.minorticks_off()
     unit = {"saltelli": "base samples", "morris": "trajectories"}.get(str(sens.attrs["method"]), "rows")
     top = max(np.nanmax(part[f"{index}_course"].sel(factor=r.factor).values) for r in ranks)
-    axes.set(xlabel=f"{unit} [–]", ylim=(min(0.0, -0.1 * top), 1.35 * top))
+    _doubled(axes, part["sample_size"].values, unit)
+    axes.set_ylim(min(0.0, -0.1 * top), 1.35 * top)
     axes.set_ylabel(_axis(sens, output, index).replace(": ", ":\n").replace("effect [", "effect\n["))
     figure.legend(loc="outside lower center", ncols=3)
     caption = f"{capital(indices.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
@@ -180,3 +191,26 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     caption = "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
     return figure, style.FigureInfo(f"interactions-{output}", caption, said.text)
+
+
+def intervals(view: StudyView) -> style.Drawn:
+    """Draw the half width of the widest interval of each output of `until` against the number of cases.
+
+    It answers: was growing worth its cases? None for a study with fewer than two looks.
+    """
+    growth, said = looks_of(view.solved), grown(view)
+    if growth is None or said is None or len(growth["looks"]) < 2:
+        return None
+    cases = [one["cases"] for one in growth["looks"]]
+    names = list(growth["looks"][0]["half_width"])
+    figure, (axes,) = style.panels("Intervals as the sample grew", 58)
+    for i, (name, colour) in enumerate(zip(names, style.palette(len(names)), strict=True)):
+        width = np.array([one["half_width"][name] for one in growth["looks"]], dtype=float)
+        look = {"marker": style.MARKERS[i % len(style.MARKERS)], "linestyle": style.LINES[i % len(style.LINES)]}
+        axes.plot(cases, width, color=colour, label=capital(quantity_words(name, view.solved.design.method)), **look)
+    axes.axhline(growth["half_width"], color="0.3", linewidth=0.8, linestyle=":", label="wanted")
+    _doubled(axes, cases, "cases")
+    axes.set(ylim=(0.0, None), ylabel="half width of the\nwidest interval [–]")
+    figure.legend(loc="outside lower center", ncols=2)
+    caption = f"95 % intervals from {growth['replicates']} independent replicates at each doubling of the sample."
+    return figure, style.FigureInfo("intervals-against-cases", caption, said.text)

@@ -14,15 +14,14 @@ from trackroller.analysis.ranking import robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import model_errors
-from trackroller.report.figures.designs import lives_by_design
+from trackroller.report.figures.designs import lives_by_design, pareto_front
 from trackroller.report.figures.factors import by_factor
-from trackroller.report.figures.growth import intervals
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
-from trackroller.report.figures.pareto import pareto_front
 from trackroller.report.figures.sensitivity import (
     convergence,
     interactions,
+    intervals,
     main_outputs,
     morris_plane,
     tornado,

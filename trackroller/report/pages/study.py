@@ -35,15 +35,15 @@ from trackroller.report.tables.inputs import (
 )
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import friction_error
+from trackroller.report.words.cases import reason_table, regime_table, validity_table
 from trackroller.report.words.comparison import report_section
 from trackroller.report.words.designs import best_table, size_words
-from trackroller.report.words.growth import looks_table
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import index_table, measure_table, part_tables
 from trackroller.report.words.limits import first_limit_table, limit_sentences
 from trackroller.report.words.optimum import optima_table
 from trackroller.report.words.pareto import pareto_sentence, pareto_table
-from trackroller.report.words.regimes import reason_table, regime_table, validity_table
+from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts

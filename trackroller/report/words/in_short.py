@@ -11,14 +11,12 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital, count
 from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
-from trackroller.report.words.cases import valid_cases
+from trackroller.report.words.cases import occurrence, silent_drive, valid_cases
 from trackroller.report.words.designs import best_design, target_of_designs
-from trackroller.report.words.growth import grown
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
 from trackroller.report.words.optimum import optimum_sentences
-from trackroller.report.words.regimes import occurrence, silent_drive
-from trackroller.report.words.samples import samples
+from trackroller.report.words.samples import grown, samples
 from trackroller.report.words.sentence import Sentence
 from trackroller.report.words.targets import target, target_words
 
