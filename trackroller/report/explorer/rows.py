@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
 from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
@@ -100,15 +101,8 @@ def coded(
     """
     array = np.asarray(values)
     number = array.dtype.kind in "fiu"
-    different, first, codes = np.unique(array, return_index=True, return_inverse=True)
-    if number:
-        keep = ~np.isnan(different.astype(float))
-        codes = np.where(keep[codes], codes, -1)
-        levels = different[keep].astype(float).tolist()
-    else:
-        order = np.argsort(first)
-        codes = np.argsort(order)[codes]
-        levels = different[order].astype(str).tolist()
+    codes, different = pd.factorize(array, sort=number)
+    levels = different.astype(float if number else str).tolist()
     return Column(name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels)))
 
 

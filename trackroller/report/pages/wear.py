@@ -22,12 +22,16 @@ from trackroller.roller.record import inputs_of, materials_of
 
 MOST = 12  # rows of the table
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes
+OF_BODY = (("groove_depth", "depth", 1e3, "µm"), ("peak_stress", "peak stress", 1.0, "MPa"))
+OF_BODY += (("fatigue_damage", "damage sum", 1.0, "-"),)
 COLUMNS = (
-    ("max_pressure", "pressure", 1.0, "MPa"),
-    ("semi_axis_lateral", "half width", 1.0, "mm"),
-    ("contact_angle", "contact angle", 1.0, "degree"),
-    ("normal_force", "normal force", 1.0, "N"),
-    ("friction_power", "friction power", 1.0, "W"),
+    ("max_pressure", "Pressure", "MPa"),
+    ("semi_axis_lateral", "Half width", "mm"),
+    ("contact_angle", "Contact angle", "degree"),
+    ("normal_force", "Normal force", "N"),
+    ("friction_power", "Friction power", "W"),
+    ("slip", "Creepage", "-"),
+    ("drive_torque", "Drive torque", "N mm"),
 )
 
 
@@ -35,32 +39,18 @@ def state_table(ds: xr.Dataset) -> Table:
     """List the states of the contact that wears more: depth, pressure, patch, forces, stress and damage."""
     contact = deeper_contact(ds)
     own = ds.sel(contact=contact)
-    bodies = [(name, body, scale, unit) for name, scale, unit in _OF_BODY if name in ds for body in BODIES]
-    bodies = [row for row in bodies if own[row[0]].sel(body=row[1]).notnull().any()]
-    columns = [row for row in COLUMNS if row[0] in ds]
-    named = [with_unit(f"{capital(body)} {_OF_BODY_WORDS[name]}", unit) for name, body, _, unit in bodies]
-    heads = ["Travel [km]", *named]
-    heads += [with_unit(capital(words), unit) for _, words, _, unit in columns]
-    heads += [with_unit("Creepage", "-"), with_unit("Drive torque", "N mm")] if "slip" in ds else []
+    if "drive_torque" in own:  # 0 where it is smaller than the residual of its balance allows
+        least = SOLVED * own["normal_force"] * inputs_of(ds)["axis_distance"]
+        own = own.assign(drive_torque=own["drive_torque"].where(np.abs(own["drive_torque"]) > least, 0.0))
+    columns = {"Travel [km]": own["travel"]}
+    for name, words, scale, unit in (row for row in OF_BODY if row[0] in own):
+        for body in BODIES:
+            if own[name].sel(body=body).notnull().any():
+                columns[with_unit(f"{capital(body)} {words}", unit)] = scale * own[name].sel(body=body)
+    columns |= {with_unit(words, unit): own[name] for name, words, unit in COLUMNS if name in own}
     picked = np.unique(np.linspace(0, ds.sizes["travel"] - 1, min(MOST, ds.sizes["travel"])).round().astype(int))
-    rows = []
-    for i in picked.tolist():
-        at = own.isel(travel=i)
-        cells = [cell(float(at["travel"])), *(cell(scale * float(at[n].sel(body=b))) for n, b, scale, _ in bodies)]
-        cells += [cell(scale * float(at[name])) for name, _, scale, _ in columns]
-        cells += [cell(float(at["slip"])), cell(_beyond_noise(at))] if "slip" in ds else []
-        rows.append(cells)
-    return Table("wear_states", f"States of contact {contact}", heads, rows, "")
-
-
-def _beyond_noise(at: xr.Dataset) -> float:
-    """Return the drive torque of a state [N mm]; 0 where it is smaller than the residual of its balance allows."""
-    torque, largest = float(at["drive_torque"]), float(at["normal_force"]) * inputs_of(at)["axis_distance"]
-    return torque if abs(torque) > SOLVED * largest else 0.0
-
-
-_OF_BODY = (("groove_depth", 1e3, "µm"), ("peak_stress", 1.0, "MPa"), ("fatigue_damage", 1.0, "-"))
-_OF_BODY_WORDS = {"groove_depth": "depth", "peak_stress": "peak stress", "fatigue_damage": "damage sum"}
+    rows = [[cell(float(column[i])) for column in columns.values()] for i in picked]
+    return Table("wear_states", f"States of contact {contact}", list(columns), rows)
 
 
 def write_wear(ds: xr.Dataset, path: Path | str) -> Path:

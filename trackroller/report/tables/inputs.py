@@ -94,16 +94,12 @@ def factor_table(view: StudyView) -> Table | None:
 
 def _spec(spec: Any) -> str:
     """Return a factor of the study file in words: 'uniform 0.1, 0.3'."""
-    if not isinstance(spec, Mapping):
-        return ""
     if "weights" in spec:
         return f"drawn with weights {', '.join(f'{v:g}' for v in spec['weights'])}"
-    for kind, value in spec.items():
-        if kind in ("uniform", "loguniform", "normal", "truncnormal", "triangular", "linspace", "logspace"):
-            return f"{kind} {', '.join(f'{v:g}' for v in value)}"
-        if kind == "expression":
-            return f"= {value}"
-    return ""
+    kind, value = next(iter(spec.items()))
+    if kind == "expression":
+        return f"= {value}"
+    return "" if kind == "values" else f"{kind} {', '.join(f'{v:g}' for v in value)}"
 
 
 def correlation_row(view: StudyView) -> list[Row]:

@@ -36,10 +36,9 @@ FEWEST = 3  # smallest number of cases, rolling in both models, for a sentence
 def overview(paired: xr.Dataset) -> str:
     """Say how the models were compared, or why they cannot be compared."""
     reference, rolls = paired.attrs["reference"], paired["regime"] == 0
-    exact = "the exact theory (kalker)" if reference == "kalker" else f"{reference}, the most exact model here,"
     cheaper = map(str, paired["contact_model"].values[:-1]) if paired.sizes["design"] else ()
     both = [(model, int((rolls.sel(contact_model=model) & rolls[-1]).sum())) for model in cheaper]
-    values = {"reference": reference, "exact": exact, "both": both, "left": paired.attrs["left"]}
+    values = {"reference": reference, "both": both, "left": paired.attrs["left"]}
     return phrase("comparison", "overview", **values, number=paired.sizes["design"], good=GOOD)
 
 
@@ -141,7 +140,8 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
         return f"with {name} " + " or ".join(group_texts(along)[k] for k in at[keeps])
     said, last = [], len(at) - 1
     name = f"{'an' if name[0] in 'aeiou' else 'a'} {name}"
-    for first, end in _runs(keeps):
+    runs = np.split(np.arange(len(at)), np.flatnonzero(np.diff(keeps)) + 1)
+    for first, end in ((run[0], run[-1]) for run in runs if keeps[run[0]]):
         low, high = float(along.low[at[first]]), float(along.high[at[end]])
         if first == 0:
             said.append(f"up to {name} of {span(along.name, high, high)}")
@@ -150,9 +150,3 @@ def levels_kept(along: Groups, e: np.ndarray) -> str:
         else:
             said.append(f"at {name} of {span(along.name, low, high)}")
     return " and ".join(said)
-
-
-def _runs(keeps: np.ndarray) -> list[tuple[int, int]]:
-    """Return the first and last index of every run of True."""
-    edge = np.flatnonzero(np.diff(np.concatenate([[False], keeps, [False]]).astype(int)))
-    return [(int(a), int(b) - 1) for a, b in edge.reshape(-1, 2)]
