@@ -16,12 +16,12 @@ from synthetic_results import grid_study, view_of
 
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.pages.study import contents
-from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import SLIDING_ERROR, friction_error, full_sliding
 from trackroller.report.words.cases import occurrence, valid_cases, validity_table
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.pareto import pareto_sentence
+from trackroller.report.words.targets import robust_tables
 from trackroller.report.workbook import export
 from trackroller.study.file.load import parse_study
 

@@ -13,12 +13,12 @@ from synthetic_results import results_of, view_of
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.analysis.sensitivity import analyse
 from trackroller.report.numbers import level_text
-from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.words import indices
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.samples import samples
+from trackroller.report.words.targets import robust_tables
 from trackroller.study.file.load import parse_study
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")

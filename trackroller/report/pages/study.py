@@ -21,7 +21,6 @@ from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, lives_in_years, long_name, part_of, percent, plain, rounded
-from trackroller.report.tables.design_points import robust_tables
 from trackroller.report.tables.inputs import (
     Row,
     as_material,
@@ -44,7 +43,7 @@ from trackroller.report.words.limits import first_limit_table, limit_sentences
 from trackroller.report.words.optimum import optima_table
 from trackroller.report.words.pareto import pareto_sentence, pareto_table
 from trackroller.report.words.samples import looks_table
-from trackroller.report.words.targets import target_tables
+from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
 from trackroller.study.design.kinds import DESIGNS

@@ -1,1 +1,1 @@
-"""Tables of inputs, of one roller and of design points, and how a table is written."""
+"""Tables of inputs and of one roller, and how a table is written."""
