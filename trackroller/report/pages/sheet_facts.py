@@ -35,17 +35,9 @@ from trackroller.report.words.assumptions import (
     strength_sentences,
 )
 from trackroller.report.words.sentence import phrase
+from trackroller.roller import record
 from trackroller.roller.dataset import VARIABLES, shown
 from trackroller.roller.limits import Limits, limits
-from trackroller.roller.record import (
-    case_of_result,
-    doubts_of,
-    inputs_of,
-    is_default,
-    materials_of,
-    not_given_of,
-    solve_command,
-)
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
 
@@ -67,11 +59,11 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
     InputError
         If `ds` is not the result of one case.
     """
-    inputs, stored, given = inputs_of(ds), materials_of(ds), not_given_of(ds)
+    inputs, stored, given = record.inputs_of(ds), record.materials_of(ds), record.not_given_of(ds)
     warm = temperatures_of(ds, inputs["ambient_temperature"])
     materials = {body: as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
     regime = REGIMES[int(ds["regime"])]
-    ranges = ranges or limits(case_of_result(ds), str(ds.attrs["contact_model"]))
+    ranges = ranges or limits(record.case_of_result(ds), str(ds.attrs["contact_model"]))
     lifeless = {body: _no_life(regime, ds, body, material) for body, material in materials.items()}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
     below, above = inputs["axial_force"] - ranges.axial_force[0], ranges.axial_force[1] - inputs["axial_force"]
@@ -83,7 +75,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
         reason=reason,
         inputs=input_rows(inputs, given),
         not_given=not_given_text(given),
-        doubts=doubts_of(ds),
+        doubts=record.doubts_of(ds),
         materials=body_materials(stored),
         lines=_contact_lines(ds),
         whole=quantity_rows(ds, shown()),
@@ -122,12 +114,12 @@ def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str
 
 def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
     """Return the command that solves the case of a result again, or that `words` name."""
-    given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
+    given = {name: value for name, value in record.inputs_of(ds).items() if not record.is_default(name, value)}
     plain = {n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()}
     named = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
     plain |= {name: ds.attrs.get(name) for name in named}
     plain |= {n: ds.attrs.get(n) for n in ("wear_law", "life_criterion") if ds.attrs.get(n) != OPTIONS[n].default}
-    return solve_command(plain, words)
+    return record.solve_command(plain, words)
 
 
 def _contact_lines(ds: xr.Dataset) -> list[list[str]]:

@@ -21,17 +21,7 @@ from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, lives_in_years, long_name, part_of, percent, plain, rounded
-from trackroller.report.tables.inputs import (
-    Row,
-    as_material,
-    base_rows,
-    correlation_row,
-    factor_table,
-    friction_table,
-    materials_table,
-    record_rows,
-    stored_materials,
-)
+from trackroller.report.tables import inputs
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import friction_error
 from trackroller.report.words.cases import reason_table, regime_table, validity_table
@@ -100,23 +90,23 @@ def contents(view: StudyView) -> dict[str, Any]:
     settings, attrs = view.study, dict(view.attrs)
     merged = {name: settings[name] for name in OPTIONS if name in settings} | attrs
     models = report_section(view)
-    options = [Row(capital(long_name(k)), text) for k in OPTIONS if (text := _option_text(merged.get(k, "")))]
+    options = [inputs.Row(capital(long_name(k)), text) for k in OPTIONS if (text := _option_text(merged.get(k, "")))]
     return {
         "name": settings["name"],
         "description": settings["description"] or attrs.get("comment", ""),
         "facts": _facts(view, merged),
         "summary": in_short(view, models.get("short", [])),
         **sections(view, models),
-        "factors": factor_table(view),
-        "base": base_rows(view),
+        "factors": inputs.factor_table(view),
+        "base": inputs.base_rows(view),
         "doubts": _doubts(view),
         "not_given": not_given_text(settings["not_given"]),
-        "options": options + models_used(view.data) + correlation_row(view),
-        "materials": [t for t in (materials_table(attrs), friction_table(attrs)) if t],
+        "options": options + models_used(view.data) + inputs.correlation_row(view),
+        "materials": [t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t],
         "solution": solution_facts(view),
         "used": defaultdict(str, merged),
         "results": set(map(str, view.data.data_vars)),
-        "record": record_rows(attrs, _NO_RECORD),
+        "record": inputs.record_rows(attrs, _NO_RECORD),
         "study_text": str(attrs.get("study", "")),
     }
 
@@ -124,7 +114,7 @@ def contents(view: StudyView) -> dict[str, Any]:
 def _doubts(view: StudyView) -> list[str]:
     """Return a sentence for each unusual value of the cases."""
     varied = {name: view.table[name].to_numpy() for name in view.table if name in parameters.PARAMETERS}
-    return doubts({**view.base, **varied}, map(as_material, stored_materials(view.attrs).values()))
+    return doubts({**view.base, **varied}, map(inputs.as_material, inputs.stored_materials(view.attrs).values()))
 
 
 def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
@@ -173,7 +163,7 @@ def _option_text(value: Any) -> str:
     return ", ".join(map(str, value)) if isinstance(value, (list, tuple)) else str(value)
 
 
-def models_used(ds: xr.Dataset) -> list[Row]:
+def models_used(ds: xr.Dataset) -> list[inputs.Row]:
     """Say how many cases each contact model solved, where another model than the chosen one solved some of them."""
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
@@ -182,20 +172,20 @@ def models_used(ds: xr.Dataset) -> list[Row]:
     if not counts or list(counts) == [ds.attrs.get("contact_model")]:
         return []
     said = ", ".join(f"{name} in {cases}" for name, cases in counts.items())
-    return [Row("Contact model used", f"{said} of {used.size} cases")]
+    return [inputs.Row("Contact model used", f"{said} of {used.size} cases")]
 
 
-def solution_facts(view: StudyView) -> list[Row]:
+def solution_facts(view: StudyView) -> list[inputs.Row]:
     """Say how well the cases are solved."""
     ds, rows = view.data, []
     if "converged" in view.table:
         done = int((view.table["converged"] == 1).sum())
-        rows.append(Row("Converged cases", part_of(done, len(view.table))))
+        rows.append(inputs.Row("Converged cases", part_of(done, len(view.table))))
     if (known := _finite(ds, "residual")).size:
-        rows.append(Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
+        rows.append(inputs.Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
     if (known := _finite(ds, "error_estimate")).size:
         text = f"{percent(float(known.max()))} (median {percent(float(np.median(known)))})"
-        rows.append(Row("Largest estimated relative error of the peak stress", text))
+        rows.append(inputs.Row("Largest estimated relative error of the peak stress", text))
     return rows
 
 

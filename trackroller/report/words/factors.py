@@ -7,17 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.effects import (
-    FEWEST_PAIRS,
-    MOST,
-    UNCHANGED,
-    Effect,
-    also_changed,
-    class_effect,
-    comparable,
-    paired_effect,
-    strata,
-)
+from trackroller.analysis import effects
+from trackroller.analysis.effects import Effect
 from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, setting, times
 from trackroller.report.words.levels import at_least, at_most
@@ -42,12 +33,12 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     -------
     The sentence, or None where too few cases can be compared.
     """
-    effect = paired_effect(view, column, factor, rows)
+    effect = effects.paired_effect(view, column, factor, rows)
     paired = effect is not None
-    effect = effect or class_effect(view, column, factor, rows)
-    if effect is None or (not paired and not comparable(view, effect, column, rows)):
+    effect = effect or effects.class_effect(view, column, factor, rows)
+    if effect is None or (not paired and not effects.comparable(view, effect, column, rows)):
         return None
-    parts = strata(view, column, effect, rows)
+    parts = effects.strata(view, column, effect, rows)
     beyond = int((rows & view.beyond_data(column)).sum())
     values = {"column": column, "words": words, **vars(effect), "beyond": beyond}
     values |= {"fold": times(effect.ratio), "verb": _change(words, effect.ratio)[0]}
@@ -92,19 +83,19 @@ def _within(parts: Strata, words: str) -> list[str]:
 
 def _of_pairs(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
     """State the median change of cases that differ in one factor only."""
-    changed = [long_name(name) for name in also_changed(view, effect.factor, rows)]
+    changed = [long_name(name) for name in effects.also_changed(view, effect.factor, rows)]
     pairs = f"{count(effect.size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that follows from it" if changed else ""
     values |= {"span": _span(view, effect), "pairs": pairs}
-    parts = [p for p in parts if p[2].size >= FEWEST_PAIRS]
+    parts = [p for p in parts if p[2].size >= effects.FEWEST_PAIRS]
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     same = effect.rising if effect.ratio > 1 else effect.falling
-    if max(effect.ratio, 1 / effect.ratio) <= 1 + UNCHANGED and not against:
-        return say("factors", "pairs_same", rows, **values)
-    if against or same < MOST * effect.size:
+    if max(effect.ratio, 1 / effect.ratio) <= 1 + effects.UNCHANGED and not against:
+        return say("factors", "pairs_same", **values)
+    if against or same < effects.MOST * effect.size:
         medians = _within(_most_spread(parts), values["words"]) if against else []
-        return say("factors", "pairs_both", rows, **values, medians=medians)
-    return say("factors", "pairs", rows, **values, same=same)
+        return say("factors", "pairs_both", **values, medians=medians)
+    return say("factors", "pairs", **values, same=same)
 
 
 def _most_spread(parts: Strata) -> Strata:
@@ -125,8 +116,8 @@ def _of_classes(view: StudyView, effect: Effect, parts: Strata, values: dict[str
     opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     if len({e.ratio > 1 for _, _, e in opposed}) == 2:
         turns = _within(opposed, values["words"])
-        return say("factors", "classes_both", rows, **values, turns=turns)
+        return say("factors", "classes_both", **values, turns=turns)
     if effect.interval[0] <= 1 <= effect.interval[1] or against:
         kinds = sorted({long_name(c) for c, _, _ in against})
-        return say("factors", "classes_none", rows, **values, kinds=kinds)
-    return say("factors", "classes", rows, **values)
+        return say("factors", "classes_none", **values, kinds=kinds)
+    return say("factors", "classes", **values)

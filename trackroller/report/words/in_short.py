@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import numpy as np
 import xarray as xr
 
 from trackroller.analysis.ranking import decisive, headline, order, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
-from trackroller.report.numbers import capital, count
+from trackroller.report.numbers import capital
 from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
 from trackroller.report.words.cases import occurrence, silent_drive, valid_cases
@@ -17,7 +16,7 @@ from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
 from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.samples import grown, samples
-from trackroller.report.words.sentence import Sentence
+from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import target, target_words
 
 Line = tuple[str, list[Sentence]]
@@ -67,12 +66,8 @@ def _target(view: StudyView) -> Sentence | None:
 
 def stopped(view: StudyView) -> Sentence | None:
     """Count the cases in which the condition of `stop_if` ended the search for stresses."""
-    hit = view.column("stopped", 0.0) == 1
-    if not hit.any():
-        return None
-    cases = int(hit.sum())
-    text = f"{count(cases)} of {count(len(hit))} cases met the condition of `stop_if`: they have no stress and no life."
-    return Sentence("stopped", text, {"count": cases}, np.ones(len(hit), dtype=bool))
+    stopped = int((view.column("stopped", 0.0) == 1).sum())
+    return say("cases", "stopped", count=stopped, of=len(view.table)) if stopped else None
 
 
 def decides(sens: xr.Dataset | None) -> list[Sentence | None]:

@@ -1,6 +1,6 @@
 """A sentence on a study as an object that can be checked, and how its words are put around its numbers.
 
-A `Sentence` holds its text, what it claims as plain values, and the rows that it holds for. The words stand in
+A `Sentence` holds its text, and what it claims as plain values. The words stand in
 `templates/sentences/`, one file a subject and one block a kind; the claims are the variables of the block.
 `tests/report/test_truth.py` recomputes the claims from the raw rows.
 """
@@ -16,7 +16,6 @@ from dataclasses import dataclass, field
 from typing import Any
 
 import jinja2
-import numpy as np
 
 from trackroller.report import numbers
 
@@ -30,26 +29,23 @@ class Sentence:
     kind : name of the kind of sentence; each kind has its own check in the truth test
     text : the sentence
     values : what it claims, in plain numbers and names
-    rows : cases that the statement is on, shape (n,) bool; None for a statement on the analysis
     """
 
     kind: str
     text: str
     values: Mapping[str, Any] = field(default_factory=dict)
-    rows: np.ndarray | None = None
 
 
-def say(subject: str, kind: str, rows: np.ndarray | None = None, /, **values: Any) -> Sentence:
+def say(subject: str, kind: str, /, **values: Any) -> Sentence:
     """Return a sentence.
 
     Parameters
     ----------
     subject : name of the file with the words
     kind : name of the block in this file
-    rows : cases that the statement is on, shape (n,) bool
     **values : what the sentence claims; a block that names another value raises an error
     """
-    return Sentence(kind, phrase(subject, kind, **values), values, rows)
+    return Sentence(kind, phrase(subject, kind, **values), values)
 
 
 def phrase(subject: str, kind: str, /, **values: Any) -> str:
