@@ -10,7 +10,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.report.build import _analysis
-from trackroller.report.figures.study import _jobs, _of_analysis
+from trackroller.report.figures.study import _jobs
 from trackroller.report.numbers import Life
 from trackroller.report.pages.study import contents
 
@@ -89,8 +89,7 @@ def page(name):
     view = solved.view.analysed(_analysis(solved.indices))
     found = contents(view)
     prose = [(head, s.text) for head, said in found["summary"] for s in said]
-    before, after = _of_analysis(view.analysis) if view.analysis is not None else ([], [])
-    infos = [drawn[1] for draw in (*before, *_jobs(view), *after) if (drawn := draw()) is not None]
+    infos = [drawn[1] for draw in _jobs(view) if (drawn := draw()) is not None]
     prose += [(info.name, text) for info in infos for text in (info.sentence, info.caption)]
     for table in (t for part in ("decide", "why", "ends", "models") for t in found["tables"][part]):
         prose.append((table.name, table.note))

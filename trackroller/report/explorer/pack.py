@@ -81,7 +81,7 @@ def plain_level(level: Any) -> Any:
     return str(level) if isinstance(level, float) and not math.isfinite(level) else level
 
 
-def sample_rows(state: np.ndarray, keep: np.ndarray, most: int, seed: int = 1) -> np.ndarray:
+def sample_rows(state: np.ndarray, keep: np.ndarray, most: int) -> np.ndarray:
     """Choose the cases to show.
 
     Parameters
@@ -89,7 +89,6 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int, seed: int = 1) -
     state : stratum of each case, such as its regime and validity, shape (n,) int
     keep : cases that are always shown, shape (n,) bool
     most : number of cases to choose
-    seed : seed of the random choice
 
     Returns
     -------
@@ -98,7 +97,7 @@ def sample_rows(state: np.ndarray, keep: np.ndarray, most: int, seed: int = 1) -
     """
     if len(state) <= most:
         return np.arange(len(state))
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(1)
     chosen = keep.copy()
     strata, counts = np.unique(state[~keep], return_counts=True)
     rare = strata[counts <= RARE]

@@ -16,9 +16,9 @@ from trackroller.analysis.groups import spaced_by_ratio
 from trackroller.analysis.table import StudyView
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
-from trackroller.report.words.accuracy import words_of
 from trackroller.roller.duty import years
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
@@ -210,7 +210,7 @@ def _first_limits(view: StudyView) -> list[Column]:
 
 def flag_text(mask: int, flags: Sequence[str]) -> str:
     """Write the validity flags of a bit mask in words, 'none' without a flag."""
-    said = [words_of(flag) for i, flag in enumerate(flags) if mask & (1 << i)]
+    said = [VALIDITY[flag].words for i, flag in enumerate(flags) if mask & (1 << i)]
     return "; ".join(said) or "none"
 
 

@@ -45,28 +45,30 @@ class Patch:
         across, along = _strips(self.ds, "x"), _strips(self.ds, "y")
         return across[0][0], across[-1][1], along[0][0], along[-1][1]
 
-    def summed(self, values: np.ndarray, axis: int) -> np.ndarray:
-        """Integrate a field or profile over y (axis 0 of a field) or x.
+    def summed(self, values: np.ndarray) -> np.ndarray:
+        """Integrate a field over y, or a profile over x.
 
         Values of elements are summed; between points of a grid the trapezoidal rule holds.
         """
-        places = self.y if values.ndim == 2 and axis == 0 else self.x
+        places = self.y if values.ndim == 2 else self.x
         if self.solved:
-            return values.sum(axis=axis) * (places[1] - places[0])
-        return np.trapezoid(values, places, axis=axis)
+            return values.sum(axis=0) * (places[1] - places[0])
+        return np.trapezoid(values, places, axis=0)
+
+    def framed(self, field: np.ndarray, rim: float | None = None) -> tuple[np.ndarray, ...]:
+        """Return x, y and a field with one more row and column of elements on each side.
+
+        The new elements have the value `rim`, or that of their neighbour.
+        """
+        wide = [np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (self.x, self.y)]
+        return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(field, 1, constant_values=rim)
 
     @property
     def spin_pole(self) -> tuple[float, float] | None:
         """Return the place of the spin pole of full sliding [mm]; other contact models have no spin pole."""
-        if "spin_pole_lateral" not in self.ds or not _slides(self.ds):
+        if "spin_pole_lateral" not in self.ds or CONTACT_MODELS[int(self.ds["contact_model_used"])] != "sliding":
             return None
         return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))
-
-
-def _slides(ds: xr.Dataset) -> bool:
-    if "contact_model_used" in ds:
-        return CONTACT_MODELS[int(ds["contact_model_used"])] == "sliding"
-    return ds.attrs.get("contact_model", "sliding") == "sliding"
 
 
 def patches_of(ds: xr.Dataset, *names: str) -> list[Patch]:
@@ -74,15 +76,6 @@ def patches_of(ds: xr.Dataset, *names: str) -> list[Patch]:
     if not all(n in ds for n in ("patch_x", "patch_y", *names)):
         return []
     return [p for p in (Patch(ds, int(c)) for c in ds["contact"].values) if p.there]
-
-
-def framed(x: np.ndarray, y: np.ndarray, field: np.ndarray, rim: float | None = None) -> tuple[np.ndarray, ...]:
-    """Return x, y and a field with one more row and column of elements on each side.
-
-    The new elements have the value `rim`, or that of their neighbour.
-    """
-    wide = [np.concatenate([[2 * v[0] - v[1]], v, [2 * v[-1] - v[-2]]]) for v in (x, y)]
-    return *wide, np.pad(field, 1, mode="edge") if rim is None else np.pad(field, 1, constant_values=rim)
 
 
 def _bears(part: xr.Dataset) -> np.ndarray:

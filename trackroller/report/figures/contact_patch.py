@@ -17,13 +17,14 @@ from matplotlib.ticker import MaxNLocator
 
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_outline import Patch, framed, patches_of
+from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.numbers import capital, level_text, listing, long_name, number, rounded, setting
 from trackroller.roller.record import CASE, inputs_of, is_default
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
 PANEL_MM = 70.0  # width of a map
+LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))  # black arrows are visible on it
 
 
 def outline(patch: Patch) -> Path:
@@ -31,7 +32,7 @@ def outline(patch: Patch) -> Path:
     if not patch.solved:
         circle = Path.unit_circle()
         return Path(np.asarray(circle.vertices) * np.array([patch.a, patch.b]), circle.codes)
-    x, y, loaded = framed(patch.x, patch.y, patch.inside.astype(float), 0.0)
+    x, y, loaded = patch.framed(patch.inside.astype(float), 0.0)
     rings = contour_generator(x, y, loaded).lines(0.5)
     return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])
 
@@ -88,7 +89,7 @@ def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[A
 def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
     """Draw filled contours clipped to the edge of the patch, and return them."""
     levels = np.linspace(0, top, 17)
-    x, y, shown = framed(patch.x, patch.y, values) if patch.solved else (patch.x, patch.y, values)
+    x, y, shown = patch.framed(values) if patch.solved else (patch.x, patch.y, values)
     image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
     edge = PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9)
     axes.add_patch(edge)
@@ -97,14 +98,9 @@ def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -
     return image
 
 
-def _light(name: str = "YlGnBu", end: float = 0.62) -> Any:
-    """Return the lighter part of a colour map, on which black arrows are visible."""
-    return ListedColormap(matplotlib.colormaps[name](np.linspace(0, end, 64)))
-
-
-def _bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
-    bar = figure.colorbar(image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6))
-    bar.set_label(label)
+def colour_bar(figure: Figure, image: Any, axes: list[Axes], label: str) -> None:
+    """Draw the scale of the colours below maps."""
+    figure.colorbar(image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6), label=label)
 
 
 def shear_arrows(ds: xr.Dataset) -> style.Drawn:
@@ -116,10 +112,10 @@ def shear_arrows(ds: xr.Dataset) -> style.Drawn:
         return None
     figure, grid, _, to_scale = _canvas(patches)
     for axes, patch, size in zip(grid, patches, sizes, strict=True):
-        image = _fill(axes, patch, size, top, _light())
+        image = _fill(axes, patch, size, top, LIGHT)
         _arrows(axes, patch, top, to_scale)
         _pole(axes, patch)
-    _bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
+    colour_bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
     pole = any(p.spin_pole is not None for p in patches)
     style.head(figure, "Shear traction on the roller")
     best = int(np.argmax([s.max() for s in sizes]))
@@ -178,8 +174,8 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
     assert across is not None
     for axes, patch, field in zip(grid, patches, fields, strict=True):
         image = _fill(axes, patch, field, top, "cividis")
-    _bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
-    profiles = [p.summed(f, 0) for p, f in zip(patches, fields, strict=True)]
+    colour_bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
+    profiles = [p.summed(f) for p, f in zip(patches, fields, strict=True)]
     for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
         look = {"color": style.PAIR[i], "linestyle": style.LINES[i]}
         across.plot(patch.x, profile, label=f"contact {patch.contact}", **look)
@@ -192,7 +188,7 @@ def friction_energy(ds: xr.Dataset) -> style.Drawn:
         f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
         f"direction over each strip of the running track. {case_text(ds, to_scale)}"
     )
-    totals = [float(q.summed(p, 0)) for p, q in zip(profiles, patches, strict=True)]
+    totals = [float(q.summed(p)) for p, q in zip(profiles, patches, strict=True)]
     words = " and ".join(f"{number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
     worst = int(np.argmax([p.max() for p in profiles]))
     place = float(patches[worst].x[int(np.argmax(profiles[worst]))])

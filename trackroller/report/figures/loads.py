@@ -183,8 +183,6 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
     """Shade the axial forces at which a contact lifts off in every line."""
-    if "regime" not in rows:
-        return
     lifted = rows.groupby(x)["regime"].apply(lambda r: bool((r == 2).all()))
     values = lifted.index.to_numpy()
     halves = np.concatenate([values[:1], (values[1:] + values[:-1]) / 2, values[-1:]])

@@ -47,10 +47,8 @@ def life_map(view: StudyView) -> style.Drawn:
     over = capital(f"{words} over {long_name(pair[0])} and {long_name(pair[1])}")
     figure, (axes,) = style.panels(over, 84)
     image = _life_cells(axes, view, rows, pair, column)
-    bar = figure.colorbar(
-        image, ax=axes, aspect=25, pad=0.02, extend="max" if np.isposinf(rows[column]).any() else "neither"
-    )
-    bar.set_label(with_unit(capital(words), unit))
+    extend = "max" if np.isposinf(rows[column]).any() else "neither"
+    bar = figure.colorbar(image, ax=axes, aspect=25, pad=0.02, extend=extend, label=with_unit(capital(words), unit))
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
     how = "Grey cells have no life" if view.grid else "Each cell is the median of its cases; grey cells have no life"
@@ -143,7 +141,7 @@ def regime_map(view: StudyView) -> style.Drawn:
 
     It answers: where may the roller not be used? Return None if all cases roll, or nearly all cases of a sample.
     """
-    if "regime" not in view.table or len(view.factors) < 2:
+    if len(view.factors) < 2:
         return None
     most = np.unique(view.regime, return_counts=True)[1].max()
     if len(view.table) - most < (1 if view.grid else FEWEST):

@@ -68,14 +68,12 @@ def quantiles(
     return percentiles
 
 
-def band(
-    axes: Axes, at: np.ndarray, values: np.ndarray, look: dict[str, Any], ordered: bool, shade: bool = True
-) -> Any:
+def band(axes: Axes, at: np.ndarray, values: np.ndarray, look: dict[str, Any], ordered: bool) -> Any:
     """Draw the middle of three percentiles, shape (3, groups), with a band, or with bars for unordered groups."""
     low, middle, high = values
-    if shade and ordered:
+    if ordered:
         axes.fill_between(at, low, high, color=look["color"], alpha=0.18, linewidth=0)
-    elif shade:
+    else:
         axes.vlines(at, low, high, color=look["color"], alpha=0.35, linewidth=4)
     return axes.plot(at, middle, **{"markersize": 3, **look, **({} if ordered else {"linestyle": "none"})})[0]
 

@@ -29,12 +29,12 @@ MAX_BARS = 12
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 
 
-def main_outputs(sens: xr.Dataset, count: int) -> list[str]:
-    """Name at most `count` outputs that have an index, the most important first."""
+def main_outputs(sens: xr.Dataset) -> list[str]:
+    """Name the outputs that have an index, the most important first."""
     index = headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
     usual = list(DEFAULTS)  # lives first
-    return sorted(names, key=lambda n: usual.index(n) if n in usual else len(usual))[:count]
+    return sorted(names, key=lambda n: usual.index(n) if n in usual else len(usual))
 
 
 def title(sens: xr.Dataset, output: str) -> str:
@@ -96,7 +96,7 @@ def _heat(table: np.ndarray, names: list[str], label: str, head: str) -> Figure:
     return figure
 
 
-def _doubled(axes: Axes, sizes: Sequence[int], unit: str) -> None:
+def _doubled(axes: Axes, sizes: Sequence[int] | np.ndarray, unit: str) -> None:
     """Write the sizes of a sample that doubles under the axis."""
     axes.set_xscale("log", base=2)
     axes.set_xticks(sizes, [count(int(size)) for size in sizes])

@@ -7,36 +7,24 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-import xarray as xr
-
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import robust_design
 from trackroller.analysis.table import StudyView
-from trackroller.report.figures import style
+from trackroller.report.figures import sensitivity, style
 from trackroller.report.figures.comparison import model_errors
 from trackroller.report.figures.designs import lives_by_design, pareto_front
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
-from trackroller.report.figures.sensitivity import (
-    convergence,
-    interactions,
-    intervals,
-    main_outputs,
-    morris_plane,
-    tornado,
-)
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
 
-Draw = Callable[[], style.Drawn]
 OF_CASES = (
     *(model_errors, lives_by_design, by_factor, life_map, stress_against_fit),
     *(sn_diagram, forces_against_axial, regime_map),
 )
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
-OF_OUTPUTS = ((tornado, 1), (morris_plane, 2), (interactions, 1), (convergence, 1))
 
 
 @lives_in_years
@@ -55,8 +43,7 @@ def draw_all(view: StudyView, out_dir: Path) -> list[style.FigureInfo]:
     list of FigureInfo
         The figures drawn, in the order of the report.
     """
-    before, after = _of_analysis(view.analysis) if view.analysis is not None else ([], [])
-    infos = style.draw_all([*before, *_jobs(view), *after], Path(out_dir))
+    infos = style.draw_all(_jobs(view), Path(out_dir))
     if error := friction_error(view):
         infos = [replace(i, sentence=f"{i.sentence} {error.text}") if _is_about_friction(i) else i for i in infos]
     style.write_index(infos, Path(out_dir))
@@ -68,18 +55,19 @@ def _is_about_friction(info: style.FigureInfo) -> bool:
     return any(name in text for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
 
 
-def _jobs(view: StudyView) -> Iterator[Draw]:
-    """Yield the drawings of the cases, and of the Pareto front."""
+def _jobs(view: StudyView) -> Iterator[Callable[[], style.Drawn]]:
+    """Yield the drawings in the order of the report."""
+    sens = view.analysis
+    outputs = sensitivity.main_outputs(sens) if sens is not None and not robust_design(sens) else []
+
+    def of_analysis(draw: Callable[..., style.Drawn], most: int) -> list[Callable[[], style.Drawn]]:
+        return [partial(draw, sens, name) for name in outputs[:most]]
+
+    yield from of_analysis(sensitivity.tornado, 1)
     yield from (partial(draw, view) for draw in OF_CASES)
     if (front := study_pareto(view)) is not None:
         yield partial(pareto_front, front, view)
-    yield partial(intervals, view)
-
-
-def _of_analysis(sens: xr.Dataset) -> tuple[list[Draw], list[Draw]]:
-    """Return the drawings of the analysis: those before and those after the figures of the cases."""
-    if robust_design(sens):
-        return [], []
-    parts: list[list[Draw]] = [[partial(draw, sens, name) for name in main_outputs(sens, n)] for draw, n in OF_OUTPUTS]
-    first, *others = parts
-    return first, [draw for part in others for draw in part]
+    yield partial(sensitivity.intervals, view)
+    yield from of_analysis(sensitivity.morris_plane, 2)
+    yield from of_analysis(sensitivity.interactions, 1)
+    yield from of_analysis(sensitivity.convergence, 1)

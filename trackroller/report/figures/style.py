@@ -161,7 +161,7 @@ def draw_all(jobs: Iterable[Callable[[], Drawn]], out_dir: Path) -> list[FigureI
     return infos
 
 
-def write_index(infos: Sequence[FigureInfo], out_dir: Path, name: str = "index.json") -> Path:
+def write_index(infos: Sequence[FigureInfo], out_dir: Path) -> Path:
     """Write captions and sentences of the figures in `out_dir`, for the report."""
-    write_text(out_dir / name, json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n")
-    return out_dir / name
+    write_text(out_dir / "index.json", json.dumps([asdict(i) for i in infos], indent=1, ensure_ascii=False) + "\n")
+    return out_dir / "index.json"

@@ -22,8 +22,11 @@ from trackroller.roller.record import inputs_of, materials_of
 
 MOST = 12  # rows of the table
 SOLVED = 1e-6  # residual of a solved balance, over the normal force times the distance of the axes
-OF_BODY = (("groove_depth", "depth", 1e3, "µm"), ("peak_stress", "peak stress", 1.0, "MPa"))
-OF_BODY += (("fatigue_damage", "damage sum", 1.0, "-"),)
+OF_BODY = (
+    ("groove_depth", "depth", 1e3, "µm"),
+    ("peak_stress", "peak stress", 1.0, "MPa"),
+    ("fatigue_damage", "damage sum", 1.0, "-"),
+)
 COLUMNS = (
     ("max_pressure", "Pressure", "MPa"),
     ("semi_axis_lateral", "Half width", "mm"),

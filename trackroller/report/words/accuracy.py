@@ -10,7 +10,7 @@ import xarray as xr
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
-from trackroller.report.numbers import capital, level_text, number, percent, plain
+from trackroller.report.numbers import capital, level_text, number, percent
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
@@ -82,17 +82,12 @@ _ROLLING = REGIMES.index("rolling")
 
 def bodies_of(flag: str, by_body: bool) -> tuple[str, ...]:
     """Return the bodies that a flag is counted for: both, or '' for a flag of the pair or flags that no body has."""
-    return BODIES if by_body and flag in VALIDITY and VALIDITY[flag].of_body else ("",)
+    return BODIES if by_body and VALIDITY[flag].of_body else ("",)
 
 
 def of_body(flag: str, body: str) -> str:
     """Name the body that a flag holds for, as the words of the flag go on; an empty text without a body."""
     return f"{'at' if flag == 'half_space' else 'of'} the {body}" if body else ""
-
-
-def words_of(flag: str) -> str:
-    """Say what a flag means, in a clause; a flag of another solver stands for itself."""
-    return VALIDITY[flag].words if flag in VALIDITY else plain(flag)
 
 
 @dataclass(frozen=True)
@@ -117,7 +112,7 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
     for name, flag in VALIDITY.items():
         if bits & validity_bit(name):
             own = [body for body, mask in by_body.items() if flag.of_body and mask & validity_bit(name)]
-            words = f"{words_of(name)} {of_body(name, ' and the '.join(own))}".rstrip()
+            words = f"{flag.words} {of_body(name, ' and the '.join(own))}".rstrip()
             flags.append(Flag(name, f"{capital(words)}.", flag.remedy))
     residual = float(ds["energy_residual"]) if "energy_residual" in ds else 0.0
     exact = "Solve it with contact_model: kalker."

@@ -14,7 +14,7 @@ from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import count, lasting, level_text, listing, long_name, number, plain, setting, share
 from trackroller.report.tables.table import Table
-from trackroller.report.words.accuracy import bodies_of, of_body, words_of
+from trackroller.report.words.accuracy import bodies_of, of_body
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, phrase, say
 
@@ -57,7 +57,7 @@ def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> list[str]:
     said: dict[str, list[str]] = {}
     for flag, body, cases in reasons:
         said.setdefault(flag, []).append(f"{of_body(flag, body)} ({count(cases)})".lstrip())
-    return [f"{words_of(flag)} {' or '.join(where)}" for flag, where in said.items()]
+    return [f"{VALIDITY[flag].words} {' or '.join(where)}" for flag, where in said.items()]
 
 
 def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequence[str], rows: np.ndarray) -> Sentence:
@@ -166,8 +166,6 @@ def lift_off(view: StudyView) -> Sentence | None:
 
 def regime_table(view: StudyView) -> Table | None:
     """Count the cases in each regime; In short says where each regime occurs."""
-    if "regime" not in view.table:
-        return None
     counts = {name: int((view.regime == code).sum()) for code, name in enumerate(REGIME_LABELS)}
     rows = [{"Regime": name, "Cases": n, "Share": share(n, len(view.table))} for name, n in counts.items() if n]
     return Table.of("regimes", "Regimes", rows)
@@ -181,7 +179,7 @@ def validity_table(view: StudyView) -> Table | None:
         said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
         if said is not None:
             row = {"Flag": plain(flag), "Body": body or "either"}
-            row |= {"Meaning": VALIDITY[flag].criterion if flag in VALIDITY else words_of(flag)}
+            row |= {"Meaning": VALIDITY[flag].criterion}
             cases = int(hit.sum())
             rows.append(row | {"Cases": cases, "Share of the rolling": share(cases, rolling), "Where": said.text})
     return Table.of("validity", "Validity flags of the rolling cases", rows)

@@ -76,14 +76,15 @@ def best_whatever(view: StudyView) -> Sentence | None:
     rows = designs.table[designs.table.index.isin(best)]
     names = [design_words(designs, row) for _, row in rows.iterrows()]
     values = {"designs": rows.index.tolist(), "of": len(designs.size), "names": names, "most": MOST_NAMED}
-    return say("limits", "best_whatever", **values, **_unsure(view, varied(designs)))
+    return say("limits", "best_whatever", **values, **_unsure(designs))
 
 
-def _unsure(view: StudyView, names: list[str]) -> dict[str, str]:
+def _unsure(designs: Designs) -> dict[str, str]:
     """Return words for the values that a study varies within their ranges, and for the ranges."""
+    names = varied(designs)
     if names == [POSITION]:
         return {"what": "placeholders of materials", "span": "each within its range"}
-    factors = view.table[COEFFICIENT]
+    factors = designs.view.table[COEFFICIENT]
     span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
     return {"what": "wear coefficients" + " and other placeholders" * (POSITION in names), "span": span}
 
@@ -94,7 +95,7 @@ def whichever_first(view: StudyView) -> Sentence | None:
     counts = settled(designs) if designs is not None else None
     if designs is None or counts is None or not counts[1]:
         return None
-    return say("limits", "whichever_first", certain=counts[0], of=counts[1], **_unsure(view, varied(designs)))
+    return say("limits", "whichever_first", certain=counts[0], of=counts[1], **_unsure(designs))
 
 
 def _gain(designs: Designs) -> Sentence:
