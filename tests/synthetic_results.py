@@ -221,9 +221,8 @@ def results_of(ds) -> StudyResults:
     names = [str(n) for n in ds.dims if n in ds.coords and n not in ("contact", "body", "case")] if not given else given
     free = [str(n) for n, v in ds.variables.items() if v.dims == ("case",) and n in ds.coords and n != "case"]
     specs = {n: given.get(n) or {"values": np.unique(ds[n].values).tolist()} for n in names or free}
-    study = Study(
-        StudyFile.model_construct(**{"name": "made-up"} | told | {"factors": {n: given.get(n) or {} for n in specs}})
-    )
+    study = Study(StudyFile.model_construct(**{"name": "made-up"} | told | {"factors": specs}))
+    vars(study)["parsed"] = {n: parse(n, spec) for n, spec in given.items() if spec}  # others have no kind of values
     dims = case_dims(ds, specs)
     columns = {n: flat(ds, n, dims) for n in specs if n in ds.variables}
     factors = {n: factor for n in columns if (factor := parse(n, specs[n])).varies}
