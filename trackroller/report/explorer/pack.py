@@ -46,7 +46,8 @@ def pack(columns: Sequence[Column]) -> tuple[list[dict[str, Any]], str]:
         part = array.view(np.uint8).reshape(len(array), -1).T.tobytes()
         entry: dict[str, Any] = {key: getattr(column, key) for key in ("name", "label", "unit", "role", "log")}
         if column.levels is not None:
-            entry["levels"] = [plain_level(level) for level in column.levels]
+            # JSON has no infinity
+            entry["levels"] = [str(v) if v in (math.inf, -math.inf) else v for v in column.levels]
             entry["texts"] = list(column.texts)
             if column.name != "state":
                 entry["colours"] = colours(column.texts[:MOST_COLOURS], column.name in OF_MATERIALS)
@@ -74,11 +75,6 @@ def _numbers(column: Column) -> np.ndarray:
         return np.ascontiguousarray(column.values, dtype=kind)
     kind = next(k for k in ("<u1", "<u2", "<u4") if len(column.levels) < np.iinfo(k).max)
     return np.ascontiguousarray(column.values + 1, dtype=kind)
-
-
-def plain_level(level: Any) -> Any:
-    """Return a level as JSON can hold it: infinity becomes a text."""
-    return str(level) if isinstance(level, float) and not math.isfinite(level) else level
 
 
 def sample_rows(state: np.ndarray, keep: np.ndarray, most: int) -> np.ndarray:

@@ -12,10 +12,11 @@ from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
-from trackroller.report.numbers import factor_label, level_text, listing, number, quantity, symbol, with_unit
+from trackroller.report.numbers import factor_label, level_text, listing, symbol, with_unit
 from trackroller.report.words.cases import lift_off, surface
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured, held_words
+from trackroller.report.words.sentence import phrase
 from trackroller.study.design.levels import OF_MATERIALS
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
@@ -104,9 +105,9 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     through 0 instead of infinity.
     """
     rows = rows.copy()
-    roller = rows.get("roller_profile_radius", view.base.get("roller_profile_radius"))
-    guide = rows.get("guide_profile_radius", view.base.get("guide_profile_radius"))
-    roller, guide = (np.broadcast_to(np.asarray(v, dtype=float), len(rows)) for v in (roller, guide))
+    names = ("roller_profile_radius", "guide_profile_radius")
+    radii = (np.asarray(rows.get(name, view.base.get(name)), dtype=float) for name in names)
+    roller, guide = (np.broadcast_to(radius, len(rows)) for radius in radii)
     r_t, r_g = symbol("r_C,TR"), symbol("r_C,G")
     if np.all((roller < 0) & np.isfinite(roller)):
         rows["_fit"] = -roller / guide
@@ -207,6 +208,5 @@ def _force_sentence(view: StudyView) -> str:
     if not good.size:
         return ""
     last = good[np.argmax(axial[good])]
-    one, two = (quantity(float(v), "N") for v in both[:, last])
-    at = number(float(view.column("axial_force")[last]))
-    return f"No case lifts off; at an axial force of {at} N the contacts of case {last} carry {one} and {two}."
+    at, loads = view.column("axial_force")[last], both[:, last].tolist()
+    return phrase("cases", "no_lift_off", axial=at, case=last, loads=loads)

@@ -108,14 +108,11 @@ def _sentence(one: xr.Dataset, along: Groups, who: str) -> str:
     clauses: dict[str, list[str]] = {"good enough for": [], "not good enough for": []}
     for q in measured(one):
         where = levels_kept(along, one[q.name].values)
-        clause = f"{q.words} {where} ({_range(known(one[q.name]))})".replace("  ", " ")
+        error = known(one[q.name])
+        clause = f"{q.words} {where} ({percent(error.min())} to {percent(error.max())})".replace("  ", " ")
         clauses["good enough for" if where else "not good enough for"].append(clause)
     sentence = "; ".join(f"{head} {', '.join(listed)}" for head, listed in clauses.items() if listed)
     return f"{who}: {sentence or 'nothing to compare, because no case rolls'}."
-
-
-def _range(e: np.ndarray) -> str:
-    return f"{percent(float(e.min()))} to {percent(float(e.max()))}"
 
 
 def levels_kept(along: Groups, e: np.ndarray) -> str:

@@ -80,7 +80,7 @@ def decides(sens: xr.Dataset, output: str) -> Sentence:
         negligible=SMALL,
         used=used,
         reliable=RELIABLE,
-        correlated=_correlated(sens),
+        correlated=sens["factor_name"].values[sens["correlated"].values == 1].tolist() if "correlated" in sens else [],
     )
 
 
@@ -89,11 +89,6 @@ def _small(rank: Rank, first: Rank, sized: bool) -> bool:
     if sized:
         return bool(abs(rank.value) < 0.1 * abs(first.value))
     return bool((rank.high if np.isfinite(rank.high) else rank.value) < SMALL)
-
-
-def _correlated(sens: xr.Dataset) -> list[str]:
-    """Name the factors that are correlated with another factor."""
-    return [str(n) for n in sens["factor_name"].values[sens["correlated"].values == 1]] if "correlated" in sens else []
 
 
 def convergence(sens: xr.Dataset, output: str) -> Sentence:

@@ -26,11 +26,16 @@ def title(name: str) -> str:
 
 
 def limit_of_best(view: StudyView) -> Sentence | None:
-    """Say which limit the best design reaches first, and its life without this limit; None without limits."""
+    """Say what ends the best design first at its worst condition, and its life without it; None without limits."""
     designs = Designs.of(view)
     if designs is None or designs.goal != FIRST_LIMIT or not designs.comparable or not designs.table.iloc[0]["valid"]:
         return None
-    return _gain(designs)
+    case = int(designs.table.iloc[0]["worst_case"])
+    first, hours, following, then = without_first(view, case)
+    lives = body_lives("").values()
+    beyond = following == "fatigue" and any(view.beyond_data(name)[case] for name in lives)
+    values = {"first": title(first), "hours": hours, "next": title(following), "then": then}
+    return say("limits", "gain", **values, beyond=beyond, several=bool(designs.conditions))
 
 
 def limit_sentences(view: StudyView) -> list[Sentence]:
@@ -96,16 +101,6 @@ def whichever_first(view: StudyView) -> Sentence | None:
     if designs is None or counts is None or not counts[1]:
         return None
     return say("limits", "whichever_first", certain=counts[0], of=counts[1], **_unsure(designs))
-
-
-def _gain(designs: Designs) -> Sentence:
-    """Say what the best design would last at its worst condition without its first limit."""
-    case = int(designs.table.iloc[0]["worst_case"])
-    first, hours, following, then = without_first(designs.view, case)
-    lives = body_lives("").values()
-    beyond = following == "fatigue" and any(designs.view.beyond_data(name)[case] for name in lives)
-    values = {"first": title(first), "hours": hours, "next": title(following), "then": then}
-    return say("limits", "gain", **values, beyond=beyond, several=bool(designs.conditions))
 
 
 def _turned(designs: Designs, order: Turn) -> Sentence:
