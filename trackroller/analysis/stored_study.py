@@ -17,7 +17,7 @@ import xarray as xr
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.study.design.entries import CASE_FIELDS
-from trackroller.study.design.stored import FACTOR, restored, solved_part
+from trackroller.study.design.stored import restored, solved_part
 from trackroller.study.file.load import checked_keys, without_former
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
@@ -72,13 +72,11 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
     study = _study(data)
     design = restored(data, study.parsed, case_dims(data, study.factors))
     if "options" in data.attrs and "case" in data.dims:  # the cases of a design beside their results: not labelled yet
-        values = {name: v for name, v in data.data_vars.items() if name not in CASE_FIELDS}
-        block = data[list(values)].transpose("case", ...)
-        if "regime" in values:
-            block = chunks.from_results(block, np.arange(data.sizes["case"]))
-        axes = {n: v.variable for n, v in data.coords.items() if "case" not in v.dims and n != FACTOR}
-        results = {name: v.variable for name, v in block.data_vars.items()}
-        data = labelled(study, design, data.drop_vars(list(values)), results, axes, data.attrs)
+        names = [name for name in data.data_vars if name not in CASE_FIELDS]
+        solved = data[names].transpose("case", ...)
+        if "regime" in names:
+            solved = chunks.from_results(solved, np.arange(data.sizes["case"]))
+        data = labelled(study, design, data.drop_vars(names), solved)
     return StudyResults(study, design, data)
 
 
@@ -92,7 +90,7 @@ def solved_results(
     study: Study, cases: Cases, found: Inventory, place: np.ndarray, folder: StudyFolder
 ) -> StudyResults:
     """Return the results of a study whose cases lie at `place`, shape (n,), in the inventory of its folder."""
-    data = labelled(study, study.drawn, cases.design, *collect(found, place, folder.root))
+    data = labelled(study, study.drawn, cases.design, collect(found, place, folder.root))
     return StudyResults(study, study.drawn, data)
 
 
@@ -116,7 +114,7 @@ def _read_unfinished(folder: StudyFolder) -> StudyResults:
         state = "every case is solved, but not gathered into study.nc" if len(rows) else "no case is solved yet"
         raise InputError("study", str(folder.root), f"a study with results; {state}", "Run the study to its end first.")
     drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
-    data = labelled(study, drawn, cases, *collect(inventory, place[rows], folder.root)).assign_coords(case=rows)
+    data = labelled(study, drawn, cases, collect(inventory, place[rows], folder.root)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
     only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
     notice = (

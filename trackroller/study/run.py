@@ -152,6 +152,4 @@ def solve_study(study: Study, started: Count = unheard, progress: Count = unhear
             blocks.append(block)
             progress(*chunks.counts(block))
     solved = chunks.join(blocks).sel(case=cases["case"].values)
-    results = {name: values.variable for name, values in solved.data_vars.items()}
-    axes = {name: values.variable for name, values in solved.coords.items() if name != "case"}
-    return labelled(study, study.drawn, design, results, axes, solved.attrs)
+    return labelled(study, study.drawn, design, solved)

@@ -76,7 +76,7 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
     date = datetime.datetime.fromtimestamp(last, datetime.UTC).isoformat(timespec="seconds")
 
     def save(beside: Path) -> None:
-        results = labelled(study, study.drawn, design, *collect(inventory, place, folder.root))
+        results = labelled(study, study.drawn, design, collect(inventory, place, folder.root))
         results.assign_attrs({"date_created": date} | dict(attrs or {})).to_netcdf(beside, engine="netcdf4")
 
     before = recorded(folder.gathered) or {}
@@ -88,10 +88,8 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
     return folder.gathered
 
 
-def collect(
-    found: Inventory, place: np.ndarray, scratch: Path
-) -> tuple[dict[Hashable, xr.Variable], dict[Hashable, xr.Variable], dict[str, Any]]:
-    """Return results of solved cases, (n, ...) each, the coordinates of their other axes, and the solver's attributes.
+def collect(found: Inventory, place: np.ndarray, scratch: Path) -> xr.Dataset:
+    """Return the results of solved cases along `case`, with the coordinates of their other axes.
 
     Parameters
     ----------
@@ -125,7 +123,7 @@ def collect(
             into: Any = (rows, *map(slice, v.shape[1:]))
             results[name].values[into] = v.values[row[rows]]
             results[name].attrs = results[name].attrs or v.attrs
-    return results, coords, attrs
+    return xr.Dataset(results, coords, attrs)
 
 
 def _room(shape: tuple[int, ...], dtype: np.dtype, folder: Path) -> np.ndarray:

@@ -23,14 +23,7 @@ if TYPE_CHECKING:
 Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
 
 
-def labelled(
-    study: Study,
-    drawn: SampledDesign,
-    cases: xr.Dataset,
-    results: Mapping[Hashable, xr.Variable],
-    axes: Mapping[Hashable, xr.Variable],
-    attrs: Mapping[str, Any],
-) -> xr.Dataset:
+def labelled(study: Study, drawn: SampledDesign, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
     """Return the data set of a solved study.
 
     Parameters
@@ -41,12 +34,9 @@ def labelled(
         Its design.
     cases : xarray.Dataset
         Its n cases, as `Study.design` returns them.
-    results : mapping
-        Results by name, each with `case` as its first dimension.
-    axes : mapping
-        Coordinates of the other dimensions.
-    attrs : mapping
-        Attributes of the solver.
+    solved : xarray.Dataset
+        Their results, each with `case` as its first dimension, with the coordinates of the other dimensions and the
+        attributes of the solver.
 
     Returns
     -------
@@ -59,12 +49,13 @@ def labelled(
     sizes = dict(zip(grid or ("case",), shape, strict=True))
     unstacked = {
         name: _variable((*sizes, *v.dims[1:]), v.values.reshape(*shape, *v.shape[1:]), v.attrs)
-        for name, v in results.items()
+        for name, v in solved.data_vars.items()
     }
     coords = _labels(cases, sizes, grid)
-    for name, v in axes.items():
-        coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
-    return xr.Dataset(unstacked, coords, _attributes(study, cases, attrs))
+    for name, v in solved.coords.items():
+        if "case" not in v.dims:
+            coords.setdefault(name, _variable(v.dims, v.values, v.attrs, coordinate=True))
+    return xr.Dataset(unstacked, coords, _attributes(study, cases, solved.attrs))
 
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
