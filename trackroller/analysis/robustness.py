@@ -131,26 +131,9 @@ def material_deviations(results: StudyResults) -> dict[str, np.ndarray]:
             )
         elif field in ds.variables:
             names = flat(ds, field, dims)
-            of = {str(n): deviation(known.get(str(n), {})) for n in np.unique(names.astype(str))}
+            of = {str(n): float(SNCurve.of(known[str(n)]).log_life_deviation) for n in np.unique(names.astype(str))}
             out[body] = np.array([of[str(n)] for n in names])
     return out
-
-
-def deviation(material: Mapping[str, float]) -> float:
-    """Return the standard deviation of log10 life of a material.
-
-    Parameters
-    ----------
-    material : its values; `scatter_in_cycles` T_N or `scatter_in_stress` T_S [1]
-
-    Returns
-    -------
-    lg(T_N) / 2.563 [1]; 0 for a material without scatter.
-    """
-    t_n, t_s = material.get("scatter_in_cycles"), material.get("scatter_in_stress")
-    if t_n is None and t_s is None:
-        return 0.0
-    return float(SNCurve.of(material).log_life_deviation)
 
 
 def _coordinates(design: SampledDesign, columns: list[Output]) -> dict[str, Any]:

@@ -164,10 +164,12 @@ class SNCurve:
 
         A relative error of the stress changes the life by this exponent times the error.
         """
+        return self._slope(np.asarray(stress, dtype=float) < self.knee[0])
+
+    def _slope(self, below: np.ndarray) -> np.ndarray:
+        """Return the exponent of the life where a load lies below the fatigue limit, and where it does not."""
         k = self.exponent
-        if self.rule != "haibach":
-            return k
-        return np.where(np.asarray(stress, dtype=float) < self.knee[0], 2 * k - 1, k)
+        return np.where(below, 2 * k - 1, k) if self.rule == "haibach" else k
 
     def life_cycles(self, stress: ArrayLike) -> np.ndarray:
         """Return the cycles to failure, N = N_k (sigma/sigma_D)^-k above the fatigue limit.
@@ -183,12 +185,11 @@ class SNCurve:
             Cycles [1] of the broadcast shape; inf for zero stress, NaN for NaN or a negative stress. Above R_m the
             curve is run on to fewer than N_Rm cycles, where it gives no fatigue life: the validity flag `static` warns.
         """
-        (limit, knee), k = self.knee, self.exponent
+        limit, knee = self.knee
         sigma = np.asarray(stress, dtype=float)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             ratio = np.where(sigma >= 0, sigma, np.nan) / limit
-            exponent = np.where(ratio < 1, 2 * k - 1, k) if self.rule == "haibach" else k
-            cycles = knee * ratio**-exponent
+            cycles = knee * ratio ** -self._slope(ratio < 1)
         return np.where(ratio < 1, np.inf, cycles) if self.rule == "unlimited" else cycles
 
     def allowable_stress(self, cycles: ArrayLike) -> np.ndarray:
@@ -204,11 +205,10 @@ class SNCurve:
         numpy.ndarray
             Amplitude [MPa], NaN for cycles <= 0. With the rule "unlimited" it stays at sigma_D beyond the knee.
         """
-        (limit, knee), k = self.knee, self.exponent
+        limit, knee = self.knee
         n = np.asarray(cycles, dtype=float)
         ratio = np.where(n > 0, n, np.nan) / knee
-        exponent = np.where(ratio > 1, 2 * k - 1, k) if self.rule == "haibach" else k
-        factor = ratio ** (-1.0 / exponent)
+        factor = ratio ** (-1.0 / self._slope(ratio > 1))
         return limit * (np.where(ratio > 1, 1.0, factor) if self.rule == "unlimited" else factor)
 
 
