@@ -93,19 +93,19 @@ def flash(
     """
     from scipy import fft  # heavy, and planning reads only the declaration below
 
-    out = np.full((*t.x.shape[:2], 2), np.nan)
-    for case, contact in t.patches():
+    def of_patch(case: int, contact: int) -> Any:
         at = case, contact
         if not np.isfinite(heat[at]).all() or not np.isfinite(diffusivity[case]).all():
-            continue
+            return np.nan
         steps = [(axis[-1] - axis[0]) / (axis.size - 1) for axis in (t.x[at], t.y[at])]
         nodes, decays = heat[at].shape[::-1], (speed[case] / (4.0 * diffusivity[case])).tolist()
         kernels = {decay: cell_temperature((steps[0], steps[1]), nodes, decay) for decay in dict.fromkeys(decays)}
         lengths = [fft.next_fast_len(2 * n - 1, real=True) for n in heat[at].shape]
         spectra = fft.rfft2(heat[at], lengths) * fft.rfft2(np.stack(list(kernels.values())), lengths)
         rises = fft.irfft2(spectra, lengths)[_middle(heat)].max(axis=(1, 2), initial=0.0)
-        out[at] = [rises[list(kernels).index(decay)] for decay in decays] / conductivity[case]
-    return t.spread(out)
+        return [rises[list(kernels).index(decay)] for decay in decays] / conductivity[case]
+
+    return t.by_patch(of_patch, 2)
 
 
 def _middle(heat: np.ndarray) -> tuple[Any, slice, slice]:

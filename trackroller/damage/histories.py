@@ -6,9 +6,10 @@ A point moves through the stress field along y at fixed x and z, so a line of a 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import Any
 
 import numpy as np
 
@@ -43,16 +44,18 @@ class Tractions:
     slip_rolling: np.ndarray
     mirrored: np.ndarray
 
-    def patches(self) -> Iterator[tuple[int, int]]:
-        """Yield case and contact of each patch that exists and is not the mirror image of another one."""
+    def by_patch(self, values: Callable[[int, int], Any], *shape: int) -> np.ndarray:
+        """Return values of the case and contact of each patch, (n, contact, *shape); NaN where there is no patch.
+
+        Contact 2 of a mirrored case repeats the values of contact 1.
+        """
         there = np.isfinite(self.x[:, :, 0])
         there[:, 1] &= ~self.mirrored
-        yield from map(tuple, np.argwhere(there))
-
-    def spread(self, values: np.ndarray) -> np.ndarray:
-        """Return values (n, contact, ...) with those of contact 1 copied to mirror images."""
-        values[self.mirrored, 1] = values[self.mirrored, 0]
-        return values
+        out = np.full((*there.shape, *shape), np.nan)
+        for case, contact in np.argwhere(there).tolist():
+            out[case, contact] = values(case, contact)
+        out[self.mirrored, 1] = out[self.mirrored, 0]
+        return out
 
     def loads(self, case: int, contact: int) -> Loads:
         """Return the loads of one patch."""

@@ -74,12 +74,12 @@ def evaluate(solved: SolvedRollers) -> Results:
     m, t = solved.materials, solved.tractions()
     limits = m["fatigue_limit"], m["fatigue_limit_torsion"]
     (k, findley_limit), (a, dang_van_limit) = findley_constants(*limits), dang_van_constants(*limits)
-    criteria = np.full((*t.x.shape[:2], 2, 4), np.nan)
-    for case, contact in t.patches():
-        constants = np.stack([k[case], a[case]], axis=1)
-        for body, own in enumerate(stress_paths(t, case, contact, m["poisson_ratio"][case])):
-            criteria[case, contact, body] = governing(own, *constants[body])
-    criteria = t.spread(criteria)
+
+    def of_patch(case: int, contact: int) -> list[np.ndarray]:
+        paths = stress_paths(t, case, contact, m["poisson_ratio"][case])
+        return [governing(*own) for own in zip(paths, k[case], a[case], strict=True)]
+
+    criteria = t.by_patch(of_patch, 2, 4)
     criteria[..., 0] *= np.sqrt(3.0)  # from the coordinates of the deviator to a von Mises stress
     return {
         "von_mises_amplitude": criteria[..., 0],

@@ -34,12 +34,12 @@ def shears(t: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
     """
     from trackroller.damage.ball import shakedown_shears  # numba compiles on import, and planning needs none of it
 
-    out = np.full((*t.x.shape[:2], 2), np.nan)
-    for at in t.patches():
+    def of_patch(*at: int) -> np.ndarray:
         surface = np.sqrt(np.max(t.shear_lateral[at] ** 2 + t.shear_rolling[at] ** 2))
         below = shakedown_shears(deep_planes(t.loads(*at), poisson_ratio[at[0]]), np.log(DEPTHS))
-        out[at] = np.maximum(below, surface)
-    return t.spread(out)
+        return np.asarray(np.maximum(below, surface))
+
+    return t.by_patch(of_patch, 2)
 
 
 def evaluate(solved: SolvedRollers) -> Results:

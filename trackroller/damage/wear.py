@@ -124,8 +124,7 @@ def _gaps_at_edges(solved: SolvedRollers, t: Tractions) -> np.ndarray:
         return np.asarray(0.5 * curvature[:, None] * solved.values["semi_axis_lateral"] ** 2)
     from trackroller.contact.drawn_profiles import gap  # heavy, and planning reads only the declaration below
 
-    out = np.full(t.x.shape[:2], np.nan)
-    for case, contact in t.patches():
+    def of_patch(case: int, contact: int) -> float:
         side = 1 - 2 * contact  # a gap counts x outward
         x, loaded = side * t.x[case, contact], (t.pressure[case, contact] > 0.0).any(axis=0)
         half, own = 0.5 * abs(x[1] - x[0]), x[loaded]
@@ -134,8 +133,9 @@ def _gaps_at_edges(solved: SolvedRollers, t: Tractions) -> np.ndarray:
         alpha, curve = float(np.deg2rad(c["contact_angle"][case])), float(c["guide_curve_radius"][case])
         between = gap(guide, roller, r_g, r_r, alpha, float(solved.rolling_radius[case]), curve, contact + 1)
         height = between.lateral(np.array([own.min() - half, *own, own.max() + half]))
-        out[case, contact] = max(min(height[0], height[-1]) - height.min(), 0.0)
-    return t.spread(out)
+        return float(max(min(height[0], height[-1]) - height.min(), 0.0))
+
+    return t.by_patch(of_patch)
 
 
 def local_rates(pressure: np.ndarray, shear: np.ndarray, sliding: np.ndarray, table: str) -> list[np.ndarray]:
