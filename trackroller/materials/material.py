@@ -166,7 +166,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         Returns
         -------
         Material
-            Values that are no placeholders, or that have no range, stay.
+            Values that are no placeholders, or that have no range, stay. The material itself for a position of 0.
 
         Notes
         -----
@@ -177,7 +177,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             if record.placeholder and record.range is not None and name in OF_LIMITS:
                 worse, better = record.range if name not in LESS_IS_BETTER else record.range[::-1]
                 values[name] = record.value + abs(position) * ((better if position > 0 else worse) - record.value)
-        return dataclasses.replace(self, **values)
+        return dataclasses.replace(self, **values) if position else self
 
     def at(self, temperature: float) -> Material:
         """Return the material with the values of its table at a temperature [degC]; NaN leaves them.

@@ -257,18 +257,6 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
     return numbers
 
 
-def _moved(bodies: list[Material], positions: np.ndarray) -> list[Material]:
-    """Return the material of each case with its placeholders at their places, one object for equal ones."""
-    known: dict[tuple[int, float], Material] = {}
-    out = []
-    for body, position in zip(bodies, positions.tolist(), strict=True):
-        key = id(body), position
-        if key not in known:
-            known[key] = body.moved(position) if position else body
-        out.append(known[key])
-    return out
-
-
 def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     """Return the checked arrays of cases, with materials and friction taken from the database.
 
@@ -300,12 +288,10 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
         level = level if isinstance(level, str) else "typical"
         friction[i] = database.friction(roller[i], guide[i], level=level).value
     numbers["friction_coefficient"] = friction
-    pairs = list(zip(map(id, roller), map(id, guide), strict=True))
-    bodies = dict(zip(pairs, zip(roller, guide, strict=True), strict=True))
-    worn = {pair: (database.on(a, b), database.on(b, a)) for pair, (a, b) in bodies.items()}
-    roller, guide = ([worn[pair][i] for pair in pairs] for i in (0, 1))
-    if (places := numbers["placeholder_position"]).any():
-        roller, guide = (_moved(bodies, places) for bodies in (roller, guide))
+    keys = list(zip(map(id, roller), map(id, guide), numbers["placeholder_position"].tolist(), strict=True))
+    pairs = dict(zip(keys, zip(roller, guide, strict=True), strict=True))  # each combination once
+    bodies = {key: [database.on(*way).moved(key[2]) for way in (pair, pair[::-1])] for key, pair in pairs.items()}
+    roller, guide = ([bodies[key][i] for key in keys] for i in (0, 1))
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
     return CaseTable(**numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide))
 
