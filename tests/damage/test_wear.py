@@ -287,7 +287,7 @@ def test_placeholders_and_missing_values_are_told():
         ({"wear_coefficient_factor": -1}, "wear_coefficient_factor"),
         ({"roller_material": steel(2.0)}, "wear_coefficient"),
         ({"wear_law": "tgamma"}, "wear_law"),
-        ({"wear_table": {"work_rate": [0, 1], "roller": [0, 1]}}, "it lacks guide"),
+        ({"wear_table": {"work_rate": [0, 1], "roller": [0, 1]}}, "the mapping lacks guide"),
         ({"wear_table": {"work_rate": [0, 1], "roller": [0, 1], "guide": [0]}}, "numbers of entries"),
         ({"wear_table": {"work_rate": [1, 0], "roller": [0, 1], "guide": [0, 1]}}, "wear_table.work_rate"),
         ({"wear_table": {"work_rate": [0, 1], "roller": [0, -1], "guide": [0, 1]}}, "wear_table.roller"),

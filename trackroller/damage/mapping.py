@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names
+from trackroller.errors import Collector, InputError, check_names
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.rows import once_each
 from trackroller.parameters import Parameter
@@ -45,27 +45,35 @@ class MappingField:
     check: Callable[[dict[str, Any]], None] | None = None
 
     def canonical(self, value: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the checked mapping; raise `InputError` for an unknown, missing or impossible entry."""
+        """Return the checked mapping; raise the errors of unknown, missing or impossible entries together."""
         keys = [*self.words, *(number.name for number in (*self.numbers, *self.lists))]
         check_names(f"{self.name}: key", value, keys)
         missing = [key for key in keys if value.get(key) is None and key not in self.may_miss]
         if missing:
-            raise InputError(self.name, dict(value), f"it lacks {', '.join(missing)}", "Add these values.")
+            lacks = f"the mapping lacks {', '.join(missing)}"
+            raise InputError(f"{self.name}.{missing[0]}", None, lacks, "Add these values.")
         given: dict[str, Any] = {}
+        wrong = Collector()
         for key, allowed in self.words.items():
-            check_names(f"{self.name}.{key}", [value[key]], allowed)
-            given[key] = str(value[key])
-        for number in self.numbers:
-            if value.get(number.name) is not None:
-                given[number.name] = self._number(number, value[number.name])
-        for number in self.lists:
-            listed = value[number.name]
-            if not isinstance(listed, (list, tuple)):
-                raise InputError(f"{self.name}.{number.name}", listed, f"a list of numbers [{number.unit}]")
-            given[number.name] = [self._number(number, one) for one in listed]
+            with wrong.part():
+                check_names(f"{self.name}.{key}", [value[key]], allowed)
+                given[key] = str(value[key])
+        for number in (*self.numbers, *self.lists):
+            with wrong.part():
+                if value.get(number.name) is not None:
+                    given[number.name] = self._entry(number, value[number.name])
+        wrong.check()
         if self.check is not None:
             self.check(given)
         return given
+
+    def _entry(self, number: Parameter, value: Any) -> Any:
+        """Return a checked number, or the checked numbers of a list."""
+        if number not in self.lists:
+            return self._number(number, value)
+        if not isinstance(value, (list, tuple)):
+            raise InputError(f"{self.name}.{number.name}", value, f"a list of numbers [{number.unit}]")
+        return [self._number(number, one) for one in value]
 
     def _number(self, number: Parameter, value: Any) -> float:
         """Return a number that is finite and lies within its bounds."""

@@ -7,14 +7,21 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import Collector, InputError, check_names
-from trackroller.numerics.numbers import number_in
+from trackroller.damage.mapping import MappingField
+from trackroller.errors import InputError
+from trackroller.parameters import Parameter
 
 if TYPE_CHECKING:
     import xarray as xr
 
-MOST = {"hours_per_day": 24.0, "days_per_year": 366.0}
-UNITS = {"hours_per_day": "h", "days_per_year": "day"}
+FIELD = MappingField(
+    "duty",
+    "hours a day and days a year of travel",
+    numbers=(
+        Parameter("hours_per_day", "", "h", math.nan, "hours of travel a day", 0.0, 24.0, open_lower=True),
+        Parameter("days_per_year", "", "day", math.nan, "days of travel a year", 0.0, 366.0, open_lower=True),
+    ),
+)
 EXAMPLE = "Write duty: {hours_per_day: 16, days_per_year: 250}."
 ATTRIBUTE = "duty"  # of the result of one case: JSON
 
@@ -29,21 +36,7 @@ def checked_duty(value: Any) -> dict[str, float]:
     """
     if not isinstance(value, Mapping):
         raise InputError("duty", value, "hours_per_day and days_per_year", EXAMPLE)
-    wrong, duty = Collector(), {}
-    with wrong.part():
-        check_names("duty", value, MOST)
-    wrong.check()  # a misspelt name is missing, too
-    value = {"days_per_year": 365.0, **value}
-    for name, most in MOST.items():
-        with wrong.part():
-            if name not in value:
-                raise InputError(f"duty.{name}", None, "a number of hours", EXAMPLE)
-            least = math.nextafter(0.0, 1.0)
-            duty[name] = number_in(
-                value[name], f"duty.{name}", f"a number > 0 and <= {most:g}", least, most, UNITS[name]
-            )
-    wrong.check()
-    return duty
+    return FIELD.canonical({"days_per_year": 365.0, **value})
 
 
 def years(hours: Any, duty: Mapping[str, float]) -> Any:
