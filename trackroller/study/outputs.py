@@ -13,24 +13,11 @@ import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.roller.dataset import FLAGS, VARIABLES
 
-BOOKKEEPING = {
-    "regime",
-    "converged",
-    "residual",
-    "validity",
-    "validity_body",
-    "error_estimate",
-    "force_error_estimate",
-    "wear_error_estimate",
-    "normal_force_error_estimate",
-    "error_over_tolerance",
-    "life_error_estimate",
-    "reason",
-    "stopped",
-    "contact_model_used",
-    "first_to_fail",
-    "material_pair",
+BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
+    *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),
+    *(name for name in VARIABLES if "error_" in name),
 }
 FIELDS = {"x", "y", "z", "grid"}
 
