@@ -31,6 +31,7 @@ from trackroller.damage.sn_curve import PROBABILITIES
 from trackroller.errors import Collector, InputError, check_names, nearest
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
+from trackroller.parameters import OF_LIMITS, PARAMETERS
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.aliases import ALIASES, renamed
 from trackroller.roller.case import FIELDS, Case
@@ -40,15 +41,8 @@ from trackroller.roller.options import Options
 from trackroller.study.file.csv import read_rows
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
-LOAD_FIELDS = (
-    "radial_force",
-    "axial_force",
-    "motor_force",
-    "friction_coefficient",
-    "velocity",
-    "guide_curve_radius",
-    "guide_overrollings_per_hour",
-)
+# what the use of the roller sets; placeholders and worn profiles are the same in all blocks
+LOAD_FIELDS = tuple(n for n, p in PARAMETERS.items() if p.role == "condition" and n not in OF_LIMITS)
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
 OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
 FILE_FIELDS = (
