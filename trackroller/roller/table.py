@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, make_dataclass
+from dataclasses import dataclass, fields, make_dataclass
 from typing import Any
 
 import numpy as np
@@ -56,17 +56,11 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
         return cls(
             name=np.array([m.name for m in distinct.values()], dtype=object)[index],
-            youngs_modulus=values("youngs_modulus"),
-            poisson_ratio=values("poisson_ratio"),
-            tensile_strength=values("tensile_strength"),
-            fatigue_limit=values("fatigue_strength_ratio") * values("tensile_strength"),
-            cycles_at_tensile_strength=values("cycles_at_tensile_strength"),
-            cycles_at_fatigue_limit=values("cycles_at_fatigue_limit"),
             guesses=np.array([m.guesses_of_limits for m in distinct.values()], dtype=object)[index],
             temperature_dependence=np.array(
                 ["" if (own := m.temperature_dependence) is None else own.text for m in distinct.values()], dtype=object
             )[index],
-            **{name: values(name) for name in OPTIONAL_VALUES},
+            **{f.name: values(f.name) for f in fields(cls) if f.name not in TEXTS},
         )
 
 
