@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.limits import Column
-from trackroller.analysis.pareto import default_objectives, front_of
+from trackroller.analysis.pareto import SAFE_B10, default_objectives, front_of
 from trackroller.analysis.robustness import b10
 from trackroller.analysis.table import OUTSIDE, StudyResults
 from trackroller.parameters import REGIME_LABELS, REGIMES
@@ -181,11 +181,8 @@ def goal_column(results: StudyResults, goal: str) -> Column:
     _, units, words = results.quantity(output)
     if output in results.design.meta["outer"] or results.design.meta["inner_samples"] == 1:
         return values, units, words
-    return (
-        values,
-        units,
-        {"worst": f"{words} at the worst condition", "b10": f"B10 of the {words}"}.get(kind, f"mean {words}"),
-    )
+    named = {"worst": f"{words} at the worst condition", "b10": f"{SAFE_B10} of {words}"}
+    return values, units, named.get(kind, f"mean {words}")
 
 
 def beyond_data(results: StudyResults, goal: str) -> np.ndarray:

@@ -17,6 +17,8 @@ from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.outputs import regimes
 
+SAFE_B10 = "B10 with other cases as life 0"  # other cases: those that do not roll, or have no known life
+
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray:
     """Mark the rows that no other row beats in every objective.
@@ -222,7 +224,7 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
             raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
         part = table.sel(output=output)
         estimates, words, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
-    word = {"b10": "B10", "b10_safe": "B10 with other cases as life 0"}.get(kind, kind.replace("_", " "))
+    word = {"b10": "B10", "b10_safe": SAFE_B10}.get(kind, kind.replace("_", " "))
     return estimates.values, units, f"{word} of {words}"
 
 
