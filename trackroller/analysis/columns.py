@@ -115,3 +115,11 @@ def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
         if name in ds.variables and ds[name].ndim == 0:
             values[name] = ds[name].item()
     return values
+
+
+def codes(table: pd.DataFrame, names: Iterable[str]) -> np.ndarray:
+    """Number the combinations of columns, shape (n,), in the order of appearance."""
+    columns = list(names)
+    if not columns:
+        return np.zeros(len(table), dtype=int)
+    return table.groupby(columns, sort=False, dropna=False, observed=True).ngroup().to_numpy()

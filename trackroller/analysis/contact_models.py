@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.analysis.columns import CONTACT_RESULTS, input_columns
+from trackroller.analysis.columns import CONTACT_RESULTS, codes, input_columns
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import EXACTNESS
 from trackroller.study.outputs import flat
@@ -75,9 +75,8 @@ def _matched(table: pd.DataFrame, models: list[str]) -> np.ndarray:
     The designs stand in the order of their rows.
     """
     varied = [n for n in table if n != MODEL and table[n].nunique(dropna=False) > 1]
-    design = table.groupby(varied, dropna=False, sort=False).ngroup() if varied else pd.Series(0, table.index)
     numbers = pd.Series(np.arange(len(table)), table.index)
-    first = numbers.groupby([table[MODEL], design]).first()  # equal cases count once
+    first = numbers.groupby([table[MODEL], codes(table, varied)]).first()  # equal cases count once
     rows = first.unstack(fill_value=-1).reindex(models).to_numpy()
     rows = rows[:, (rows[-1] >= 0) & (rows[:-1] >= 0).any(axis=0)]
     return rows[:, np.argsort(rows[-1], kind="stable")]

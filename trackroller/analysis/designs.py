@@ -11,6 +11,7 @@ from functools import cached_property
 import numpy as np
 import pandas as pd
 
+from trackroller.analysis.columns import codes
 from trackroller.analysis.lives import FIRST_LIMIT, body_lives, first_failing
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.table import StudyView
@@ -109,9 +110,9 @@ class Designs:
         own = np.ones(len(view.table), dtype=bool)
         for option in (n for n in view.factors if n in OPTION_FACTORS):
             own &= (view.table[option] == view.held_level(option)).to_numpy()
-        place = np.where(own, _codes(view.table, choices), -1)
+        place = np.where(own, codes(view.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
-        use = _codes(view.table, conditions)[own]
+        use = codes(view.table, conditions)[own]
         several, many = place.max() + 1, len(np.unique(use))
         pairs = len(np.unique(place[own] * (use.max() + 1) + use))
         return cls(view, choices, conditions, goal, place, bool(pairs == own.sum() == several * many))
@@ -145,7 +146,7 @@ class Designs:
     @cached_property
     def possible(self) -> int:
         """Return the number of conditions in which at least one design is valid; 0 if designs share no conditions."""
-        return len(np.unique(_codes(self.view.table, self.conditions)[self.usable])) if self.matched else 0
+        return len(np.unique(codes(self.view.table, self.conditions)[self.usable])) if self.matched else 0
 
     @cached_property
     def table(self) -> pd.DataFrame:
@@ -261,13 +262,6 @@ class Designs:
         return columns | {"b10_beyond": self._count(there) > 0}
 
 
-def _codes(table: pd.DataFrame, names: tuple[str, ...]) -> np.ndarray:
-    """Number the combinations of columns, shape (n,), in the order of appearance."""
-    if not names:
-        return np.zeros(len(table), dtype=int)
-    return table.groupby(list(names), sort=False, dropna=False, observed=True).ngroup().to_numpy()
-
-
 def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series) -> pd.DataFrame:
     """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones tie."""
     order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
@@ -283,7 +277,7 @@ def hardest_first(designs: Designs) -> np.ndarray:
     Cases of a less exact contact model have the number -1.
     """
     table, own = designs.view.table, designs.place >= 0
-    use = table.groupby(list(designs.conditions), sort=False, dropna=False, observed=True).ngroup().to_numpy()
+    use = codes(table, designs.conditions)
     use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
     worst = np.full(use.max() + 1, np.inf)
     values = designs.view.column(designs.goal[0]) * (1.0 if designs.rising else -1.0)

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from scipy.stats import binom
 
+from trackroller.analysis.columns import codes
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.parameters import PARAMETERS
 
@@ -92,9 +93,7 @@ def pair_matrix(view: StudyView, column: str, factor: str, rows: np.ndarray) -> 
     levels = view.levels(factor)
     if not len(table) or len(levels) > MOST_LEVELS:
         return np.empty((0, len(levels))), levels
-    codes = [np.unique(table[f].to_numpy(), return_inverse=True)[1] for f in others]
-    key = np.unique(np.stack(codes, axis=1), axis=0, return_inverse=True)[1].ravel() if codes else np.zeros(len(table))
-    key = key.astype(int)
+    key = codes(table, others)
     place = {level: i for i, level in enumerate(levels)}
     matrix = np.full((int(key.max()) + 1, len(levels)), np.nan)
     matrix[key, [place[v] for v in table[factor]]] = np.log10(table[column].to_numpy(dtype=float))
@@ -109,7 +108,7 @@ def also_changed(view: StudyView, factor: str, rows: np.ndarray) -> list[str]:
     others = [f for f in view.factors if f != factor]
     given = [p for p in (*PARAMETERS, "friction_coefficient_value") if p in view.table and p not in view.factors]
     table = view.table[rows]
-    groups = table.groupby(others, dropna=False, sort=False) if others else table.groupby(np.zeros(len(table)))
+    groups = table.groupby(codes(table, others))
     changed = [p.removesuffix("_value") for p in given if (groups[p].nunique(dropna=False) > 1).any()]
     return [name for name in changed if name != factor]
 

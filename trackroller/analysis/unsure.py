@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from trackroller.analysis.columns import codes
 from trackroller.analysis.designs import Designs
 from trackroller.analysis.first_limits import reached_hours
 from trackroller.parameters import MATERIAL_FIELDS
@@ -79,8 +80,7 @@ def settled(designs: Designs) -> tuple[int, int] | None:
     view = designs.view
     if not varied(designs) or not view.limits:
         return None
-    others = [name for name in view.factors if name not in UNSURE]
-    place = view.table.groupby(others, sort=False, dropna=False).ngroup().to_numpy() if others else view.regime * 0
+    place = codes(view.table, (name for name in view.factors if name not in UNSURE))
     reached = reached_hours(view)
     groups, first = [place[view.valid] == g for g in np.unique(place[view.valid])], reached[view.valid]
     certain = ends = 0
