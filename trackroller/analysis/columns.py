@@ -117,7 +117,7 @@ def base_values(ds: xr.Dataset, base: Mapping[str, Any]) -> dict[str, Any]:
     return values
 
 
-def codes(table: pd.DataFrame, names: Iterable[str]) -> np.ndarray:
+def codes(table: pd.DataFrame, names: Iterable[Any]) -> np.ndarray:
     """Number the combinations of columns, shape (n,), in the order of appearance."""
     columns = list(names)
     if not columns:
