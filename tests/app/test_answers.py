@@ -19,7 +19,7 @@ from trackroller.app.picture import curve, picture, texts
 from trackroller.app.studies import checked, headlines, listing, page_of
 from trackroller.errors import WorkError
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet import collect
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store.seal import sealing

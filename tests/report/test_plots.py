@@ -24,7 +24,7 @@ from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.report.figures import designs, style
 from trackroller.report.figures.contact import plot_case
-from trackroller.report.figures.contact_patch import case_name
+from trackroller.report.figures.contact_outline import case_name
 from trackroller.report.figures.contact_sections import sections, surface_stress
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit

@@ -12,8 +12,8 @@ from reference_cases import solve_sliding
 import trackroller as tr
 from trackroller.analysis.columns import at_surface
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_outline import Patch, widths
-from trackroller.report.figures.contact_patch import friction_energy, outline, shear_arrows
+from trackroller.report.figures.contact import friction_energy, shear_arrows
+from trackroller.report.figures.contact_outline import Patch, outline, widths
 from trackroller.report.figures.contact_sections import sections, surface_stress
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "tractions", "subsurface")

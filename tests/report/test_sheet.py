@@ -26,8 +26,7 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.report.figures.roller_section import _roller as roller_outline
 from trackroller.report.figures.roller_section import content_of
 from trackroller.report.numbers import number
-from trackroller.report.pages.sheet import render
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet import collect, render
 from trackroller.report.pages.sheet_text import as_json
 from trackroller.report.words.accuracy import flags_of
 from trackroller.roller.dataset import validity_bit
@@ -55,7 +54,7 @@ def limits_searched_once():
         return kept[key] if key in kept else kept.setdefault(key, limits(case, model))
 
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("trackroller.report.pages.sheet_facts.limits", searched)
+        patch.setattr("trackroller.report.pages.sheet.limits", searched)
         yield
 
 

@@ -10,7 +10,7 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.parameters import OPTIONS
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet import collect
 from trackroller.roller import solver
 from trackroller.roller.dataset import FLAGS, VARIABLES, shown
 

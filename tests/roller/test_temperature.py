@@ -9,7 +9,7 @@ import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.materials import Material, load_database
 from trackroller.materials.tables import material_details
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.limits import not_checked, placeholders
 from trackroller.roller import temperature
 from trackroller.roller.case import to_table

@@ -18,8 +18,7 @@ from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
-from trackroller.report.pages.sheet import render
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet import collect, render
 from trackroller.roller.case import Case
 from trackroller.roller.duty import with_duty
 from trackroller.roller.limits import Limits

@@ -129,8 +129,7 @@ def solve_and_tell(
     if target is not None:
         write_result(dataset, target)
     from trackroller.report.pages import sheet_text
-    from trackroller.report.pages.sheet import write_sheet  # heavy: rich and jinja2
-    from trackroller.report.pages.sheet_facts import collect
+    from trackroller.report.pages.sheet import collect, write_sheet  # heavy: rich and jinja2
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")

@@ -11,7 +11,7 @@ import numpy as np
 from matplotlib.ticker import MaxNLocator
 
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
+from trackroller.report.figures.contact import friction_energy, shear_arrows
 from trackroller.report.figures.contact_sections import sections
 from validation.paper.compute import MODELS, reference, solved
 

@@ -1,6 +1,6 @@
-"""Figures of one case: tractions and friction energy on the patches, stresses in the planes through the peak.
+"""Figures of one case: tractions and friction energy over its contact patches, and all its figures.
 
-They show what Wenzel et al. 2022 show in their figures 6, 7 and 11, for any case.
+`plot_case` shows what Wenzel et al. 2022 show in their figures 6, 7 and 11, for any case.
 """
 
 from __future__ import annotations
@@ -8,13 +8,162 @@ from __future__ import annotations
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
+from typing import Any
 
+import matplotlib
+import numpy as np
 import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.colors import ListedColormap
+from matplotlib.figure import Figure
+from matplotlib.patches import PathPatch
+from matplotlib.ticker import MaxNLocator
 
 from trackroller.errors import InputError
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_patch import friction_energy, shear_arrows
+from trackroller.report.figures.contact_outline import Patch, case_text, outline, patches_of
 from trackroller.report.figures.contact_sections import sections
+from trackroller.report.numbers import number, rounded
+
+ARROWS = (17, 11)  # along the long and the short axis of the patch
+SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
+PANEL_MM = 70.0  # width of a map
+LIGHT = ListedColormap(matplotlib.colormaps["YlGnBu"](np.linspace(0, 0.62, 64)))  # black arrows are visible on it
+
+
+def _shapes(patches: list[Patch]) -> str:
+    return "the loaded part of both contact patches" if patches[0].solved else "both contact ellipses"
+
+
+def _canvas(patches: list[Patch], profile: bool = False) -> tuple[Figure, list[Axes], Axes | None, bool]:
+    """Return a figure with the patches side by side and, on request, axes for a profile.
+
+    The patches are drawn to one scale unless they are very slender.
+    """
+    boxes, count = np.array([p.box for p in patches]), len(patches)
+    (left, rear), (right, front) = boxes[:, ::2].min(axis=0), boxes[:, 1::2].max(axis=0)
+    a, b = 0.5 * (right - left), 0.5 * (front - rear)
+    to_scale = 1 / SLENDER <= b / a <= SLENDER
+    height = float(np.clip(PANEL_MM * b / a, 22, 66)) if to_scale else 40.0
+    figure = style.new_figure(39 + height + 40 * profile)
+    grid = figure.add_gridspec(1 + profile, count, height_ratios=[height, 30] if profile else None)
+    maps = [figure.add_subplot(grid[0, i]) for i in range(count)]
+    for axes in maps:
+        axes.set(xlim=(left - 0.08 * a, right + 0.08 * a), ylim=(rear - 0.12 * b, front + 0.12 * b))
+        axes.set(aspect="equal" if to_scale else "auto", xlabel="$x_\\mathrm{C}$ (lateral) [mm]")
+        axes.xaxis.set_major_locator(MaxNLocator(5 if to_scale and b < 1.2 * a else 3))
+        axes.yaxis.set_major_locator(MaxNLocator(5))
+        axes.grid(False)
+    maps[0].set_ylabel("$y_\\mathrm{C}$ (rolling) [mm]")
+    return figure, maps, figure.add_subplot(grid[-1, :]) if profile else None, to_scale
+
+
+def _fill(axes: Axes, patch: Patch, values: np.ndarray, top: float, cmap: Any) -> Any:
+    """Draw filled contours clipped to the edge of the patch, and return them."""
+    levels = np.linspace(0, top, 17)
+    x, y, shown = patch.framed(values) if patch.solved else (patch.x, patch.y, values)
+    image = axes.contourf(x, y, np.clip(shown, 0, levels[-1]), levels=levels, cmap=cmap)
+    edge = PathPatch(outline(patch), facecolor="none", edgecolor="black", linewidth=0.9)
+    axes.add_patch(edge)
+    image.set_clip_path(edge)
+    axes.set_title(f"Contact {patch.contact}")
+    return image
+
+
+def shear_arrows(ds: xr.Dataset) -> style.Drawn:
+    """Draw direction and size of the shear traction on the roller, with the spin pole."""
+    patches = patches_of(ds, "shear_lateral", "shear_rolling")
+    sizes = [np.hypot(p.field("shear_lateral"), p.field("shear_rolling")) for p in patches]
+    top, image = max((float(s.max()) for s in sizes), default=0.0), None
+    if not top > 0:  # no contact, or no friction
+        return None
+    figure, grid, _, to_scale = _canvas(patches)
+    for axes, patch, size in zip(grid, patches, sizes, strict=True):
+        image = _fill(axes, patch, size, top, LIGHT)
+        _arrows(axes, patch, top, to_scale)
+        _pole(axes, patch)
+    style.colour_bar(figure, image, grid, "Shear traction $|\\tau|$ on the roller [MPa]")
+    pole = any(p.spin_pole is not None for p in patches)
+    style.head(figure, "Shear traction on the roller")
+    best = int(np.argmax([s.max() for s in sizes]))
+    caption = (
+        f"Shear traction on the roller over {_shapes(patches)} (arrows: direction and size; shade: size, MPa). "
+        + ("The black dot is the spin pole, about which the surfaces turn on each other. " if pole else "")
+        + case_text(ds, to_scale)
+    )
+    largest = number(float(sizes[best].max()))
+    sentence = f"The largest shear traction is {largest} MPa, in contact {patches[best].contact}."
+    return figure, style.FigureInfo("contact_shear", caption, sentence)
+
+
+def _arrows(axes: Axes, patch: Patch, top: float, to_scale: bool) -> None:
+    count = ARROWS if patch.a >= patch.b else ARROWS[::-1]
+    columns, rows = (_every(len(v), n) for v, n in ((patch.x, count[0]), (patch.y, count[1])))
+    pick = np.ix_(rows, columns)
+    keep = patch.inside[pick]
+    x, y = np.meshgrid(patch.x[columns], patch.y[rows])
+    u, v = patch.field("shear_lateral")[pick], patch.field("shear_rolling")[pick]
+    step = float(min(np.ptp(axes.get_xlim()) / count[0], np.ptp(axes.get_ylim()) / count[1]))
+    size: dict[str, Any] = {"angles": "uv", "scale_units": "width", "scale": top / 0.075}
+    if to_scale:
+        size = {"angles": "xy", "scale_units": "xy", "scale": top / (1.5 * step)}
+    size |= {"units": "inches", "width": 0.010, "headwidth": 4, "headlength": 4.5, "headaxislength": 4}
+    axes.quiver(x[keep], y[keep], u[keep], v[keep], pivot="mid", zorder=3, **size)
+
+
+def _every(length: int, count: int) -> np.ndarray:
+    """Return about `count` evenly spaced indices, symmetric about the middle."""
+    step = max(-(-(length - 1) // (count - 1)), 1)
+    return np.arange((length - 1) % step // 2, length, step)
+
+
+def _pole(axes: Axes, patch: Patch) -> None:
+    if patch.spin_pole is None:
+        return
+    x, y = patch.spin_pole
+    (left, right), (rear, front) = axes.get_xlim(), axes.get_ylim()
+    if left <= x <= right and rear <= y <= front:
+        axes.plot(x, y, "o", color="black", markersize=5, markeredgecolor="white", markeredgewidth=0.8, zorder=5)
+    elif np.isfinite(x):
+        at, side = (0.99, "right") if x > 0.5 * (left + right) else (0.01, "left")
+        axes.text(at, 0.03, f"spin pole at x = {number(x)} mm", fontsize=7, ha=side, transform=axes.transAxes)
+
+
+def friction_energy(ds: xr.Dataset) -> style.Drawn:
+    """Draw the friction energy per area over both patches, and its profile across the running track."""
+    name = "friction_energy_density"
+    patches = patches_of(ds, name)
+    fields = [np.where(p.inside, p.field(name), 0.0) for p in patches]
+    top, image = max((float(f.max()) for f in fields), default=0.0), None
+    if not top > 0:
+        return None
+    figure, grid, across, to_scale = _canvas(patches, profile=True)
+    assert across is not None
+    for axes, patch, field in zip(grid, patches, fields, strict=True):
+        image = _fill(axes, patch, field, top, "cividis")
+    style.colour_bar(figure, image, grid, "Friction energy per area and distance [J/(m mm²)]")
+    profiles = [p.summed(f) for p, f in zip(patches, fields, strict=True)]
+    for i, (patch, profile) in enumerate(zip(patches, profiles, strict=True)):
+        look = {"color": style.PAIR[i], "linestyle": style.LINES[i]}
+        across.plot(patch.x, profile, label=f"contact {patch.contact}", **look)
+    across.locator_params(axis="x", nbins=5)
+    across.set(xlim=grid[0].get_xlim(), ylim=(0, None), xlabel="$x_\\mathrm{C}$ (lateral) [mm]")
+    across.set(title="Across the running track", ylabel="Sum along $y_\\mathrm{C}$\n[J/(m mm)]")
+    figure.legend(loc="outside lower left", ncols=2)
+    style.head(figure, "Friction energy of both contacts")
+    caption = (
+        f"Friction energy per area and distance travelled over {_shapes(patches)}, and summed along the rolling "
+        f"direction over each strip of the running track. {case_text(ds, to_scale)}"
+    )
+    totals = [float(q.summed(p)) for p, q in zip(profiles, patches, strict=True)]
+    words = " and ".join(f"{number(t)} J/m in contact {p.contact}" for t, p in zip(totals, patches, strict=True))
+    worst = int(np.argmax([p.max() for p in profiles]))
+    place = float(patches[worst].x[int(np.argmax(profiles[worst]))])
+    sentence = (
+        f"Friction takes {words}; the strip at x = {rounded(place, 2)} mm of contact "
+        f"{patches[worst].contact} takes most."
+    )
+    return figure, style.FigureInfo("contact_energy", caption, sentence)
 
 
 def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:

@@ -1,11 +1,15 @@
-"""Where the contact patches of one case lie: Hertz's ellipse, or the loaded elements of a pressure solved on a grid."""
+"""The contact patches of one case, by Hertz's ellipse or by the loaded elements of a solved pressure; and its name."""
 
 from __future__ import annotations
 
 import numpy as np
 import xarray as xr
+from contourpy import contour_generator
+from matplotlib.path import Path
 
-from trackroller.parameters import CONTACT_MODELS
+from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
+from trackroller.report.numbers import capital, level_text, listing, long_name, rounded, setting
+from trackroller.roller.record import CASE, inputs_of, is_default
 
 SLIGHT = 1e-3  # share of the largest pressure; smaller values are residuals of the solution, not loads
 
@@ -107,3 +111,35 @@ def widths(part: xr.Dataset, axis: str) -> list[tuple[float, float]]:
     if part.attrs.get("normal") == "halfspace" and axis == "x":  # the section is drawn about the middle of the patch
         middle = float(np.mean(part["xz_x"].values))
     return [(middle - float(part[semi]), middle + float(part[semi]))]
+
+
+def outline(patch: Patch) -> Path:
+    """Return the edge of a patch: an ellipse, or the closed lines around its loaded elements."""
+    if not patch.solved:
+        circle = Path.unit_circle()
+        return Path(np.asarray(circle.vertices) * np.array([patch.a, patch.b]), circle.codes)
+    x, y, loaded = patch.framed(patch.inside.astype(float), 0.0)
+    rings = contour_generator(x, y, loaded).lines(0.5)
+    return Path.make_compound_path(*[Path(np.asarray(ring), closed=True) for ring in rings])
+
+
+def case_name(ds: xr.Dataset) -> str:
+    """Name a case by the inputs that differ from their defaults."""
+    if CASE not in ds.attrs:
+        return "one case"
+    given = {name: value for name, value in inputs_of(ds).items() if not is_default(name, value)}
+    said = [setting(n, v) for n, v in given.items() if n in PARAMETERS and isinstance(v, float) and v == v]
+    pair = [str(inputs_of(ds)[name]) for name in MATERIAL_FIELDS]
+    said += [level_text("material_pair", " / ".join(pair))] if set(given) & set(MATERIAL_FIELDS) else []
+    said += [long_name(name) for name in given if name in MAPPING_FIELDS]
+    return listing(said) if said else "default case"
+
+
+def case_text(ds: xr.Dataset, to_scale: bool) -> str:
+    """Return case, regime and normal forces for a caption, as far as the data set holds them."""
+    regime = int(ds["regime"]) if "regime" in ds else 0
+    forces = ds["normal_force"].values if "normal_force" in ds else np.array([])
+    text = f"{capital(case_name(ds))}. Regime: {REGIME_LABELS[regime]}"
+    loads = [f"{rounded(float(f), 4)} N in contact {i + 1}" for i, f in enumerate(forces) if np.isfinite(f)]
+    text += f"; normal force {' and '.join(loads)}." if loads else "."
+    return text if to_scale else f"{text} Axes not to one scale."

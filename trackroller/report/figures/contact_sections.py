@@ -16,8 +16,7 @@ from matplotlib.patches import PathPatch
 from trackroller.analysis.columns import at_surface
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
 from trackroller.report.figures import style
-from trackroller.report.figures.contact_outline import Patch, widths
-from trackroller.report.figures.contact_patch import case_text, colour_bar, outline
+from trackroller.report.figures.contact_outline import Patch, case_text, outline, widths
 from trackroller.report.numbers import near, rounded
 from trackroller.roller.record import MATERIALS, materials_of
 
@@ -57,7 +56,7 @@ def sections(ds: xr.Dataset, contact: int) -> style.Drawn:
             image = _section(axes, part.sel(body=body), body, plane, (top, to_scale))
         if body in surfaces:
             _surface(row[2], Patch(ds, contact), part.sel(body=body), surfaces[body], (top, to_scale))
-    colour_bar(figure, image, list(grid.ravel()), "Von Mises stress [MPa]")
+    style.colour_bar(figure, image, list(grid.ravel()), "Von Mises stress [MPa]")
     style.head(figure, f"Von Mises stress under contact {contact}")
     caption = (
         f"Von Mises stress (MPa) under contact {contact} in the lateral and the rolling section plane through the peak "

@@ -107,6 +107,11 @@ def panels(title: str, height_mm: float, count: int = 1, **shared: Any) -> tuple
     return figure, figure.subplots(1, count, squeeze=False, **shared)[0]
 
 
+def colour_bar(figure: Figure, image: Any, axes: Sequence[Axes], label: str) -> None:
+    """Draw the scale of the colours below maps."""
+    figure.colorbar(image, ax=axes, location="bottom", aspect=60, pad=0.02, ticks=MaxNLocator(6), label=label)
+
+
 def name_rows(axes: Axes, places: Sequence[float] | np.ndarray, names: Sequence[str]) -> None:
     """Write names beside the rows of a figure, in place of ticks and grid lines."""
     axes.set_yticks(places, names)

@@ -1,21 +1,51 @@
-"""The sheet of one roller and the page of a load spectrum as HTML, to print or to send."""
+"""The sheet of one roller: its facts (verdict, inputs, results, limits, flags), and its page to print or to send."""
 
 from __future__ import annotations
 
+import math
 import tempfile
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Mapping
 from functools import partial
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from trackroller.analysis.columns import at_surface
+from trackroller.materials import Material
+from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OPTIONS, REGIMES
+from trackroller.parameters.example import not_given_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.numbers import BEYOND, listing, lives_in_years, number, plain, rounded, row_unit
+from trackroller.report.tables.inputs import Row, as_material, input_rows, material_rows, material_source
+from trackroller.report.tables.limits import (
+    GUESSED,
+    Margin,
+    at_temperature,
+    first_limits,
+    margins,
+    not_checked,
+    placeholders,
+)
+from trackroller.report.tables.lives import life_rows
+from trackroller.report.words.accuracy import flags_of
+from trackroller.report.words.assumptions import (
+    assumptions,
+    friction_sentence,
+    material_warnings,
+    standards,
+    strength_sentences,
+)
+from trackroller.report.words.sentence import phrase
 from trackroller.report.words.wear import run_in
+from trackroller.roller import record
+from trackroller.roller.dataset import VARIABLES, shown
+from trackroller.roller.limits import Limits, limits
+from trackroller.roller.temperature import temperatures_of
+from trackroller.study.store.provenance import versions
 
 SHOWN = ("contact_shear", "contact_1_stress", "contact_2_stress")  # figures of the sheet, as far as drawn
 FULL = 150.0  # percent of a limit at the right end of a bar
@@ -84,3 +114,154 @@ def pictures(*jobs: Callable[[], Any]) -> dict[str, dict[str, str]]:
     with tempfile.TemporaryDirectory() as place:
         infos = style.draw_all(jobs, Path(place))
         return {i.name: vars(i) | {"source": html.data_uri(Path(place, f"{i.name}.svg"))} for i in infos}
+
+
+ROUNDING = 1e-9  # N, mm, MPa, 1: results below are rounding errors of a zero, as the drive torque of a free roller
+
+
+def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
+    """Return the statements of the sheet of a solved case: texts, rows and margins by name.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.solve` for one case.
+    ranges : Limits, optional
+        Ranges of forces and friction in which the roller rolls; searched if not given.
+
+    Raises
+    ------
+    InputError
+        If `ds` is not the result of one case.
+    """
+    inputs, stored, given = record.inputs_of(ds), record.materials_of(ds), record.not_given_of(ds)
+    warm = temperatures_of(ds, inputs["ambient_temperature"])
+    materials = {body: as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
+    regime = REGIMES[int(ds["regime"])]
+    ranges = ranges or limits(record.case_of_result(ds), str(ds.attrs["contact_model"]))
+    lifeless = {body: _no_life(regime, ds, body, material) for body, material in materials.items()}
+    lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
+    below, above = inputs["axial_force"] - ranges.axial_force[0], ranges.axial_force[1] - inputs["axial_force"]
+    reason = str(ds["reason"].item()) if "reason" in ds else ""
+    summed = {"reserve": min(above, below), "toward": "more" if above <= below else "less", "axial": ranges.axial_force}
+    said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
+    return SimpleNamespace(
+        verdict=_verdict(regime, ds, lives, lifeless, own, reason=reason, **summed),
+        reason=reason,
+        inputs=input_rows(inputs, given),
+        not_given=not_given_text(given),
+        doubts=record.doubts_of(ds),
+        materials=body_materials(stored),
+        lines=_contact_lines(ds),
+        whole=quantity_rows(ds, shown()),
+        lives=lives,
+        margins=own,
+        first=first_limits(own),
+        not_checked=not_checked(ds),
+        flags=flags_of(ds),
+        assumptions=assumptions(ds),
+        standards=standards(ds),
+        data=list(said),
+        guesses=[*placeholders(ds), *at_temperature(ds)],
+        options=", ".join(f"{plain(name)} {ds.attrs[name]}{_used(ds, name)}" for name in OPTIONS if ds.attrs.get(name)),
+        command=command_of(ds),
+        versions=versions_text(),
+    )
+
+
+def _used(ds: xr.Dataset, option: str) -> str:
+    """Name the contact model that solved the case if it is not the chosen one; an empty text for other options."""
+    used = CONTACT_MODELS[int(ds["contact_model_used"])]
+    return f" (solved by {used})" if option == "contact_model" and used != ds.attrs[option] else ""
+
+
+def versions_text() -> str:
+    """Return the versions of the programs that a result depends on."""
+    return ", ".join(f"{name} {version}" for name, version in versions().items())
+
+
+def body_materials(materials: Mapping[str, Mapping[str, Any]]) -> list[tuple[str, list[Row], str]]:
+    """Return head, values and source of each material, once if both bodies are of the same."""
+    roller, guide = (materials[f"{body}_material"] for body in BODIES)
+    by_body = [("roller and guide", roller)] if roller == guide else [("roller", roller), ("guide", guide)]
+    return [(head, material_rows(as_material(values)), material_source(values)) for head, values in by_body]
+
+
+def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
+    """Return the command that solves the case of a result again, or that `words` name."""
+    given = {name: value for name, value in record.inputs_of(ds).items() if not record.is_default(name, value)}
+    plain = {n: v if v is None or isinstance(v, Mapping) else str(v).removesuffix(".0") for n, v in given.items()}
+    named = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
+    plain |= {name: ds.attrs.get(name) for name in named}
+    plain |= {n: ds.attrs.get(n) for n in ("wear_law", "life_criterion") if ds.attrs.get(n) != OPTIONS[n].default}
+    return record.solve_command(plain, words)
+
+
+def _contact_lines(ds: xr.Dataset) -> list[list[str]]:
+    """Return words, both values and unit of each quantity of the contacts; nothing if a contact has lifted off."""
+    if "normal_force" in ds and np.isnan(ds.variables["normal_force"].values).any():
+        return []
+    lines = [(_words(n), ds.variables[n].values, VARIABLES[n].units) for n in shown("contact") if n in ds]
+    if {"peak_stress", "peak_z"} <= set(ds):
+        stated = ds[["peak_stress", "peak_z", *(n for n in ("semi_axis_lateral", "semi_axis_rolling") if n in ds)]]
+        depth = stated["peak_z"].where(at_surface(stated) != 1, 0.0)  # the place of a peak at the surface is rounding
+        for body in BODIES:
+            peak = stated["peak_stress"].sel(body=body).values
+            lines.append((f"peak stress of the {body} (von Mises)", peak, "MPa"))
+            lines.append((f"depth of the peak in the {body}", depth.sel(body=body).values, "mm"))
+    known = [line for line in lines if np.isfinite(line[1]).all()]
+    return [[words, *map(_number, values), row_unit(units)] for words, values, units in known]
+
+
+def _no_life(regime: str, ds: xr.Dataset, body: str, material: Material) -> str:
+    """Say why a body has no fatigue life: overload or a skidding roller; an empty text if it has one."""
+    peaks = ds["peak_stress"].sel(body=body).values if "peak_stress" in ds else np.zeros(1)
+    if (over := float(np.nan_to_num(peaks).max()) / material.tensile_strength) > 1:
+        return f"the peak stress is {rounded(over, 2)} times its tensile strength"
+    return "the roller skids: friction heat and wear decide" if regime == "full_slip" else ""
+
+
+def _verdict(
+    regime: str, ds: xr.Dataset, lives: list[Row], lifeless: Mapping[str, str], own: list[Margin], **values: Any
+) -> str:
+    """Return the summary of the sheet: what rules (lift-off, overload, skidding, life) and the distance to lift-off."""
+    passed: dict[str, list[str]] = {}
+    for margin in (m for m in own if m.reached == 0.0):
+        passed.setdefault(f"{margin.title}{GUESSED * margin.guessed}", []).append(margin.body)
+    of_roller = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
+    known = of_roller and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"]))
+    first = FIRST_TO_FAIL[int(ds["first_to_fail"])] if known else ""
+    return phrase(
+        "sheet",
+        "verdict",
+        regime=regime,
+        overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if "tensile strength" in why],
+        exceeded=[f"{title} ({listing(bodies)})" for title, bodies in passed.items()],
+        lives=list(map(_hours, of_roller[:2])) if known else [],
+        contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known else None,
+        guide=_hours(lives[-1]) if first == "guide" else "",
+        **values,
+    )
+
+
+def _hours(row: Row) -> str:
+    """Return the hours of a life with its failure probability, and whether it lies beyond the S-N data."""
+    remarks = [row.words.partition("until ")[2].partition(" have")[0] or "median"]
+    return f"{row.value.partition(';')[0]} ({', '.join(remarks + [BEYOND] * (BEYOND in row.value))})"
+
+
+def quantity_rows(ds: xr.Dataset, names: Iterable[str]) -> list[Row]:
+    """Return the finite ones of some results, each with its symbol and unit."""
+    stated = [(n, float(ds.variables[n].values), VARIABLES[n].units) for n in names if n in ds]
+    return [Row(_words(name), _number(value), row_unit(units)) for name, value, units in stated if np.isfinite(value)]
+
+
+def _number(value: float) -> str:
+    return number(value if abs(value) > ROUNDING else 0.0)
+
+
+def _words(name: str) -> str:
+    """Return the name of a result without remarks, and its symbol if that is no formula."""
+    words, _, _ = VARIABLES[name].long_name.partition(",")
+    symbol = VARIABLES[name].symbol
+    return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words

@@ -11,7 +11,7 @@ import xarray as xr
 
 from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.pages.sheet_facts import collect
+from trackroller.report.pages.sheet import collect
 from trackroller.report.pages.spectrum import assumed, block_table, life_rows, limit_table, warnings
 from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text

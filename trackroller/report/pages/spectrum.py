@@ -27,8 +27,7 @@ from trackroller.report.numbers import (
     unit_text,
     with_unit,
 )
-from trackroller.report.pages.sheet import pictures
-from trackroller.report.pages.sheet_facts import body_materials, versions_text
+from trackroller.report.pages.sheet import body_materials, pictures, versions_text
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import flags_of

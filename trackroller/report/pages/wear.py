@@ -11,8 +11,7 @@ import xarray as xr
 from trackroller.parameters import BODIES
 from trackroller.report import html
 from trackroller.report.numbers import capital, with_unit
-from trackroller.report.pages.sheet import pictures
-from trackroller.report.pages.sheet_facts import body_materials, command_of, versions_text
+from trackroller.report.pages.sheet import body_materials, command_of, pictures, versions_text
 from trackroller.report.tables.inputs import input_rows
 from trackroller.report.tables.limits import placeholders
 from trackroller.report.tables.table import Table, cell
