@@ -45,10 +45,6 @@ def _in_order(places: np.ndarray, names: list[str], free: Factors) -> np.ndarray
     return places[:, [names.index(name) for name in free]]
 
 
-def _of_replicates(settings: Settings) -> dict[str, int]:
-    return {"replicates": settings["replicates"]} if settings.get("replicates", 1) > 1 else {}
-
-
 def check_listed(factors: Factors) -> None:
     """Refuse distributions in a grid."""
     for name, factor in factors.items():
@@ -77,14 +73,14 @@ def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -
             return grown_lhs(len(free), [size // copies for size in (*earlier, n)], seed, root)
         return correlation.correlate(sobol_rows(len(free), n // copies, seed), root, strata=False)
 
-    return in_turn(one, seed, copies), {correlation.KEY: entries} | _of_replicates(settings)
+    return in_turn(one, seed, copies), {correlation.KEY: entries}
 
 
 def _saltelli(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     copies = settings["replicates"]
     blocks = 1 << max(0, n // copies - 1).bit_length()
     second = bool(settings["second_order"])
-    meta: dict[str, Any] = {"base_samples": copies * blocks, "second_order": second} | _of_replicates(settings)
+    meta: dict[str, Any] = {"base_samples": copies * blocks, "second_order": second}
     groups = all_groups(settings["groups"] or {}, free)  # without groups each factor is one of its own
     owner = {name: group for group, members in groups.items() for name in members}
     owners = [owner[name] for name in free]
@@ -114,7 +110,7 @@ def _morris(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     seeds = [int(np.random.SeedSequence([seed, i]).generate_state(1)[0]) for i in range(n)]
     unit = np.concatenate([morris.sample(problem, 1, num_levels=levels, seed=s) for s in seeds])
     # trajectories are independent, so they take turns as they are
-    meta = {"trajectories": n, "levels": levels} | _of_replicates(settings)
+    meta = {"trajectories": n, "levels": levels}
     path = unit.reshape(n, count + 1, count)
     drawers = [np.random.default_rng([s, 1]) for s in seeds]
     for j, factor in enumerate(free.values()):

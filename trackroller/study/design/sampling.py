@@ -162,6 +162,8 @@ def sample(
     order = [*[k for k in columns if k not in parsed], *[k for k in parsed if k in columns]]
     columns = {name: columns[name] for name in order}
     _check_bounds(columns, parsed)
+    if settings.get("replicates", 1) > 1:
+        meta["replicates"] = settings["replicates"]
     return SampledDesign(columns, free, method, unit, meta | {"seed": int(seed)})
 
 
