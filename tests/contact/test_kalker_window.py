@@ -11,10 +11,11 @@ import pytest
 import trackroller as tr
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import subgrid, window
+from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings
 from trackroller.contact.slip import Creepage
-from trackroller.roller.accuracy import Tolerance
+from trackroller.roller.accuracy import PRESETS, Tolerance
 from validation.benchmarks.samples import random_designs
 
 MU, G, NU = 0.5, 8e4, 0.3
@@ -54,12 +55,52 @@ def test_a_window_of_a_resolved_area_keeps_the_tractions():
     elastic = Elastic(np.array([G]), np.array([NU]), np.zeros(1))
     coarse = solve_patch(PATCH, slow, MU, elastic, dataclasses.replace(SETTINGS, elements=56))
     (made, _), *_ = islice(window.fields(PATCH, coarse, NU, BOUND, SETTINGS), 1)
-    field, _ = made()
+    field, grades = made()
     fine = solve_patch(PATCH, slow, MU, elastic, dataclasses.replace(SETTINGS, elements=112))
-    same = subgrid.shares(subgrid.fields_of(PATCH, fine), field.shape[-1] // 112)
-    height = np.sqrt(np.maximum(1.0 - np.add.outer(*2 * [np.linspace(-1, 1, field.shape[-1]) ** 2]), 0.0))
-    apart = np.hypot(*(field - same[..., : field.shape[-2], :])[0]) * height
+    z = subgrid.fields_of(PATCH, fine).before_law()
+    x, y = (points(axis, count) for axis, count in zip((grades[:4], grades[4:]), field.shape[:1:-1], strict=True))
+    same = subgrid.shares_at(z, *(56.0 * (place + 1.0) - 0.5 for place in (x, y)))
+    height = np.sqrt(np.maximum(1.0 - x**2 - y[:, None] ** 2, 0.0))
+    apart = np.hypot(*(field - same)[0]) * height
     assert np.percentile(apart, 99) < 0.01 and apart.max() < 0.1
+
+
+def points(grade, count):
+    """Return the points of a graded axis over its half side, by the definition of `ellipse_kernels.GRADES`."""
+    mid, width, start, span = grade
+    return mid + width * np.sinh(start + span * (np.arange(count) + 0.5) / count)
+
+
+def test_points_are_dense_in_the_window_and_fill_the_patch():
+    *_, (made, _) = islice(window.fields(PATCH, solution(28), NU, BOUND, SETTINGS), 4)
+    field, grades = made()
+    for grade, count in ((grades[:4], field.shape[-1]), (grades[4:], field.shape[-2])):
+        place = points(grade, count)
+        steps = np.diff(place)
+        assert abs(place[0] + 1.0) < steps[0] and abs(place[-1] - 1.0) < steps[-1]
+        assert steps.min() <= 2.0 / 28 / 2**4 / window.PARTS < steps.max() < 0.03
+        assert steps.argmin() == pytest.approx(np.abs(place - grade[0]).argmin(), abs=1)
+    assert field[0, 0].size < 0.12 * (28 * 2**4 * window.PARTS) ** 2
+
+
+@pytest.mark.parametrize("ratio", [0.1, 0.6, 3.0])
+def test_no_window_cuts_its_adhesion_area(ratio, monkeypatch):
+    """Elements wider than the area show a part of it only; a window around this part would stick up to its edge."""
+    edges, plain = [], window._solved
+    patch = dataclasses.replace(PATCH, semi_axis_rolling=np.array([ratio]))
+
+    def solved(grid, spans, *given):
+        found, converged = plain(grid, spans, *given)
+        sticks = np.argwhere(np.hypot(found.z[0, 0], found.z[0, 1]) < 1.0)
+        edges.append(min(sticks.min(), (np.array(found.z.shape[2:]) - 1 - sticks).min()) if len(sticks) else np.inf)
+        return found, converged
+
+    monkeypatch.setattr(window, "_solved", solved)
+    elastic = Elastic(np.array([G]), np.array([NU]), np.array([0.15]))
+    creep = Creepage(np.array([0.01]), np.zeros(1), np.array([0.08]))
+    coarse = solve_patch(patch, creep, MU, elastic, dataclasses.replace(SETTINGS, elements=56))
+    levels = list(islice(window.fields(patch, coarse, NU, BOUND, SETTINGS), 3))
+    assert len(levels) == 3 and edges[-1] >= window.CLOSE
 
 
 @pytest.mark.parametrize("number", [18, 49])
@@ -75,3 +116,26 @@ def test_peaks_do_not_depend_on_the_elements_of_the_patch(number):
     apart = {goal: np.abs(peaks[28, goal] / peaks[80, goal] - 1.0).max() for goal in (3e-3, np.inf)}
     assert apart[3e-3] < 3e-3
     assert apart[np.inf] > 2.0 * apart[3e-3]
+
+
+def test_the_stress_at_the_pole_is_that_of_windows(monkeypatch):
+    """Peaks of steep contacts at the spin pole are within 3 % of the formula; elements miss at most what it says."""
+    known, plain = [], KalkerModel.pole_stress
+
+    def recorded(*given):
+        known.append(plain(*given))
+        return known[-1]
+
+    monkeypatch.setattr(KalkerModel, "pole_stress", recorded)
+    steep = [
+        tr.Case(contact_angle=angle, friction_coefficient=mu, motor_force=0.0, radial_force=-600.0)
+        for angle, mu in ((70.0, 0.34), (74.0, 0.37), (72.0, 0.31))
+    ]
+    outputs = ("contact", "peak_stress")
+    fine = tr.solve(steep, outputs, accuracy={"peak": 4e-3})
+    rough = tr.solve(steep, outputs, accuracy=PRESETS["standard"])
+    told = np.stack([np.concatenate(parts).reshape(2, -1).T for parts in zip(*known, strict=True)])
+    peak = (fine.peak_stress / fine.max_pressure).values
+    missing = 1.0 - (rough.peak_stress / fine.peak_stress).values
+    np.testing.assert_allclose(peak, np.stack(2 * [told[0]], axis=2), rtol=0.03)
+    assert (0.03 < missing).all() and (missing < (told[1] / told[0])[..., None]).all()

@@ -8,6 +8,7 @@ import trackroller as tr
 from trackroller.contact.common import Ellipse
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
+from trackroller.halfspace.ellipse_kernels import GRADES
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.peak_seeds import MOST_ON_RIDGE, ridge_points
 from trackroller.halfspace.stress import von_mises
@@ -18,6 +19,9 @@ def patch(a=1.0, b=1.0, mu=0.0, shift=0.0, fixed=0.0, alpha=0.5, model=2):
     one = np.ones(1)
     slip = Slip(np.sin(alpha) * one, np.cos(alpha) * one, 6.0 * one, 16.0 * one, shift * one)
     return patch_rows(Ellipse(a * one, b * one, one), slip, mu * one, model, fixed)[0]
+
+
+UNIFORM = patch()  # its fields have elements of equal size
 
 
 def stress(row, points, nu, sign=1.0, order=24):
@@ -219,14 +223,35 @@ def test_ridge_points_lie_where_sliding_begins():
     x = (2.0 * np.arange(n) + 1.0) / n - 1.0
     share = np.minimum(np.hypot(x, x[:, None]) / radius, 1.0).astype(np.float32)
     fields = np.stack([[share, 0 * share], [0 * share + 1, 0 * share]])
-    points = ridge_points(fields[0])
+    points = ridge_points(UNIFORM, fields[0])
     assert points.shape == (MOST_ON_RIDGE, 3)
-    assert ridge_points(fields[1]).shape == (0, 3)  # full sliding
+    assert ridge_points(UNIFORM, fields[1]).shape == (0, 3)  # full sliding
     r, angle = np.hypot(*points[:, :2].T), np.arctan2(*points[:, :2].T)
     assert radius - 2.0 * np.sqrt(2.0) / n < r.min() and r.max() < radius
     assert np.histogram(angle, 12, (-np.pi, np.pi))[0].min() > 0.5 * MOST_ON_RIDGE / 12
     assert (points[:, 2] == 0.0).all() and len(np.unique(points, axis=0)) == MOST_ON_RIDGE
     finer = np.repeat(np.repeat(fields[0], 2, axis=1), 2, axis=2)  # a finer grid has more points on the line
-    assert ridge_points(finer).shape == (2 * MOST_ON_RIDGE, 3)
-    few = ridge_points(np.ascontiguousarray(fields[0, :, ::4, ::4]))  # no more points than the line has
+    assert ridge_points(UNIFORM, finer).shape == (2 * MOST_ON_RIDGE, 3)
+    few = ridge_points(UNIFORM, np.ascontiguousarray(fields[0, :, ::4, ::4]))  # no more points than the line has
     assert len(np.unique(few, axis=0)) == len(few) < MOST_ON_RIDGE
+
+
+def test_graded_elements_give_the_stresses_of_equal_ones():
+    """A smooth field on 480 x 480 equal elements and on 160 x 128 that are dense around a point; the mirror image."""
+    row = patch(a=0.5, b=0.8, mu=0.4)
+    graded, grades = row.copy(), {}
+    for axis, (mid, width, count) in {"x": (0.3, 0.1, 160), "y": (-0.2, 0.2, 128)}.items():
+        start, end = np.arcsinh((-1.0 - mid) / width), np.arcsinh((1.0 - mid) / width)
+        for name, value in zip(GRADES[:4], (mid, width, start, end - start), strict=True):
+            graded[name.replace("_x", f"_{axis}")] = value
+        grades[axis] = mid + width * np.sinh(start + (end - start) * (np.arange(count) + 0.5) / count)
+
+    def field(x, y):
+        angle = 2.0 * x - y[:, None]
+        return np.stack([np.cos(angle), np.sin(angle)]) * (0.6 + 0.4 * np.sin(3.0 * x) * np.cos(2.0 * y[:, None]))
+
+    equal = (2.0 * np.arange(480) + 1.0) / 480 - 1.0
+    points = np.array([[0.15, -0.16, 0.0], [-0.3, 0.4, 0.0], [0.1, 0.2, 0.15], [0.45, 0.5, 0.0]])
+    one = stress_parts(row, points, 48, 48, field(equal, equal))
+    other = stress_parts(graded, points, 48, 48, field(grades["x"], grades["y"]))
+    np.testing.assert_allclose(other, one, atol=4e-4 * np.abs(one).max())

@@ -131,6 +131,10 @@ class ContactModel:
         """
         return None
 
+    def pole_stress(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[Any, Any]:
+        """Return the stress near the spin pole over p_max, and what elements miss of it, (m,) each; 0 if unknown."""
+        return np.zeros(len(rows)), np.zeros(len(rows))
+
     def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Iterator[Any]:
         """Return an iterator over functions of `shares` of one patch with finer elements around its adhesion area.
 

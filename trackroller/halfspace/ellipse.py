@@ -27,6 +27,7 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.halfspace.ellipse_kernels import (
+    FIELDS,
     MOST_POINTS,
     PATCH,
     SCRATCH,
@@ -238,6 +239,6 @@ def patch_rows(ellipse, slip, friction, spin_model: int, fixed_direction=0.0) ->
     radius = slip.guide_profile_radius
     columns = (a, b, friction, slip.sine, slip.cosine, radius, shift, fixed, pole_x, k0, k1, k2)
     rows = np.zeros(np.size(friction), PATCH)
-    for name, column in zip(PATCH.names or (), columns, strict=True):
+    for name, column in zip(FIELDS, columns, strict=True):
         rows[name] = column
     return rows

@@ -24,7 +24,10 @@ XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 # friction along y in full slip (0 in rolling), and where the lateral slip vanishes, which covers all three spin models:
 # at y = k0 + k1 (x + a) left of pole_x and at y = k0 + k2 (x - a) right of pole_x.
 FIELDS = ("a", "b", "friction", "sine", "cosine", "radius", "shift", "fixed", "pole_x", "k0", "k1", "k2")
-PATCH = np.dtype([(name, np.float64) for name in FIELDS])
+# A field of tractions may have finer elements around a point: those of equal size on the scale
+# (asinh((x/a - mid)/width) - start) / span, and likewise along y. A width of 0 stands for elements of equal size.
+GRADES = tuple(f"{name}_{axis}" for axis in "xy" for name in ("mid", "width", "start", "span"))
+PATCH = np.dtype([(name, np.float64) for name in (*FIELDS, *GRADES)])
 
 
 class Place(NamedTuple):
@@ -53,9 +56,27 @@ def slip_at(patch, x, y):
 
 
 @inner
-def grid_place(x, half, count):
-    """Return where x lies on a grid over [-half, half], in elements from the centre of the first one on."""
-    return 0.5 * count * (x / half + 1.0) - 0.5
+def grades_of(patch):
+    """Return mid, width, start and span of the grading of a field, along x and along y."""
+    return (
+        (patch.mid_x, patch.width_x, patch.start_x, patch.span_x),
+        (patch.mid_y, patch.width_y, patch.start_y, patch.span_y),
+    )
+
+
+@inner
+def grid_place(u, grade, count):
+    """Return where u = x/a or y/b lies on the grid, in elements from the centre of the first one on."""
+    mid, width, start, span = grade
+    return count * ((math.asinh((u - mid) / width) - start) / span if width > 0.0 else 0.5 * (u + 1.0)) - 0.5
+
+
+@inner
+def grid_point(place, grade, count):
+    """Return u = x/a or y/b of a place on the grid."""
+    mid, width, start, span = grade
+    share = (place + 0.5) / count
+    return mid + width * math.sinh(start + span * share) if width > 0.0 else 2.0 * share - 1.0
 
 
 @inner
@@ -80,7 +101,9 @@ def direction(patch, field, x, y):
     if patch.fixed != 0.0:  # full slip along y_C
         return 0.0, patch.fixed
     if field.shape[1] > 1:
-        return interpolated(field, grid_place(x, patch.a, field.shape[2]), grid_place(y, patch.b, field.shape[1]))
+        along_x, along_y = grades_of(patch)
+        i, j = grid_place(x / patch.a, along_x, field.shape[2]), grid_place(y / patch.b, along_y, field.shape[1])
+        return interpolated(field, i, j)
     v_x, v_y = slip_at(patch, x, y)
     speed = math.sqrt(v_x * v_x + v_y * v_y)
     if speed == 0.0:

@@ -23,12 +23,12 @@ from trackroller.halfspace.ellipse_kernels import (
     S,
     add_stress,
     cell_of,
-    grid_place,
+    grades_of,
     slip_at,
     spread_angles,
 )
 from trackroller.halfspace.influence import SHEAR, SHEAR_NU
-from trackroller.halfspace.vectors import sine_cosine
+from trackroller.halfspace.vectors import log, sine_cosine
 from trackroller.numerics.compiled import inner
 from trackroller.numerics.lanes import bilinear
 
@@ -99,6 +99,24 @@ def rounded_rays(patch, count, work, single):
 
 
 @inner
+def _on_grid(patch, place, count, unit):
+    """Return place and elements per length `unit` along x and y of a grid with `count` elements (nx, ny).
+
+    On a graded grid they are those of (x/a - mid)/width, and of the same along y.
+    """
+    (mid_x, width_x, _, _), (mid_y, width_y, _, _) = grades_of(patch)
+    x, y = place.x / patch.a, place.y / patch.b
+    if width_x > 0.0:
+        return (
+            ((x - mid_x) / width_x, (y - mid_y) / width_y),
+            (unit / (patch.a * width_x), unit / (patch.b * width_y)),
+        )
+    nx, ny = count
+    per = 0.5 * nx * unit / patch.a, 0.5 * ny * unit / patch.b
+    return (0.5 * nx * (x + 1.0) - 0.5, 0.5 * ny * (y + 1.0) - 0.5), per
+
+
+@inner
 def _interpolate_rays(field, at, per, node, count, work, places):
     """Write the shares of the traction bound at the node of each ray into the scratch array.
 
@@ -112,6 +130,34 @@ def _interpolate_rays(field, at, per, node, count, work, places):
         i, s = cell_of(at[0] + work[C + k] * r * per[0], nx, real)
         j, t = cell_of(at[1] + work[S + k] * r * per[1], ny, real)
         work[FIELD_X + k], work[FIELD_Y + k], places[k] = s, t, np.int32(j * wide + i)
+    _interpolate(field, count, work, places)
+
+
+@inner
+def _place_on_grade(v, grade, count):
+    """Return `grid_place` from v = (u - mid)/width."""
+    size = abs(v)
+    swept = log(size + math.sqrt(size * size + 1.0))
+    return count * ((-swept if v < 0.0 else swept) - grade[2]) / grade[3] - 0.5
+
+
+@inner
+def _interpolate_graded(field, grades, at, per, node, count, work, places):
+    """Do the same on a graded grid; `at` and `per` are those of `_on_grid`, `grades` those of `grades_of`."""
+    real, (_, ny, nx) = work.dtype.type, field.shape
+    wide = real(nx)
+    for k in range(count):
+        r = (work[START + k] + work[SPAN + k] * node) * work[LENGTH + k]
+        i, s = cell_of(_place_on_grade(at[0] + work[C + k] * r * per[0], grades[0], nx), nx, real)
+        j, t = cell_of(_place_on_grade(at[1] + work[S + k] * r * per[1], grades[1], ny), ny, real)
+        work[FIELD_X + k], work[FIELD_Y + k], places[k] = s, t, np.int32(j * wide + i)
+    _interpolate(field, count, work, places)
+
+
+@inner
+def _interpolate(field, count, work, places):
+    """Write the shares at the places on the grid that the scratch arrays hold."""
+    _, ny, nx = field.shape
     flat = field.reshape(-1)
     for k in range(count):
         shares = work[FIELD_X + k], work[FIELD_Y + k]
@@ -146,15 +192,18 @@ def sum_rays(patch, field, place, count, rule, work, places, out):
     real, unit = work.dtype.type, 1.0
     if field is not None:
         unit, ny, nx = min(patch.a, patch.b), field.shape[1], field.shape[2]
-        at = real(grid_place(place.x, patch.a, nx)), real(grid_place(place.y, patch.b, ny))
-        per = real(0.5 * nx * unit / patch.a), real(0.5 * ny * unit / patch.b)
+        grades, (at, per) = grades_of(patch), _on_grid(patch, place, (nx, ny), unit)
+        at, per = (real(at[0]), real(at[1])), (real(per[0]), real(per[1]))
     x, y, z, d_x, d_y = real(place.x), real(place.y), real(place.z / unit), real(place.d_x), real(place.d_y)
     one = real(1.0)
     xx = yy = xy = zz = yz = zx = n_xx = n_yy = n_xy = real(0.0)
     for i in range(rule.shape[1]):
         node, rest, share = real(rule[0, i]), real(1.0 - rule[0, i]), real(rule[1, i])
         if field is not None:
-            _interpolate_rays(field, at, per, node, count, work, places)
+            if grades[0][1] > 0.0:
+                _interpolate_graded(field, grades, at, per, node, count, work, places)
+            else:
+                _interpolate_rays(field, at, per, node, count, work, places)
         for k in range(count):
             c, s, gone = work[C + k], work[S + k], work[SPAN + k] * node
             tau = work[START + k] + gone

@@ -176,7 +176,7 @@ def _search(fine, rough, points, rules, effort, out):
         out[body, 0], out[body, 1:4] = summit, climbs.u[best]
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
     if effort.close:
-        climb_from_line(fine, ridge_points(fine.field), rules.climb, rules.ridge, rules.summit, out)
+        climb_from_line(fine, ridge_points(fine.patch, fine.field), rules.climb, rules.ridge, rules.summit, out)
 
 
 @compiled
@@ -184,7 +184,7 @@ def _seeded(fine, rough, points, rules, effort):
     """Scan the patch and return climbs from the highest places, below few elements at first."""
     count, values = effort.seeds, scan(rough, points, rules.scan)
     if effort.adhesion and has_ridges(fine, points, values):
-        line = ridge_points(fine.field)
+        line = ridge_points(fine.patch, fine.field)
         points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
     steps = 0.12 * PROPORTIONS * np.ones((2 * count, 3))
     u, f = np.zeros((2 * count, 3)), np.full(2 * count, -1.0)

@@ -19,8 +19,10 @@ from trackroller.numerics.compiled import compiled
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
 RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
 # Climbs from the line where sliding begins: seeds of each body, most points of the line, and over the size of the line
-# the distance of the seeds, the first step, and the last.
+# the distance of the seeds, the first step, and the last. After LINE_SWEEPS only climbs above a share of the highest go
+# on.
 LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 3, 200, 0.2, 0.08, 0.004
+LINE_SWEEPS, LINE_WORTH = 3, 0.998
 OUTSIDE = 0.02, 0.05, 0.1  # distances of more points outside the line, over its size: a cusp may lie beside it
 LEAST_LINE = 0.01  # size of a line of few points
 
@@ -226,6 +228,17 @@ def standing(climbs, share, gap, most):
 
 
 @compiled
+def _climb(target, climbs, rules, smallest):
+    """Let all climbs rise, up to 24 sweeps each, without those that fall behind; `smallest` is the last step."""
+    left = climbs.f > 0.0
+    for k in range(24):
+        if k == LINE_SWEEPS:
+            left &= standing(climbs, LINE_WORTH, 0.0, LINE_SEEDS)
+        for climb in np.flatnonzero(left):
+            left[climb] = sweep(target, climbs, climb, rules, smallest, k > 0)
+
+
+@compiled
 def climb_from_line(target, line, first, rules, summit, out):
     """Replace the peaks of both bodies in `out` (2, 6) by higher ones near the points `line` (m, 3) on the surface.
 
@@ -257,10 +270,9 @@ def climb_from_line(target, line, first, rules, summit, out):
         for best in best_seeds(line, values[body], count, LINE_APART * size):
             climbs.u[k] = line[best]
             climbs.f[k] = stress_at(target, body, line[best], rules)
-            for sweeps in range(24):
-                if not sweep(target, climbs, k, rules, LINE_SMALLEST * size, sweeps > 0):
-                    break
             k += 1
+    _climb(target, climbs, rules, LINE_SMALLEST * size)
+    for body in range(2):
         best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
         top = stress_at(target, body, climbs.u[best], summit)
         if top > out[body, 0]:

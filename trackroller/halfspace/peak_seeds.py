@@ -9,6 +9,7 @@ import math
 
 import numpy as np
 
+from trackroller.halfspace.ellipse_kernels import grades_of, grid_point
 from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
 from trackroller.numerics.compiled import compiled
 
@@ -76,7 +77,7 @@ def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarra
 
 
 @compiled
-def ridge_points(field):
+def ridge_points(patch, field):
     """Return surface points on the line where sliding begins, (m, 3); at most MOST_ON_RIDGE for each OF_GRID elements.
 
     Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
@@ -84,19 +85,22 @@ def ridge_points(field):
 
     Parameters
     ----------
+    patch : record
+        Record of `ellipse.patch_rows`.
     field : numpy.ndarray, shape (2, ny, nx)
         Traction over its bound on a grid.
     """
     _, ny, nx = field.shape
+    along_x, along_y = grades_of(patch)
     slides = np.empty((ny, nx), np.bool_)
     for j in range(ny):
         for i in range(nx):
             slides[j, i] = field[0, j, i] ** 2 + field[1, j, i] ** 2 >= STICKS
     line, count = np.empty((ny * nx, 3)), 0
     for j in range(ny):
-        y = (2.0 * j + 1.0) / ny - 1.0
+        y = grid_point(j, along_y, ny)
         for i in range(nx):
-            x = (2.0 * i + 1.0) / nx - 1.0
+            x = grid_point(i, along_x, nx)
             if slides[j, i] or x * x + y * y >= NEAR_RIM**2:
                 continue
             beside = (j > 0 and slides[j - 1, i]) or (j + 1 < ny and slides[j + 1, i])

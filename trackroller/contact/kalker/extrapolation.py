@@ -28,6 +28,9 @@ FEW = 5.0  # elements in an adhesion area at which half of the change between th
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and two spins of an element: where the elements
 # begin to miss the adhesion area, and where the share that they resolve has halved.
 UNSEEN, UNSEEN_POWER, RATIOS, SEEN, SMALL = 0.62, 0.8, (0.25, 3.5), 0.57, 5.0
+# Terms of `pole_stress`: constant, times ln(spin), and of the pressure; of what elements miss, and the spin that they
+# resolve.
+AT_POLE, MISSED = (1.807, 0.174, 0.0184), (0.16, 2.7)
 
 
 def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndarray:
@@ -109,15 +112,40 @@ def doubled(
     ), change
 
 
-def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
-    """Return the error of |F_T| by `unseen_adhesion`, (n,) [N]."""
+def _pole(ellipse: Ellipse | GridPatch, creep: Creepage, friction, elastic: Elastic) -> tuple[np.ndarray, np.ndarray]:
+    """Return |phi| sqrt(a b) G / (mu p_max), and the distance of the spin pole from the centre over a, (n,)."""
     a, b = ellipse.semi_axis_lateral, ellipse.semi_axis_rolling
     with np.errstate(divide="ignore", invalid="ignore"):
         spin = np.abs(creep.spin) * np.sqrt(a * b) * elastic.shear_modulus / (friction * ellipse.max_pressure)
-        pole = np.abs(creep.longitudinal / creep.spin) / a
+        return spin, np.abs(creep.longitudinal / creep.spin) / a
+
+
+def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int) -> np.ndarray:
+    """Return the error of |F_T| by `unseen_adhesion`, (n,) [N]."""
+    with np.errstate(invalid="ignore"):
+        spin, pole = _pole(ellipse, creep, friction, elastic)
         share = unseen_adhesion(spin, _ratio(ellipse), pole, elements)
     known = np.isfinite(share) & (creep.lateral == 0.0)
     return np.where(known, share, 0.0) * friction * ellipse.normal_force
+
+
+def pole_stress(
+    ellipse: Ellipse, creep: Creepage, friction: np.ndarray, elastic: Elastic
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the von Mises stress on the surface near the spin pole over p_max, and how much of it 28 elements miss.
+
+    Both are (n,) [1], and 0 without a pole inside. The tractions turn around a small adhesion area. Their stress grows
+    with the logarithm of the size of the patch over that of the area, as below a vortex of tractions. The terms were
+    fitted to 238 random patches in windows: the stress is within 8 % of theirs, in the mean within 3 %.
+    """
+    constant, growth, pressed = AT_POLE
+    spin, pole = _pole(ellipse, creep, friction, elastic)
+    with np.errstate(invalid="ignore", divide="ignore"):
+        bound = friction * np.sqrt(1.0 - pole * pole)
+        stress = bound * (constant + growth * np.log(np.maximum(spin, 1.0))) + pressed / bound
+        missed = bound * MISSED[0] * np.log(spin / MISSED[1])
+    inside = np.isfinite(stress) & (bound > 0.0)
+    return np.where(inside, stress, 0.0), np.where(inside, np.maximum(missed, 0.0), 0.0)
 
 
 def error_scale(elements: int) -> float:

@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.kalker import window
+from trackroller.contact.kalker import extrapolation, window
 from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.kalker.patch import shares, to_tractions
@@ -15,6 +15,7 @@ from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.normal.models import GridKalkerModel
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Accuracy, Rollers
+from trackroller.contact.slip import Creepage
 from trackroller.parameters.contact_models import DECLARED
 
 LEAST_UNDER_LAW = 20  # least number of elements across a patch under a friction law
@@ -65,6 +66,9 @@ class KalkerModel(ContactModel):
         for _ in range(doublings):
             finer = coarse = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
         return (*shares(ellipse, finer, max(parts // doublings, PARTS)), finer.converged)
+
+    def pole_stress(self, ellipse, slip, friction, rows):
+        return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows))
 
     def windows(self, ellipse, slip, friction, rows):
         if self.correction is None:

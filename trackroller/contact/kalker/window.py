@@ -22,9 +22,12 @@ from trackroller.contact.kalker.newton import Problem, newton, room_for
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution
 
 MARGIN, WIDER = 6, 0.25  # elements between the adhesion area and the edge of a window, and more over the area's size
+CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
-MOST, LARGEST = 30_000, 4_000_000  # elements of a window, and points of a traction field
-PARTS = 2  # points of the traction along each side of an element
+MOST = 30_000  # elements of a window
+# Points of the traction along each side of the finest elements, distance of points far from these elements over the
+# distance from them, and divisor of the number of points.
+PARTS, SPACING, MULTIPLE = 2, 0.024, 16
 
 Spans = tuple[tuple[int, int], tuple[int, int]]  # first and last element, plus 1, along x and y
 
@@ -49,21 +52,23 @@ class Grid(NamedTuple):
     of: tuple[int, int]
 
 
-def _ramp(span: tuple[int, int], of: int, parts: int, first: float, width: float) -> np.ndarray:
-    """Return weights along one axis that rise from 0 at the edges of a window to 1; an edge of the grid has none."""
-    start, end = span
-    place = (np.arange((end - start) * parts) + 0.5) / parts
-    out = np.ones(place.size)
+def _ramp(place: np.ndarray, span: tuple[int, int], of: int, first: float, width: float) -> np.ndarray:
+    """Return weights that rise from 0 at the edges of a window to 1; an edge of the grid has none.
+
+    `place` are places along one axis in elements from the start of the window `span`; the grid has `of` elements.
+    """
+    (start, end), out = span, np.ones(place.size)
     for inside, distance in ((start > 0, place), (end < of, end - start - place)):
         t = np.clip((distance - first) / width, 0.0, 1.0) if inside else 1.0
         out *= t * t * t * (10.0 - 15.0 * t + 6.0 * t * t)
     return out
 
 
-def _weights(spans: Spans, grid: Grid, parts: tuple[int, int], first: float = 0.0, width: float = FADE) -> np.ndarray:
+def _weights(spans: Spans, grid: Grid, parts: tuple[int, int]) -> np.ndarray:
     """Return the weights of a window of `grid` at `parts` points along x and y of each element."""
     across, along = (
-        _ramp(span, of, k, first, width) for span, of, k in zip(spans, grid.z.shape[:1:-1], parts, strict=True)
+        _ramp((np.arange((span[1] - span[0]) * k) + 0.5) / k, span, of, 0.0, FADE)
+        for span, of, k in zip(spans, grid.z.shape[:1:-1], parts, strict=True)
     )
     return along[:, None] * across
 
@@ -77,8 +82,8 @@ def _heights(first: tuple[int, int], shape: tuple[int, ...], of: tuple[int, int]
     return np.sqrt(np.maximum(1.0 - x * x - (y * y)[:, None], 0.0))
 
 
-def _window(grid: Grid) -> Spans:
-    """Return the window around the adhesion area, or around the element next to adhesion."""
+def _area(grid: Grid) -> Spans:
+    """Return the elements of the adhesion area, or the element next to adhesion."""
     loaded = _heights(grid.first, grid.traction.shape, grid.of) > 0.0
     for axis, (start, of) in enumerate(zip(grid.first[::-1], grid.of[::-1], strict=True)):  # not at the window's edge
         places = np.arange(loaded.shape[axis])
@@ -86,12 +91,39 @@ def _window(grid: Grid) -> Spans:
         loaded &= ~(near[:, None] if axis == 0 else near)
     length = np.where(loaded, np.hypot(grid.z[0, 0], grid.z[0, 1]), np.inf)
     rows, columns = np.nonzero(length <= max(1.0, length.min()))
+    return (int(columns.min()), int(columns.max()) + 1), (int(rows.min()), int(rows.max()) + 1)
+
+
+def _around(grid: Grid, area: Spans) -> Spans:
+    """Return the window around an area; it keeps away from the edges of `grid` where known tractions fade out."""
     spans = []
-    for places, most in zip((columns, rows), length.shape[::-1], strict=True):
-        start, end = int(places.min()), int(places.max()) + 1
+    for (start, end), first, of, count in zip(area, grid.first, grid.of, grid.z.shape[:1:-1], strict=True):
         margin = MARGIN + int(WIDER * (end - start))
-        spans.append((max(start - margin, 0), min(end + margin, most)))
+        low, high = int(FADE) * (first > 0), count - int(FADE) * (first + count < of)
+        spans.append((max(start - margin, low), min(end + margin, high)))
     return spans[0], spans[1]
+
+
+def _outgrown(parent: Grid, spans: Spans, grid: Grid) -> Spans:
+    """Return the window of `parent` around the adhesion area that `grid` found in the window `spans`, or `spans`.
+
+    Elements wider than the area show a part of it only.
+    """
+    area = []
+    for (start, end), finer, coarser, first, known in zip(
+        _area(grid), grid.of, parent.of, grid.first, parent.first, strict=True
+    ):
+        parts = finer // coarser
+        area.append(((first + start) // parts - known, -(-(first + end) // parts) - known))
+    wider = _around(parent, (area[0], area[1]))
+    close = [
+        (start - CLOSE < low and new[0] < low) or (end + CLOSE > high and new[1] > high)
+        for (start, end), (low, high), new in zip(area, spans, wider, strict=True)
+    ]
+    if not any(close):
+        return spans
+    union = [(min(low, new[0]), max(high, new[1])) for (low, high), new in zip(spans, wider, strict=True)]
+    return union[0], union[1]
 
 
 def _solved(
@@ -112,7 +144,8 @@ def _solved(
     height = _heights(first, start.shape[1:], of)
     start = (start[0] + 1j * start[1]) * height
     finer = influence(hx / kx, hy / ky, poisson_ratio, *height.shape)
-    rigid = subgrid.interpolated(known, kx, ky) - finer.product(start * (1.0 - _weights(spans, grid, parts)))
+    slip = subgrid.interpolated(np.stack([known.real, known.imag]), kx, ky)
+    rigid = slip[0] + 1j * slip[1] - finer.product(start * (1.0 - _weights(spans, grid, parts)))
     problem = Problem(finer, rigid, height, 1.0, np.zeros(1), np.ones(1))
     at, residual, *_ = newton(
         problem, room_for(*height.shape, settings.krylov), start, settings.tolerance, settings.steps
@@ -121,17 +154,43 @@ def _solved(
     return Grid(at[0], at[1], np.stack([z.real, z.imag])[None], first, of), bool(residual <= settings.tolerance)
 
 
-def _field(grids: list[Grid], windows: list[Spans]) -> np.ndarray:
-    """Return the traction over mu p of the whole patch at the points of the finest window, (1, 2, ., .)."""
-    nx, ny = (PARTS * n for n in grids[-1].of)
-    out = subgrid.shares_of(grids[0].z, nx // grids[0].of[0], ny // grids[0].of[1])
+def _grade(span: tuple[int, int], first: int, of: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points along one axis that are dense in the part `span` of the finest elements, and their grading.
+
+    The points (m,) are in half sides of the patch. For the grading see `halfspace.ellipse_kernels.GRADES`.
+    """
+    size = 2.0 / of
+    low, high = (size * (first + place) - 1.0 for place in span)
+    mid, reach = 0.5 * (low + high), 0.5 * (high - low)
+    spacing = min(SPACING, 0.7 * size / (PARTS * reach))
+    width = min(math.sqrt((size / (PARTS * spacing)) ** 2 - reach**2), 1.0)
+    start, end = (math.asinh((side - mid) / width) for side in (-1.0, 1.0))
+    count = MULTIPLE * math.ceil((end - start) / (MULTIPLE * spacing))
+    scale = start + (end - start) * (np.arange(count) + 0.5) / count
+    return mid + width * np.sinh(scale), np.array([mid, width, start, end - start])
+
+
+def _field(grids: list[Grid], windows: list[Spans]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the traction over mu p of the whole patch at points dense in the finest window, (1, 2, ., .).
+
+    The second is the grading of the points along x and y, (8,).
+    """
+    finest = grids[-1]
+    axes = [_grade(*given) for given in zip(_around(finest, _area(finest)), finest.first, finest.of, strict=True)]
+    (x, _), (y, _) = axes
+    (nx, ny), whole = grids[0].of, grids[0].z
+    out = subgrid.shares_at(whole, 0.5 * nx * (x + 1.0) - 0.5, 0.5 * ny * (y + 1.0) - 0.5)
     for parent, spans, grid in zip(grids, windows, grids[1:], strict=False):
-        kx, ky = nx // grid.of[0], ny // grid.of[1]
-        i, j, (_, _, rows, columns) = grid.first[0] * kx, grid.first[1] * ky, grid.z.shape
-        part = out[0, :, j : j + rows * ky, i : i + columns * kx]
-        weight = _weights(spans, parent, (nx // parent.of[0], ny // parent.of[1]), *EDGE)
-        part += weight * (subgrid.shares_of(grid.z, kx, ky)[0] - part)
-    return out
+        inside, places, weights = [], [], []
+        for k, (points, _) in enumerate(axes):
+            place = 0.5 * grid.of[k] * (points + 1.0) - grid.first[k]
+            start, end = np.searchsorted(place, (0.0, grid.z.shape[3 - k]))
+            inside.append(slice(start, end))
+            places.append(place[start:end])
+            weights.append(_ramp(places[k] * parent.of[k] / grid.of[k], spans[k], parent.z.shape[3 - k], *EDGE))
+        part = out[0, :, inside[1], inside[0]]
+        part += weights[1][:, None] * weights[0] * (subgrid.shares_at(grid.z, *(p - 0.5 for p in places))[0] - part)
+    return out, np.concatenate([grade for _, grade in axes])
 
 
 def fields(
@@ -155,29 +214,28 @@ def fields(
     Yields
     ------
     tuple
-        Function that returns the traction over mu p with the windows and on the elements of the patch, (1, 2, ., .)
-        each; and the number of elements in the adhesion area.
+        Function that returns the traction over mu p with the windows, (1, 2, ., .), and the grading of its points along
+        x and y, (8,), see `halfspace.ellipse_kernels.GRADES`; and the number of elements in the adhesion area.
     """
     own = subgrid.fields_of(patch, solution)
     z, count = own.before_law(), own.traction.shape[-1]
     traction, slip = (v[0, 0] + 1j * v[0, 1] for v in (solution.traction, solution.slip / bound))
     grids, windows = [Grid(traction, slip, z, (0, 0), (count, count))], list[Spans]()
-    plain = subgrid.shares_of(z, 1, 1)
     lean = 0.5 * math.log2(patch.semi_axis_lateral[0] / patch.semi_axis_rolling[0])
     while True:
         # the first window makes long elements shorter
         longer = 2 ** round(abs(lean)) if not windows else 1
         parts = (2 * longer, 2) if lean > 0.0 else (2, 2 * longer)
-        spans = _window(grids[-1])
-        elements = math.prod((end - start) * k for (start, end), k in zip(spans, parts, strict=True))
-        if elements > MOST or PARTS**2 * math.prod(grids[-1].of) * math.prod(parts) > LARGEST:
-            return
-        grid, converged = _solved(grids[-1], spans, parts, patch, poisson_ratio, settings)
-        if not converged:
-            return
+        spans, wider = None, _around(grids[-1], _area(grids[-1]))
+        while spans != wider:
+            spans = wider
+            elements = math.prod((end - start) * k for (start, end), k in zip(spans, parts, strict=True))
+            if elements > MOST:
+                return
+            grid, converged = _solved(grids[-1], spans, parts, patch, poisson_ratio, settings)
+            if not converged:
+                return
+            wider = _outgrown(grids[-1], spans, grid)
         grids.append(grid)
         windows.append(spans)
-        yield (
-            partial(lambda *found: (_field(*found), plain), grids.copy(), windows.copy()),
-            float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum()),
-        )
+        yield partial(_field, grids.copy(), windows.copy()), float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum())

@@ -15,6 +15,7 @@ from trackroller.contact.settings import FADES
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import FIELD, NO_FIELD, patch_rows, stress_parts
+from trackroller.halfspace.ellipse_kernels import GRADES
 from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.peak_climb import LITTLE_FRICTION
 from trackroller.halfspace.peak_settings import PeakSettings
@@ -40,13 +41,14 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # error over the last change of a peak with so many elements and with fewer, over the error of the search, and from the
 # tractions outside.
 ENOUGH, LEVELS, CHANGED, UNRESOLVED, SEARCHED, OUTSIDE = 250, 6, 0.5, 2.0, 0.15, 1e-3
-# Fewer elements in the area suffice if the peak then changes by less than this share of the tolerance. Less than FEW
-# are not searched. Adhesion areas of less than SMALL elements get windows; elements that double resolve larger areas.
-FEW, STEADY, SMALL = 40, 0.1, 30
-# A small area may hide a peak that is this many times its estimated error away. Of 480 random contacts, windows moved
-# 70 peaks by more than 1 %; those of contacts flatter than 55 degrees had large estimated errors. So flat contacts get
-# windows only in doubt, or for a strict tolerance.
-HIDES, STEEP, STRICT = 3.0, np.sin(np.radians(55.0)), 5e-3
+# Fewer elements in the area suffice if the peak then changes by less than this share of the tolerance, or if the stress
+# that they miss, about MISSED over the root of their number, is below the tolerance. Less than FEW are not searched.
+# Adhesion areas of less than SMALL elements get windows; elements that double resolve larger areas.
+FEW, STEADY, MISSED, SMALL = 40, 0.1, 0.15, 30
+# A small area may hide a peak at the spin pole. It does not where the peak is higher than the stress at the pole by
+# more than ABOVE, where elements miss little of this stress, or where the estimated error of the peak is smaller than
+# the tolerance by the factor HIDES. Below STRICT all small areas get windows.
+ABOVE, HIDES, STRICT = 0.02, 6.0, 5e-3
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
@@ -77,6 +79,17 @@ def _mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
         np.negative(image[:, 0], out=image[:, 0])
         fields[rows] = image
     return fields
+
+
+def _graded(patches: np.ndarray, grades: np.ndarray, mirrored: np.ndarray) -> np.ndarray:
+    """Return records of patches whose fields have the grading `grades` (8,), or its mirror image in x."""
+    mid, width, start, span, *along = grades
+    if mirrored[0]:
+        mid, start = -mid, -start - span
+    out = patches.copy()
+    for name, value in zip(GRADES, (mid, width, start, span, *along), strict=True):
+        out[name] = value
+    return out
 
 
 class Search(NamedTuple):
@@ -190,11 +203,13 @@ class EllipseStresses(PatchStresses):
         peak.error[:] *= SAFETY
         goal, estimate = peak_goal(results.scene.table, self.options)[results.rows[flat]], peak.error.max(axis=1)
         small = self._small(flat)
-        hidden = small & ((np.abs(results.slip.sine[flat]) > STEEP) | (goal <= STRICT)) & (HIDES * estimate > goal)
+        (stress, missed), least = results.scene.model.pole_stress(*results.of(flat)), peak.stress.min(axis=1)
+        spike = np.minimum((1.0 + ABOVE) * stress - least, missed) > 0.5 * goal * least
+        hidden = small & (HIDES * estimate > goal) & (spike | (goal <= STRICT))
         doubt = ~hidden & (estimate > FADES[0] * goal)
         self._search_doubled(search, peak, goal, doubt, small)
         hidden |= small & (peak.error.max(axis=1) > goal)
-        self._search_windows(search, peak, goal, hidden)
+        self._search_windows(search, peak, goal, hidden, spike)
         return peak
 
     def _small(self, flat: np.ndarray) -> np.ndarray:
@@ -245,20 +260,24 @@ class EllipseStresses(PatchStresses):
                 done.append(rows[(finer.error.max(axis=1) > FADES[0] * goal[rows]) & ~small[rows]])
             rough = np.concatenate(done) if done else rough[:0]
 
-    def _search_windows(self, search: Search, peak: Peak, goal, hidden) -> None:
+    def _search_windows(self, search: Search, peak: Peak, goal, hidden, spike) -> None:
         """Search the patches `hidden` again with finer elements around their adhesion areas, until the peaks settle.
 
         The other arguments are those of `_search_doubled`; `peak` is overwritten. An adhesion area of few elements
-        shows neither its peak nor that the peak is missing.
+        shows neither its peak nor that the peak is missing: where a `spike` may grow beyond the peak, (m,), an area of
+        enough elements is asked for.
         """
         patches, ratios, flat, second, settings = search
         patch, slip, friction, rows = self.results.of(flat)
+        enough = np.clip((MISSED / goal) ** 2, FEW, ENOUGH)
         for i in np.flatnonzero(hidden & (self.results.slides_along[flat] == 0)).tolist():
             one, skipped = slice(i, i + 1), None
 
             def found(shares: Callable[[], Any], one: slice = one) -> Peak:
-                fine, coarse = (_mirrored(part.astype(FIELD), second[one]) for part in shares())
-                return find_peaks(patches[one], ratios[one], settings, fine, coarse, close=True)
+                field, grades = shares()
+                field = _mirrored(field.astype(FIELD), second[one])
+                graded = _graded(patches[one], grades, second[one])
+                return find_peaks(graded, ratios[one], settings, field, field, close=True)
 
             windows = self.results.scene.model.windows(patch.take([i]), slip.take([i]), friction[[i]], rows[[i]])
             for level, (shares, resolved) in enumerate(islice(windows, LEVELS)):
@@ -270,10 +289,10 @@ class EllipseStresses(PatchStresses):
                 if skipped is not None and changed.max() > STEADY * goal[i]:
                     changed = np.abs(finer.stress / found(skipped).stress - 1.0)
                 skipped = None
-                finer.error[:] = factor * changed + SEARCHED * (finer.error - finer.change) + OUTSIDE
+                finer.error[:] = factor * changed + SEARCHED * finer.error + OUTSIDE
                 peak.put(one, finer)
-                steady = changed.max() <= STEADY * goal[i]
-                if (steady or resolved >= ENOUGH) and finer.error.max() <= goal[i]:
+                steady = changed.max() <= STEADY * goal[i] and not spike[i]
+                if (steady or resolved >= enough[i]) and finer.error.max() <= goal[i]:
                     break
             if skipped is not None:  # no window resolves the area
                 finer = found(skipped)
