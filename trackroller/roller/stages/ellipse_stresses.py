@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property, lru_cache, partial
-from itertools import islice
-from typing import Any, NamedTuple
+from typing import Any
 
 import numpy as np
 
@@ -15,7 +14,6 @@ from trackroller.contact.settings import FADES
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
 from trackroller.halfspace.ellipse import FIELD, NO_FIELD, patch_rows, stress_parts
-from trackroller.halfspace.ellipse_kernels import GRADES
 from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.peak_climb import LITTLE_FRICTION
 from trackroller.halfspace.peak_settings import PeakSettings
@@ -25,6 +23,7 @@ from trackroller.roller.requirements import distinct_rows, normalised_patches
 from trackroller.roller.stages.case import peak_goal
 from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
+from trackroller.roller.stages.window_search import Search, mirrored, search_windows
 
 SECTION_ORDER = 24  # quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
 SEEDS, FINALISTS = 5, 2  # least effort of the search under tractions with adhesion
@@ -37,14 +36,7 @@ REFINED_ERROR, REFINED_AT = 1.5e-2, 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
-# Finer elements around adhesion areas: elements in the area with which its peak is resolved, levels at most, estimated
-# error over the last change of a peak with so many elements and with fewer, over the error of the search, and from the
-# tractions outside.
-ENOUGH, LEVELS, CHANGED, UNRESOLVED, SEARCHED, OUTSIDE = 250, 6, 0.5, 2.0, 0.15, 1e-3
-# Fewer elements in the area suffice if the peak then changes by less than this share of the tolerance, or if the stress
-# that they miss, about MISSED over the root of their number, is below the tolerance. Less than FEW are not searched.
-# Adhesion areas of less than SMALL elements get windows; elements that double resolve larger areas.
-FEW, STEADY, MISSED, SMALL = 40, 0.1, 0.15, 30
+SMALL = 30  # adhesion areas of fewer elements get windows; elements that double resolve larger areas
 # A small area may hide a peak at the spin pole. It does not where the peak is higher than the stress at the pole by
 # more than ABOVE, where elements miss little of this stress, or where the estimated error of the peak is smaller than
 # the tolerance by the factor HIDES. Below STRICT all small areas get windows.
@@ -70,36 +62,6 @@ def _finer_search(settings: PeakSettings) -> PeakSettings:
 def _pieces(count: int, size: int = PIECE) -> list[slice]:
     """Return pieces of at most `size` of `count` patches."""
     return [slice(i, min(i + size, count)) for i in range(0, count, size)]
-
-
-def _mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
-    """Replace the fields (m, 2, ny, nx) of `rows` by their mirror images in x, in place, and return the fields."""
-    if fields is not None and rows.any():
-        image = fields[rows][..., ::-1]
-        np.negative(image[:, 0], out=image[:, 0])
-        fields[rows] = image
-    return fields
-
-
-def _graded(patches: np.ndarray, grades: np.ndarray, mirrored: np.ndarray) -> np.ndarray:
-    """Return records of patches whose fields have the grading `grades` (8,), or its mirror image in x."""
-    mid, width, start, span, *along = grades
-    if mirrored[0]:
-        mid, start = -mid, -start - span
-    out = patches.copy()
-    for name, value in zip(GRADES, (mid, width, start, span, *along), strict=True):
-        out[name] = value
-    return out
-
-
-class Search(NamedTuple):
-    """Records, Poisson's ratios and numbers of m patches, whether they are mirrored, and how to search them."""
-
-    patches: np.ndarray
-    ratios: np.ndarray
-    flat: np.ndarray
-    second: np.ndarray
-    settings: PeakSettings
 
 
 class EllipseStresses(PatchStresses):
@@ -132,7 +94,7 @@ class EllipseStresses(PatchStresses):
         shares = ask(patch, slip, np.where(slides, 0.0, friction), rows)
         if shares is None:
             return None
-        return *(_mirrored(part.astype(FIELD, copy=False), own != flat) for part in shares[:2]), *shares[2:]
+        return *(mirrored(part.astype(FIELD, copy=False), own != flat) for part in shares[:2]), *shares[2:]
 
     def fields(self, flat: np.ndarray) -> tuple[np.ndarray | None, np.ndarray | None]:
         """Return the traction over its bound on grids over the existing patches `flat` (m,), and on coarser grids.
@@ -185,7 +147,7 @@ class EllipseStresses(PatchStresses):
         many = self.options.settings.elements > REFINED_AT
         settings = _finer_search(settings) if many and self.options.settings.peak_goal else settings
         for piece in _pieces(flat.size):
-            fields, coarse = (_mirrored(part, second[piece]) for part in self.fields(flat[piece]))
+            fields, coarse = (mirrored(part, second[piece]) for part in self.fields(flat[piece]))
             # doubtful peaks of the exact theory are searched again; a third climb finds no higher peaks of the others
             few = not many and coarse is not None
             effort = replace(settings, finalists=FINALISTS) if few else settings
@@ -209,7 +171,7 @@ class EllipseStresses(PatchStresses):
         doubt = ~hidden & (estimate > FADES[0] * goal)
         self._search_doubled(search, peak, goal, doubt, small)
         hidden |= small & (peak.error.max(axis=1) > goal)
-        self._search_windows(search, peak, goal, hidden, spike)
+        search_windows(results, search, peak, goal, hidden, spike)
         return peak
 
     def _small(self, flat: np.ndarray) -> np.ndarray:
@@ -238,7 +200,7 @@ class EllipseStresses(PatchStresses):
                 shares = self._shares(flat[rows], partial(results.scene.model.finer_shares, doublings=doublings))
                 if shares is None:
                     return
-                (fields, coarse), converged = (_mirrored(part, second[rows]) for part in shares[:2]), shares[2]
+                (fields, coarse), converged = (mirrored(part, second[rows]) for part in shares[:2]), shares[2]
                 finer = find_peaks(patches[rows], ratios[rows], settings, fields, coarse, own).take(converged)
                 rows = rows[converged]
                 if wanted.peak_goal:
@@ -259,45 +221,6 @@ class EllipseStresses(PatchStresses):
                 results.refined[flat[rows]] = doublings
                 done.append(rows[(finer.error.max(axis=1) > FADES[0] * goal[rows]) & ~small[rows]])
             rough = np.concatenate(done) if done else rough[:0]
-
-    def _search_windows(self, search: Search, peak: Peak, goal, hidden, spike) -> None:
-        """Search the patches `hidden` again with finer elements around their adhesion areas, until the peaks settle.
-
-        The other arguments are those of `_search_doubled`; `peak` is overwritten. An adhesion area of few elements
-        shows neither its peak nor that the peak is missing: where a `spike` may grow beyond the peak, (m,), an area of
-        enough elements is asked for.
-        """
-        patches, ratios, flat, second, settings = search
-        patch, slip, friction, rows = self.results.of(flat)
-        enough = np.clip((MISSED / goal) ** 2, FEW, ENOUGH)
-        for i in np.flatnonzero(hidden & (self.results.slides_along[flat] == 0)).tolist():
-            one, skipped = slice(i, i + 1), None
-
-            def found(shares: Callable[[], Any], one: slice = one) -> Peak:
-                field, grades = shares()
-                field = _mirrored(field.astype(FIELD), second[one])
-                graded = _graded(patches[one], grades, second[one])
-                return find_peaks(graded, ratios[one], settings, field, field, close=True)
-
-            windows = self.results.scene.model.windows(patch.take([i]), slip.take([i]), friction[[i]], rows[[i]])
-            for level, (shares, resolved) in enumerate(islice(windows, LEVELS)):
-                if resolved < FEW and level < LEVELS - 1:
-                    skipped = shares
-                    continue
-                finer, factor = found(shares), CHANGED if resolved >= ENOUGH else UNRESOLVED
-                changed = np.abs(finer.stress / peak.stress[one] - 1.0)
-                if skipped is not None and changed.max() > STEADY * goal[i]:
-                    changed = np.abs(finer.stress / found(skipped).stress - 1.0)
-                skipped = None
-                finer.error[:] = factor * changed + SEARCHED * finer.error + OUTSIDE
-                peak.put(one, finer)
-                steady = changed.max() <= STEADY * goal[i] and not spike[i]
-                if (steady or resolved >= enough[i]) and finer.error.max() <= goal[i]:
-                    break
-            if skipped is not None:  # no window resolves the area
-                finer = found(skipped)
-                finer.error[:] = np.fmax(UNRESOLVED * np.abs(finer.stress / peak.stress[one] - 1.0), peak.error[one])
-                peak.put(one, finer)
 
     def _search(self, patches: np.ndarray, ratios: np.ndarray) -> Peak:
         """Search patches in full sliding; those without a slip field are searched once for each ellipticity."""
