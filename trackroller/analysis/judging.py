@@ -181,7 +181,7 @@ def goal_column(results: StudyResults, goal: str) -> Column:
     _, units, words = results.quantity(output)
     if output in results.design.meta["outer"] or results.design.meta["inner_samples"] == 1:
         return values, units, words
-    named = {"worst": f"{words} at the worst condition", "b10": f"{SAFE_B10} of {words}"}
+    named = {"worst": f"{words} at the worst condition", "b10": SAFE_B10.format(f"the {words}")}
     return values, units, named.get(kind, f"mean {words}")
 
 

@@ -17,7 +17,7 @@ from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.outputs import regimes
 
-SAFE_B10 = "B10 with other cases as life 0"  # other cases: those that do not roll, or have no known life
+SAFE_B10 = "B10 of {}, other cases as life 0"  # other cases: those that do not roll, or have no known life
 
 
 def pareto_mask(objectives: np.ndarray, directions: Iterable[str]) -> np.ndarray:
@@ -224,8 +224,8 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
             raise InputError("pareto", name, f"an analysed output: {', '.join(map(str, table['output'].values))}")
         part = table.sel(output=output)
         estimates, words, units = part[kind], str(part["output_name"].item()), str(part["output_units"].item())
-    word = {"b10": "B10", "b10_safe": SAFE_B10}.get(kind, kind.replace("_", " "))
-    return estimates.values, units, f"{word} of {words}"
+    named = {"b10": "B10 of {}", "b10_safe": SAFE_B10}.get(kind, f"{kind} of {{}}".replace("_", " "))
+    return estimates.values, units, named.format(words)
 
 
 def default_objectives(ds: xr.Dataset) -> dict[str, str]:
