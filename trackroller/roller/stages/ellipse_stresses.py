@@ -36,7 +36,9 @@ REFINED_ERROR, REFINED_AT = 1.5e-2, 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
-SMALL = 30  # adhesion areas of fewer elements get windows; elements that double resolve larger areas
+# Adhesion areas of fewer elements, or with less of the patch, get windows; elements that double resolve larger areas.
+# Of a smaller share even 160 elements may miss the needle, whose peak may be 4 % higher.
+SMALL, SMALL_SHARE = 30, 0.05
 # A small area may hide a peak at the spin pole. It does not where the peak is higher than the stress at the pole by
 # more than ABOVE, where elements miss little of this stress, or where the estimated error of the peak is smaller than
 # the tolerance by the factor HIDES. Below STRICT all small areas get windows.
@@ -175,11 +177,12 @@ class EllipseStresses(PatchStresses):
         return peak
 
     def _small(self, flat: np.ndarray) -> np.ndarray:
-        """Return True where the adhesion area at the spin pole has few elements, for the patches `flat`, (m,)."""
+        """Return True where the adhesion area at the spin pole is small, for the patches `flat`, (m,)."""
         patch, slip, friction, rows = self.results.of(flat)
         sticks: Any = self.results.scene.model.stick(patch, slip, friction, rows)
         pole = np.abs(self.results.slip.pole_lateral[flat]) < patch.semi_axis_lateral
-        return (0.25 * np.pi * self.options.settings.elements**2 * sticks < SMALL) & pole & (friction > LITTLE_FRICTION)
+        few = max(SMALL / (0.25 * np.pi * self.options.settings.elements**2), SMALL_SHARE)
+        return (sticks < few) & pole & (friction > LITTLE_FRICTION)
 
     def _search_doubled(self, search: Search, peak: Peak, goal, doubt, small) -> None:
         """Search patches again under tractions on twice the elements, and again while their error is above `goal` (m,).
