@@ -40,8 +40,9 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # Of a smaller share even 160 elements may miss the needle, whose peak may be 4 % higher.
 SMALL, SMALL_SHARE = 30, 0.05
 # A small area may hide a peak at the spin pole. It does not where the peak is higher than the stress at the pole by
-# more than ABOVE, or where elements miss little of this stress. Below STRICT all small areas get windows.
-ABOVE, STRICT = 0.02, 5e-3
+# more than ABOVE, where elements miss little of this stress, or where the estimated error of the peak is smaller than
+# the tolerance by the factor HIDES. Below STRICT the stress at the pole does not count.
+ABOVE, HIDES, STRICT = 0.02, 12.0, 5e-3
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
@@ -168,7 +169,7 @@ class EllipseStresses(PatchStresses):
         small = self._small(flat)
         (stress, missed), least = results.scene.model.pole_stress(*results.of(flat)), peak.stress.min(axis=1)
         spike = np.minimum((1.0 + ABOVE) * stress - least, missed) > 0.5 * goal * least
-        hidden = small & (spike | (goal <= STRICT))
+        hidden = small & (HIDES * estimate > goal) & (spike | (goal <= STRICT))
         doubt = ~hidden & (estimate > FADES[0] * goal)
         self._search_doubled(search, peak, goal, doubt, small)
         hidden |= small & (peak.error.max(axis=1) > goal)
