@@ -119,7 +119,7 @@ def test_peaks_do_not_depend_on_the_elements_of_the_patch(number):
 
 
 def test_the_stress_at_the_pole_is_that_of_windows(monkeypatch):
-    """Peaks of steep contacts at the spin pole are within 3 % of the formula; elements miss at most what it says."""
+    """Peaks of steep contacts at the spin pole are within 5 % of the formula; elements miss at most what it says."""
     known, plain = [], KalkerModel.pole_stress
 
     def recorded(*given):
@@ -137,5 +137,5 @@ def test_the_stress_at_the_pole_is_that_of_windows(monkeypatch):
     told = np.stack([np.concatenate(parts).reshape(2, -1).T for parts in zip(*known, strict=True)])
     peak = (fine.peak_stress / fine.max_pressure).values
     missing = 1.0 - (rough.peak_stress / fine.peak_stress).values
-    np.testing.assert_allclose(peak, np.stack(2 * [told[0]], axis=2), rtol=0.03)
+    np.testing.assert_allclose(peak, np.stack(2 * [told[0]], axis=2), rtol=0.05)
     assert (0.03 < missing).all() and (missing < (told[1] / told[0])[..., None]).all()

@@ -19,7 +19,7 @@ from trackroller.roller.stages.scene import Results
 # tractions outside.
 ENOUGH, LEVELS, CHANGED, UNRESOLVED, SEARCHED, OUTSIDE = 250, 6, 0.5, 2.0, 0.15, 1e-3
 # Fewer elements in the area suffice if the peak then changes by less than this share of the tolerance, or if the stress
-# that they miss, about MISSED over the root of their number, is below the tolerance. Less than FEW are not searched.
+# that they miss, at most MISSED over the root of their number, is below the tolerance. Less than FEW are not searched.
 FEW, STEADY, MISSED = 40, 0.1, 0.1
 
 
