@@ -17,7 +17,7 @@ def _derivative(height, rng):
 
 @pytest.mark.parametrize(("ny", "nx"), [(6, 5), (9, 8), (12, 21)])
 def test_each_column_is_solved_as_its_own_dense_system(ny, nx):
-    """The columns have different lengths and share the lanes of a group; one column has no load."""
+    """Columns of different lengths are solved side by side in one group; one column has no load."""
     rng = np.random.default_rng(3)
     height = np.zeros((ny, nx))
     for j in range(nx):

@@ -268,7 +268,7 @@ class Gap:
 
     @property
     def _parabolic(self) -> bool:
-        """Say whether the problem is that of Hertz, in which the bodies have no axes of revolution."""
+        """Return whether both profiles are parabolas, as Hertz assumes; such bodies have no axes of revolution."""
         return self.guide.parabolic and self.roller.parabolic
 
     @cached_property

@@ -24,6 +24,7 @@ from trackroller.halfspace.ellipse_kernels import (
     add_stress,
     cell_of,
     grades_of,
+    grid_place,
     slip_at,
     spread_angles,
 )
@@ -99,65 +100,41 @@ def rounded_rays(patch, count, work, single):
 
 
 @inner
-def _on_grid(patch, place, count, unit):
-    """Return place and elements per length `unit` along x and y of a grid with `count` elements (nx, ny).
+def _on_axis(x, half, unit, grade, count):
+    """Return where x lies on a grid over [-half, half], and the number of elements per length `unit`.
 
-    On a graded grid they are those of (x/a - mid)/width, and of the same along y.
+    On a graded grid, they are (x/half - mid)/width and its change per `unit`, see `_place_on_grade`.
     """
-    (mid_x, width_x, _, _), (mid_y, width_y, _, _) = grades_of(patch)
-    x, y = place.x / patch.a, place.y / patch.b
-    if width_x > 0.0:
-        return (
-            ((x - mid_x) / width_x, (y - mid_y) / width_y),
-            (unit / (patch.a * width_x), unit / (patch.b * width_y)),
-        )
-    nx, ny = count
-    per = 0.5 * nx * unit / patch.a, 0.5 * ny * unit / patch.b
-    return (0.5 * nx * (x + 1.0) - 0.5, 0.5 * ny * (y + 1.0) - 0.5), per
-
-
-@inner
-def _interpolate_rays(field, at, per, node, count, work, places):
-    """Write the shares of the traction bound at the node of each ray into the scratch array.
-
-    `at` is the place of the point on the grid (x, y), and `per` the number of elements per length; `places` (m,)
-    serves the numbers of the elements.
-    """
-    real, (_, ny, nx) = work.dtype.type, field.shape
-    wide = real(nx)
-    for k in range(count):
-        r = (work[START + k] + work[SPAN + k] * node) * work[LENGTH + k]
-        i, s = cell_of(at[0] + work[C + k] * r * per[0], nx, real)
-        j, t = cell_of(at[1] + work[S + k] * r * per[1], ny, real)
-        work[FIELD_X + k], work[FIELD_Y + k], places[k] = s, t, np.int32(j * wide + i)
-    _interpolate(field, count, work, places)
+    mid, width, _, _ = grade
+    if width > 0.0:
+        return (x / half - mid) / width, unit / (half * width)
+    return grid_place(x / half, grade, count), 0.5 * count * unit / half
 
 
 @inner
 def _place_on_grade(v, grade, count):
-    """Return `grid_place` from v = (u - mid)/width."""
+    """Return `grid_place` for v = (u - mid)/width, in vector registers."""
     size = abs(v)
     swept = log(size + math.sqrt(size * size + 1.0))
     return count * ((-swept if v < 0.0 else swept) - grade[2]) / grade[3] - 0.5
 
 
 @inner
-def _interpolate_graded(field, grades, at, per, node, count, work, places):
-    """Do the same on a graded grid; `at` and `per` are those of `_on_grid`, `grades` those of `grades_of`."""
+def _interpolate_rays(field, grades, at, per, node, count, work, places):
+    """Write the shares of the traction bound at the node of each ray into the scratch array.
+
+    `at` is the place of the point on the grid (x, y), and `per` the number of elements per length; `places` (m,)
+    serves the numbers of the elements. `grades` are those of `grades_of`, or None for elements of equal size.
+    """
     real, (_, ny, nx) = work.dtype.type, field.shape
     wide = real(nx)
     for k in range(count):
         r = (work[START + k] + work[SPAN + k] * node) * work[LENGTH + k]
-        i, s = cell_of(_place_on_grade(at[0] + work[C + k] * r * per[0], grades[0], nx), nx, real)
-        j, t = cell_of(_place_on_grade(at[1] + work[S + k] * r * per[1], grades[1], ny), ny, real)
+        x, y = at[0] + work[C + k] * r * per[0], at[1] + work[S + k] * r * per[1]
+        if grades is not None:
+            x, y = real(_place_on_grade(x, grades[0], nx)), real(_place_on_grade(y, grades[1], ny))
+        (i, s), (j, t) = cell_of(x, nx, real), cell_of(y, ny, real)
         work[FIELD_X + k], work[FIELD_Y + k], places[k] = s, t, np.int32(j * wide + i)
-    _interpolate(field, count, work, places)
-
-
-@inner
-def _interpolate(field, count, work, places):
-    """Write the shares at the places on the grid that the scratch arrays hold."""
-    _, ny, nx = field.shape
     flat = field.reshape(-1)
     for k in range(count):
         shares = work[FIELD_X + k], work[FIELD_Y + k]
@@ -192,8 +169,10 @@ def sum_rays(patch, field, place, count, rule, work, places, out):
     real, unit = work.dtype.type, 1.0
     if field is not None:
         unit, ny, nx = min(patch.a, patch.b), field.shape[1], field.shape[2]
-        grades, (at, per) = grades_of(patch), _on_grid(patch, place, (nx, ny), unit)
-        at, per = (real(at[0]), real(at[1])), (real(per[0]), real(per[1]))
+        grades = grades_of(patch)
+        at_x, per_x = _on_axis(place.x, patch.a, unit, grades[0], nx)
+        at_y, per_y = _on_axis(place.y, patch.b, unit, grades[1], ny)
+        at, per = (real(at_x), real(at_y)), (real(per_x), real(per_y))
     x, y, z, d_x, d_y = real(place.x), real(place.y), real(place.z / unit), real(place.d_x), real(place.d_y)
     one = real(1.0)
     xx = yy = xy = zz = yz = zx = n_xx = n_yy = n_xy = real(0.0)
@@ -201,9 +180,9 @@ def sum_rays(patch, field, place, count, rule, work, places, out):
         node, rest, share = real(rule[0, i]), real(1.0 - rule[0, i]), real(rule[1, i])
         if field is not None:
             if grades[0][1] > 0.0:
-                _interpolate_graded(field, grades, at, per, node, count, work, places)
+                _interpolate_rays(field, grades, at, per, node, count, work, places)
             else:
-                _interpolate_rays(field, at, per, node, count, work, places)
+                _interpolate_rays(field, None, at, per, node, count, work, places)
         for k in range(count):
             c, s, gone = work[C + k], work[S + k], work[SPAN + k] * node
             tau = work[START + k] + gone

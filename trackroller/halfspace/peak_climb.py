@@ -19,10 +19,9 @@ from trackroller.numerics.compiled import compiled
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
 RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
 # Climbs from the line where sliding begins: seeds of each body, most points of the line, and over the size of the line
-# the distance of the seeds, the first step, and the last. After LINE_SWEEPS only climbs above a share of the highest go
-# on.
+# the distance of the seeds, the first step, and the last.
 LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 3, 200, 0.2, 0.08, 0.004
-LINE_SWEEPS, LINE_WORTH = 3, 0.998
+LINE_SWEEPS, LINE_WORTH = 3, 0.998  # after so many sweeps, a climb below this share of the highest stress is given up
 OUTSIDE = 0.02, 0.05, 0.1  # distances of more points outside the line, over its size: a cusp may lie beside it
 LEAST_LINE = 0.01  # size of a line of few points
 

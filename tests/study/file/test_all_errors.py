@@ -79,7 +79,7 @@ def planned(folder, study: str, table: str = "") -> list[str]:
     return lines(trackroller("plan", "s.yaml", cwd=folder, code=2).stderr)
 
 
-OF_TABLE = "name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n"  # a study of the cases of a table
+OF_TABLE = "name: x\ndesign: table\ntable: t.csv\noutputs: [forces]\n"  # a study whose cases stand in a table
 
 
 def test_a_case_file_names_all_its_errors_in_order(tmp_path):

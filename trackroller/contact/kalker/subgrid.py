@@ -9,8 +9,8 @@ true size.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from functools import lru_cache
+from collections.abc import Callable, Iterator
+from functools import lru_cache, partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -37,17 +37,19 @@ class Spline(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _unit_splines(n: int) -> Any:
-    from scipy.interpolate import make_interp_spline  # heavy: it doubles the start of a command without kalker
+def _through(n: int) -> tuple[Callable[..., Any], np.ndarray]:
+    """Return a function of points that gives the B-splines there, and the B-splines of values (n, n)."""
+    from scipy.interpolate import BSpline, make_interp_spline  # heavy: doubles the start of a command without kalker
 
-    return make_interp_spline(np.arange(n), np.asfortranarray(np.eye(n)), k=3)
+    spline = make_interp_spline(np.arange(n), np.eye(n), k=3)
+    return partial(BSpline.design_matrix, t=spline.t, k=3), np.asfortranarray(spline.c)
 
 
 def _spline_at(n: int, points: np.ndarray) -> Spline:
     """Return the spline at `points` (m,), counted from the first centre on; it is constant beyond the outer centres."""
-    spline = _unit_splines(n)
-    at = type(spline).design_matrix(np.clip(points, 0.0, n - 1.0), spline.t, 3)
-    return Spline(np.asfortranarray(spline.c), at.indices[::4].astype(np.int64), at.data.reshape(-1, 4))
+    splines_at, of_values = _through(n)
+    at = splines_at(np.clip(points, 0.0, n - 1.0))
+    return Spline(of_values, at.indices[::4].astype(np.int64), at.data.reshape(-1, 4))
 
 
 @lru_cache(maxsize=32)
@@ -181,7 +183,10 @@ def interpolated(field: np.ndarray, across: float, along: float) -> np.ndarray:
 
 
 def shares_at(z: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the traction over mu p from z (n, 2, ny, nx) at places x and y, counted from the first centre on."""
+    """Return the traction over mu p from z (n, 2, ny, nx) at any points, (n, 2, ., .).
+
+    `x` and `y` are their places along both axes in elements; the centre of the first element is at 0.
+    """
     return _bounded(_by_splines(z, _spline_at(z.shape[-2], y), _spline_at(z.shape[-1], x)))
 
 

@@ -104,14 +104,14 @@ def _around(grid: Grid, area: Spans) -> Spans:
     return spans[0], spans[1]
 
 
-def _outgrown(parent: Grid, spans: Spans, grid: Grid) -> Spans:
-    """Return the window of `parent` around the adhesion area that `grid` found in the window `spans`, or `spans`.
+def _outgrown(parent: Grid, spans: Spans, grid: Grid, found: Spans) -> Spans:
+    """Return the window `spans` of `parent`, larger if the adhesion area `found` on the finer `grid` is near its edge.
 
     Elements wider than the area show a part of it only.
     """
     area = []
     for (start, end), finer, coarser, first, known in zip(
-        _area(grid), grid.of, parent.of, grid.first, parent.first, strict=True
+        found, grid.of, parent.of, grid.first, parent.first, strict=True
     ):
         parts = finer // coarser
         area.append(((first + start) // parts - known, -(-(first + end) // parts) - known))
@@ -170,13 +170,14 @@ def _grade(span: tuple[int, int], first: int, of: int) -> tuple[np.ndarray, np.n
     return mid + width * np.sinh(scale), np.array([mid, width, start, end - start])
 
 
-def _field(grids: list[Grid], windows: list[Spans]) -> tuple[np.ndarray, np.ndarray]:
-    """Return the traction over mu p of the whole patch at points dense in the finest window, (1, 2, ., .).
+def _field(grids: list[Grid], windows: list[Spans], area: Spans) -> tuple[np.ndarray, np.ndarray]:
+    """Return the traction over mu p of the whole patch at points dense around the adhesion area, (1, 2, ., .).
 
-    The second is the grading of the points along x and y, (8,).
+    `area` are the elements of this area in the finest window. The second result is the grading of the points along x
+    and y, (8,).
     """
     finest = grids[-1]
-    axes = [_grade(*given) for given in zip(_around(finest, _area(finest)), finest.first, finest.of, strict=True)]
+    axes = [_grade(*given) for given in zip(_around(finest, area), finest.first, finest.of, strict=True)]
     (x, _), (y, _) = axes
     (nx, ny), whole = grids[0].of, grids[0].z
     out = subgrid.shares_at(whole, 0.5 * nx * (x + 1.0) - 0.5, 0.5 * ny * (y + 1.0) - 0.5)
@@ -221,12 +222,13 @@ def fields(
     z, count = own.before_law(), own.traction.shape[-1]
     traction, slip = (v[0, 0] + 1j * v[0, 1] for v in (solution.traction, solution.slip / bound))
     grids, windows = [Grid(traction, slip, z, (0, 0), (count, count))], list[Spans]()
+    area = _area(grids[0])
     lean = 0.5 * math.log2(patch.semi_axis_lateral[0] / patch.semi_axis_rolling[0])
     while True:
         # the first window makes long elements shorter
         longer = 2 ** round(abs(lean)) if not windows else 1
         parts = (2 * longer, 2) if lean > 0.0 else (2, 2 * longer)
-        spans, wider = None, _around(grids[-1], _area(grids[-1]))
+        spans, wider = None, _around(grids[-1], area)
         while spans != wider:
             spans = wider
             elements = math.prod((end - start) * k for (start, end), k in zip(spans, parts, strict=True))
@@ -235,7 +237,12 @@ def fields(
             grid, converged = _solved(grids[-1], spans, parts, patch, poisson_ratio, settings)
             if not converged:
                 return
-            wider = _outgrown(grids[-1], spans, grid)
+            found = _area(grid)
+            wider = _outgrown(grids[-1], spans, grid, found)
         grids.append(grid)
         windows.append(spans)
-        yield partial(_field, grids.copy(), windows.copy()), float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum())
+        area = found
+        yield (
+            partial(_field, grids.copy(), windows.copy(), area),
+            float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum()),
+        )

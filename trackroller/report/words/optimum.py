@@ -1,4 +1,4 @@
-"""Sentences and a table on what a search for the best designs found."""
+"""Sentences and a table on the result of a search for the best designs."""
 
 from __future__ import annotations
 

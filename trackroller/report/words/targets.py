@@ -171,7 +171,7 @@ def _designs_that_meet(table: xr.Dataset, view: StudyView) -> list[str]:
     return [part_of(every[at].sum(), at.sum()) if at.any() else "–" for at in chosen]
 
 
-OTHERS = dict(zip(REGIMES[1:], REGIME_LABELS[1:], strict=True))  # regimes in which the roller does not roll, in words
+OTHERS = dict(zip(REGIMES[1:], REGIME_LABELS[1:], strict=True))  # names of the regimes in which no roller rolls
 
 
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table | None]:
