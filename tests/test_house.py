@@ -9,7 +9,7 @@ import pytest
 
 from validation.house import LONGEST_FUNCTION, MOST_LINES, survey
 
-LINES_OF_CODE = 27_419  # all rooms without what the limits may take
+LINES_OF_CODE = 27_477  # all rooms without what the limits may take
 FOR_LIMITS = 1_835  # what the limits of the room `damage`, with what declares and serves them, may take
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {

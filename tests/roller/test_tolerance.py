@@ -167,7 +167,7 @@ def test_tolerances_are_read_by_quantity():
     assert Tolerance.read(0.01, OUTPUTS) == Tolerance(0.01, 0.01) and Tolerance.read(0.01, ["forces"]) == Tolerance(
         0.01
     )
-    assert [Tolerance(each).settings().elements for each in (0.1, 0.01)] == [20, 24]
+    assert [Tolerance(each).settings().elements for each in (0.1, 0.05, 0.01)] == [16, 20, 24]
 
 
 def test_the_expected_cost_grows_with_the_accuracy():

@@ -135,10 +135,11 @@ class ContactModel:
         """Return the stress near the spin pole over p_max, and what elements miss of it, (m,) each; 0 if unknown."""
         return np.zeros(len(rows)), np.zeros(len(rows))
 
-    def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Iterator[Any]:
+    def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doubled=True) -> Iterator[Any]:
         """Return an iterator over functions of `shares` of one patch with finer elements around its adhesion area.
 
-        With each comes the number of elements in this area. A model without such elements gives none.
+        With each comes the number of elements in this area. Around the area are the elements of the patch, or those of
+        half the size if `doubled`. A model without such elements gives none.
         """
         return iter(())
 

@@ -13,12 +13,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement, unit_rule
+from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement
 from trackroller.halfspace.peak_climb import (
     PROPORTIONS,
     Climbs,
+    Rules,
     Target,
-    climb_from_line,
     has_ridges,
     lengths,
     scan,
@@ -26,6 +26,7 @@ from trackroller.halfspace.peak_climb import (
     stress_at,
     sweep,
 )
+from trackroller.halfspace.peak_near import climb_near
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, ridge_points, scan_points, spike
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.numerics.compiled import compiled
@@ -34,36 +35,7 @@ from trackroller.numerics.threads import share_rows
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
-# The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than 18.
-LEAST_WAVES = 8
-MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion beyond those below the surface
 GAPS = (0.045, 0.017, 0.008)  # relative distance to the highest, per finalist, below which a climb is given up
-
-
-class Rules(NamedTuple):
-    """Quadrature rules of the steps of a search, each for the plane waves and for the rays.
-
-    `ridge` is that of the polish on the surface, where tractions with adhesion have ridges of stress.
-    """
-
-    scan: tuple[np.ndarray, np.ndarray]
-    climb: tuple[np.ndarray, np.ndarray]
-    polish: tuple[np.ndarray, np.ndarray]
-    ridge: tuple[np.ndarray, np.ndarray]
-    summit: tuple[np.ndarray, np.ndarray]
-
-    @classmethod
-    def of(cls, settings: PeakSettings, factor: int, quick: bool) -> Rules:
-        """Return the rules of patches whose rules are refined by a factor."""
-        scan, climb, polish, summit = settings.scan, settings.climb, settings.polish, settings.summit
-        orders = (
-            (max(scan, LEAST_WAVES * quick), scan),
-            (climb, climb),
-            (max(polish, 12), polish),
-            (max(polish, 12), polish + MORE_RAYS * quick),
-            (summit, summit),
-        )
-        return cls(*((unit_rule(waves * factor), unit_rule(rays * factor)) for waves, rays in orders))
 
 
 class Patches(NamedTuple):
@@ -81,6 +53,8 @@ class Patches(NamedTuple):
         See `lengths`.
     points : numpy.ndarray, shape (n, m, 3)
         Points of the scans.
+    near : numpy.ndarray, shape (n, 2, 3)
+        Peaks at hand.
     """
 
     rows: np.ndarray
@@ -90,6 +64,7 @@ class Patches(NamedTuple):
     poisson_ratio: np.ndarray
     units: np.ndarray
     points: np.ndarray
+    near: np.ndarray
 
 
 class Effort(NamedTuple):
@@ -131,6 +106,11 @@ class Peak(Rows):
         for field in dataclasses.fields(self):
             getattr(self, field.name)[rows] = getattr(peak, field.name)
 
+    def higher(self, other: Peak) -> Peak:
+        """Return the higher peak of each body."""
+        above = other.stress > self.stress
+        return Peak(*(np.where(above, getattr(other, f.name), getattr(self, f.name)) for f in dataclasses.fields(self)))
+
 
 @compiled
 def _search_rows(first, last, patches, rules, effort, room, out):
@@ -138,9 +118,14 @@ def _search_rows(first, last, patches, rules, effort, room, out):
     for i in range(first, last):
         row, nu, unit = patches.rows[i], patches.poisson_ratio[i], patches.units[i]
         fine = Target(row, patches.fields[i], nu, unit, effort.slender, room)
-        rough = Target(row, patches.rough[i], nu, unit, effort.slender, room)
-        _search(fine, rough, patches.points[i], rules, effort, out[i])
-        if effort.gridded:
+        if effort.close:
+            line = ridge_points(row, patches.fields[i])
+            climbs = climb_near(fine, patches.near[i], line, rules.climb, rules.ridge, effort.smallest)
+        else:
+            rough = Target(row, patches.rough[i], nu, unit, effort.slender, room)
+            climbs = _climbed(fine, rough, patches.points[i], rules, effort)
+        _write_highest(fine, climbs, rules.summit, out[i])
+        if effort.gridded and not effort.close:
             coarse = Target(row, patches.coarse[i], nu, unit, effort.slender, room)
             for body in range(2):
                 other = stress_at(coarse, body, out[i, body, 1:4], rules.summit)
@@ -149,8 +134,8 @@ def _search_rows(first, last, patches, rules, effort, room, out):
 
 
 @compiled
-def _search(fine, rough, points, rules, effort, out):
-    """Write the peaks of both bodies of a patch, in normalised coordinates, into `out` (2, 6)."""
+def _climbed(fine, rough, points, rules, effort):
+    """Return climbs from the highest points of a scan, below few elements at first; the best are polished."""
     climbs = _seeded(fine, rough, points, rules, effort)
     # Tractions on a grid are less smooth than sliding ones, so that a finer rule gains little in the first sweep.
     # the scan is rough: climbs that fall behind with better quadrature are given up, and sooner with every sweep
@@ -169,14 +154,18 @@ def _search(fine, rough, points, rules, effort, out):
         for k in range(24 if effort.slender else 12):
             if not sweep(fine, climbs, climb, rule, effort.smallest, k > 0):
                 break
+    return climbs
+
+
+@compiled
+def _write_highest(fine, climbs, rule, out):
+    """Write the highest climb of each body, in normalised coordinates, into `out` (2, 6)."""
+    count = climbs.f.size // 2
     for body in range(2):
-        start = body * effort.seeds
-        best = start + climbs.f[start : start + effort.seeds].argmax()
-        summit = stress_at(fine, body, climbs.u[best], rules.summit)
+        best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
+        summit = stress_at(fine, body, climbs.u[best], rule)
         out[body, 0], out[body, 1:4] = summit, climbs.u[best]
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
-    if effort.close:
-        climb_from_line(fine, ridge_points(fine.patch, fine.field), rules.climb, rules.ridge, rules.summit, out)
 
 
 @compiled
@@ -225,7 +214,7 @@ def find_peaks(
     fields: np.ndarray | None = None,
     coarse: np.ndarray | None = None,
     quick: bool = False,
-    close: bool = False,
+    near: Peak | None = None,
 ) -> Peak:
     """Find the peak von Mises stress of roller and guide below n ellipses.
 
@@ -245,8 +234,9 @@ def find_peaks(
     quick : bool
         Polish the best seeds at once, without climbs below few elements. On 12 elements across, whose own error is
         larger, the peaks err as much as after climbs.
-    close : bool
-        Climb from the line where sliding begins too; the elements must resolve it.
+    near : Peak, optional
+        Peaks at hand. The search climbs from their places, and from the line where sliding begins, which the elements
+        must resolve; it looks nowhere else.
 
     Returns
     -------
@@ -260,7 +250,8 @@ def find_peaks(
     """
     patches = np.ascontiguousarray(patches)
     out = Peak.empty(len(patches))
-    finer = refinement(patches)
+    finer, units = refinement(patches), lengths(patches)
+    places = np.zeros((len(patches), 2, 3)) if near is None else np.stack([near.x, near.y, near.z], 2) / units[:, None]
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
         chosen = fields_of(fields, group)
@@ -272,8 +263,9 @@ def find_peaks(
             _rough(chosen),
             np.ascontiguousarray(other, dtype=FIELD),
             np.ascontiguousarray(poisson_ratio[group], dtype=float),
-            lengths(patches[group]),
+            units[group],
             np.ascontiguousarray(scan_points(patches[group], slender, adhesion)),
+            places[group],
         )
         rules = Rules.of(settings, int(factor), quick)
         effort = Effort(
@@ -285,11 +277,11 @@ def find_peaks(
             fields is not None,
             adhesion,
             quick,
-            close,
+            near is not None,
         )
         out.put(group, _found(some, rules, effort))
     out.error[:] += _hidden_error(patches, settings, out.stress, fields is None)
-    for place, length in zip((out.x, out.y, out.z), lengths(patches).T, strict=True):
+    for place, length in zip((out.x, out.y, out.z), units.T, strict=True):
         place *= length[:, None]
     return out
 

@@ -11,19 +11,42 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import Room, near_parts
-from trackroller.halfspace.peak_seeds import best_seeds
+from trackroller.halfspace.ellipse import Room, near_parts, unit_rule
+from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
 from trackroller.numerics.compiled import compiled
 
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
 RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
-# Climbs from the line where sliding begins: seeds of each body, most points of the line, and over the size of the line
-# the distance of the seeds, the first step, and the last.
-LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 3, 200, 0.2, 0.08, 0.004
-LINE_SWEEPS, LINE_WORTH = 3, 0.998  # after so many sweeps, a climb below this share of the highest stress is given up
-OUTSIDE = 0.02, 0.05, 0.1  # distances of more points outside the line, over its size: a cusp may lie beside it
-LEAST_LINE = 0.01  # size of a line of few points
+# The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than 18.
+LEAST_WAVES = 8
+MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion beyond those below the surface
+
+
+class Rules(NamedTuple):
+    """Quadrature rules of the steps of a search, each for the plane waves and for the rays.
+
+    `ridge` is that of the polish on the surface, where tractions with adhesion have ridges of stress.
+    """
+
+    scan: tuple[np.ndarray, np.ndarray]
+    climb: tuple[np.ndarray, np.ndarray]
+    polish: tuple[np.ndarray, np.ndarray]
+    ridge: tuple[np.ndarray, np.ndarray]
+    summit: tuple[np.ndarray, np.ndarray]
+
+    @classmethod
+    def of(cls, settings: PeakSettings, factor: int, quick: bool) -> Rules:
+        """Return the rules of patches whose rules are refined by a factor."""
+        scan, climb, polish, summit = settings.scan, settings.climb, settings.polish, settings.summit
+        orders = (
+            (max(scan, LEAST_WAVES * quick), scan),
+            (climb, climb),
+            (max(polish, 12), polish),
+            (max(polish, 12), polish + MORE_RAYS * quick),
+            (summit, summit),
+        )
+        return cls(*((unit_rule(waves * factor), unit_rule(rays * factor)) for waves, rays in orders))
 
 
 class Target(NamedTuple):
@@ -224,59 +247,6 @@ def standing(climbs, share, gap, most):
         if not stand[k]:
             climbs.f[k] = -1.0
     return stand
-
-
-@compiled
-def _climb(target, climbs, rules, smallest):
-    """Let all climbs rise, up to 24 sweeps each, without those that fall behind; `smallest` is the last step."""
-    left = climbs.f > 0.0
-    for k in range(24):
-        if k == LINE_SWEEPS:
-            left &= standing(climbs, LINE_WORTH, 0.0, LINE_SEEDS)
-        for climb in np.flatnonzero(left):
-            left[climb] = sweep(target, climbs, climb, rules, smallest, k > 0)
-
-
-@compiled
-def climb_from_line(target, line, first, rules, summit, out):
-    """Replace the peaks of both bodies in `out` (2, 6) by higher ones near the points `line` (m, 3) on the surface.
-
-    The steps of the climbs follow from the size of the line, so that an adhesion area far smaller than the patch is
-    searched as closely as a large one. `first`, `rules` and `summit` are quadrature rules.
-    """
-    if len(line) > LINE_POINTS:
-        line = line[:: len(line) // LINE_POINTS + 1].copy()
-    if len(line) == 0:
-        return
-    size, centre = LEAST_LINE, np.zeros(3)
-    for d in range(2):
-        size, centre[d] = max(size, line[:, d].max() - line[:, d].min()), line[:, d].mean()
-    out_of = line - centre
-    line = np.concatenate((line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of, line + OUTSIDE[2] * out_of))
-    values = scan(target, line, first)
-    count = LINE_SEEDS
-    steps = LINE_STEP * size * PROPORTIONS * np.ones((2 * count, 3))
-    places, heights, gained, along = (
-        np.zeros((2 * count, 3)),
-        np.full(2 * count, -1.0),
-        np.zeros(2 * count),
-        np.zeros((2 * count, 2)),
-    )
-    climbs = Climbs(places, heights, gained, steps, along)
-    climbs.along[:, 1] = 1.0
-    for body in range(2):
-        k = body * count
-        for best in best_seeds(line, values[body], count, LINE_APART * size):
-            climbs.u[k] = line[best]
-            climbs.f[k] = stress_at(target, body, line[best], rules)
-            k += 1
-    _climb(target, climbs, rules, LINE_SMALLEST * size)
-    for body in range(2):
-        best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
-        top = stress_at(target, body, climbs.u[best], summit)
-        if top > out[body, 0]:
-            out[body, 0], out[body, 1:4] = top, climbs.u[best]
-            out[body, 4] = 4.0 * (abs(top - climbs.f[best]) + climbs.gained[best]) / top
 
 
 @compiled

@@ -98,10 +98,11 @@ def ridge_points(patch, field):
             slides[j, i] = field[0, j, i] ** 2 + field[1, j, i] ** 2 >= STICKS
     line, count = np.empty((ny * nx, 3)), 0
     for j in range(ny):
-        y = grid_point(j, along_y, ny)
         for i in range(nx):
-            x = grid_point(i, along_x, nx)
-            if slides[j, i] or x * x + y * y >= NEAR_RIM**2:
+            if slides[j, i]:
+                continue
+            x, y = grid_point(i, along_x, nx), grid_point(j, along_y, ny)
+            if x * x + y * y >= NEAR_RIM**2:
                 continue
             beside = (j > 0 and slides[j - 1, i]) or (j + 1 < ny and slides[j + 1, i])
             if beside or (i > 0 and slides[j, i - 1]) or (i + 1 < nx and slides[j, i + 1]):

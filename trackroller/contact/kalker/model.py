@@ -70,11 +70,12 @@ class KalkerModel(ContactModel):
     def pole_stress(self, ellipse, slip, friction, rows):
         return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows))
 
-    def windows(self, ellipse, slip, friction, rows):
+    def windows(self, ellipse, slip, friction, rows, doubled=True):
         if self.correction is None:
             return iter(())
         correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)
-        coarse = correction.on_finer(ellipse, slip, friction, rows, coarse)
+        if doubled:
+            coarse = correction.on_finer(ellipse, slip, friction, rows, coarse)
         elastic = correction.elastic.take(rows)
         bound = friction * ellipse.max_pressure / elastic.shear_modulus
         settings = replace(correction.settings, tolerance=correction.traction_tolerance)

@@ -94,35 +94,56 @@ def _area(grid: Grid) -> Spans:
     return (int(columns.min()), int(columns.max()) + 1), (int(rows.min()), int(rows.max()) + 1)
 
 
+def _limits(grid: Grid) -> Spans:
+    """Return the elements of a grid away from its edges where known tractions fade out."""
+    spans = [
+        (int(FADE) * (first > 0), count - int(FADE) * (first + count < of))
+        for first, of, count in zip(grid.first, grid.of, grid.z.shape[:1:-1], strict=True)
+    ]
+    return spans[0], spans[1]
+
+
 def _around(grid: Grid, area: Spans) -> Spans:
-    """Return the window around an area; it keeps away from the edges of `grid` where known tractions fade out."""
+    """Return the window around an area, within the limits of `grid`."""
     spans = []
-    for (start, end), first, of, count in zip(area, grid.first, grid.of, grid.z.shape[:1:-1], strict=True):
+    for (start, end), (low, high) in zip(area, _limits(grid), strict=True):
         margin = MARGIN + int(WIDER * (end - start))
-        low, high = int(FADE) * (first > 0), count - int(FADE) * (first + count < of)
         spans.append((max(start - margin, low), min(end + margin, high)))
     return spans[0], spans[1]
 
 
-def _outgrown(parent: Grid, spans: Spans, grid: Grid, found: Spans) -> Spans:
-    """Return the window `spans` of `parent`, larger if the adhesion area `found` on the finer `grid` is near its edge.
+def _edges(parent: Grid, spans: Spans, grid: Grid, found: Spans) -> tuple[Spans, list[tuple[bool, bool]]]:
+    """Return the adhesion area `found` on the finer `grid` in elements of `parent`, and which edges it is close to.
 
-    Elements wider than the area show a part of it only.
+    The edges are those of the window `spans` of `parent`. Elements wider than the area show a part of it only.
     """
-    area = []
-    for (start, end), finer, coarser, first, known in zip(
-        found, grid.of, parent.of, grid.first, parent.first, strict=True
-    ):
-        parts = finer // coarser
-        area.append(((first + start) // parts - known, -(-(first + end) // parts) - known))
-    wider = _around(parent, (area[0], area[1]))
-    close = [
-        (start - CLOSE < low and new[0] < low) or (end + CLOSE > high and new[1] > high)
-        for (start, end), (low, high), new in zip(area, spans, wider, strict=True)
-    ]
-    if not any(close):
+    area, close = [], []
+    for k, (start, end) in enumerate(found):
+        parts, (low, high) = grid.of[k] // parent.of[k], spans[k]
+        own = (grid.first[k] + start) // parts - parent.first[k], -(-(grid.first[k] + end) // parts) - parent.first[k]
+        area.append(own)
+        inner = low + parent.first[k] > 0, high + parent.first[k] < parent.of[k]
+        close.append((inner[0] and own[0] - CLOSE <= low, inner[1] and own[1] + CLOSE >= high))
+    return (area[0], area[1]), close
+
+
+def _larger(grids: list[Grid], windows: list[Spans], spans: Spans, grid: Grid, found: Spans) -> Spans:
+    """Return a window larger than `spans` of the last of `grids` if the area `found` is close to an edge, or `spans`.
+
+    Where the last grid ends there, it is dropped with its own window, and this window is returned larger.
+    """
+    area, close = _edges(grids[-1], spans, grid, found)
+    if not any(map(any, close)):
         return spans
-    union = [(min(low, new[0]), max(high, new[1])) for (low, high), new in zip(spans, wider, strict=True)]
+    wider = _around(grids[-1], area)
+    union = [(min(old[0], new[0]), max(old[1], new[1])) for old, new in zip(spans, wider, strict=True)]
+    while tuple(union) == spans and windows:
+        grids.pop()
+        spans = windows.pop()
+        union = [
+            (max(low - MARGIN * near[0], least), min(high + MARGIN * near[1], most))
+            for (low, high), near, (least, most) in zip(spans, close, _limits(grids[-1]), strict=True)
+        ]
     return union[0], union[1]
 
 
@@ -199,7 +220,8 @@ def fields(
 ) -> Iterator[tuple[Callable[[], tuple[np.ndarray, np.ndarray]], float]]:
     """Yield the traction of one patch over mu p with one, two, ... windows.
 
-    The iteration ends with a window that has too many elements or does not converge.
+    A window that turns out too small for the next one is made larger, so that a number of windows may come twice. The
+    iteration ends with a window that has too many elements or does not converge.
 
     Parameters
     ----------
@@ -222,27 +244,26 @@ def fields(
     z, count = own.before_law(), own.traction.shape[-1]
     traction, slip = (v[0, 0] + 1j * v[0, 1] for v in (solution.traction, solution.slip / bound))
     grids, windows = [Grid(traction, slip, z, (0, 0), (count, count))], list[Spans]()
-    area = _area(grids[0])
+    spans = _around(grids[0], _area(grids[0]))
     lean = 0.5 * math.log2(patch.semi_axis_lateral[0] / patch.semi_axis_rolling[0])
     while True:
         # the first window makes long elements shorter
         longer = 2 ** round(abs(lean)) if not windows else 1
         parts = (2 * longer, 2) if lean > 0.0 else (2, 2 * longer)
-        spans, wider = None, _around(grids[-1], area)
-        while spans != wider:
-            spans = wider
-            elements = math.prod((end - start) * k for (start, end), k in zip(spans, parts, strict=True))
-            if elements > MOST:
-                return
-            grid, converged = _solved(grids[-1], spans, parts, patch, poisson_ratio, settings)
-            if not converged:
-                return
-            found = _area(grid)
-            wider = _outgrown(grids[-1], spans, grid, found)
+        elements = math.prod((end - start) * k for (start, end), k in zip(spans, parts, strict=True))
+        if elements > MOST:
+            return
+        grid, converged = _solved(grids[-1], spans, parts, patch, poisson_ratio, settings)
+        if not converged:
+            return
+        found, solved = _area(grid), (spans, len(grids))
+        spans = _larger(grids, windows, spans, grid, found)
+        if (spans, len(grids)) != solved:
+            continue
         grids.append(grid)
         windows.append(spans)
-        area = found
         yield (
-            partial(_field, grids.copy(), windows.copy(), area),
+            partial(_field, grids.copy(), windows.copy(), found),
             float((np.hypot(grid.z[0, 0], grid.z[0, 1]) < 1.0).sum()),
         )
+        spans = _around(grid, found)
