@@ -105,9 +105,9 @@ def test_no_window_cuts_its_adhesion_area(ratio, slip, spin, coupling, monkeypat
     monkeypatch.setattr(window, "_solved", solved)
     elastic = Elastic(np.array([G]), np.array([NU]), np.array([coupling]))
     creep = Creepage(np.array([slip]), np.zeros(1), np.array([spin]))
-    coarse = solve_patch(patch, creep, MU, elastic, dataclasses.replace(SETTINGS, elements=56))
-    levels = list(islice(window.fields(patch, coarse, NU, BOUND, SETTINGS), 3))
-    assert len(levels) == 3 and edges[-1] >= window.CLOSE
+    coarse = solve_patch(patch, creep, MU, elastic, dataclasses.replace(SETTINGS, elements=48))
+    levels = list(islice(window.fields(patch, coarse, NU, BOUND, SETTINGS), 4))
+    assert len(levels) == 4 and edges[-1] >= window.CLOSE
 
 
 def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
