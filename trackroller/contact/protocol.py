@@ -135,7 +135,7 @@ class ContactModel:
         """Return the stress near the spin pole over p_max, and what elements miss of it, (m,) each; 0 if unknown."""
         return np.zeros(len(rows)), np.zeros(len(rows))
 
-    def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doubled=True) -> Iterator[Any]:
+    def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doubled: bool) -> Iterator[Any]:
         """Return an iterator over functions of `shares` of one patch with finer elements around its adhesion area.
 
         With each comes the number of elements in this area. Around the area are the elements of the patch, or those of

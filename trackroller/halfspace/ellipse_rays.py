@@ -121,7 +121,7 @@ def _place_on_grade(v, grade, count):
 
 @inner
 def _interpolate_rays(field, grades, at, per, node, count, work, places):
-    """Write the shares of the traction bound at the node of each ray into the scratch array.
+    """Interpolate the traction over its bound at a node of each ray, and write it into the scratch array.
 
     `at` is the place of the point on the grid (x, y), and `per` the number of elements per length; `places` (m,)
     serves the numbers of the elements. `grades` are those of `grades_of`, or None for elements of equal size.

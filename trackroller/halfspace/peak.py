@@ -16,11 +16,12 @@ import numpy as np
 from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement
 from trackroller.halfspace.peak_climb import (
     PROPORTIONS,
-    Climbs,
     Rules,
     Target,
     has_ridges,
     lengths,
+    no_climbs,
+    polish,
     scan,
     standing,
     stress_at,
@@ -151,9 +152,7 @@ def _climbed(fine, rough, points, rules, effort):
     for climb in np.flatnonzero(standing(climbs, 0.97, 0.1, effort.finalists)):
         rule = rules.ridge if climbs.u[climb, 2] == 0.0 else rules.polish
         climbs.f[climb] = stress_at(fine, climb // effort.seeds, climbs.u[climb], rule)
-        for k in range(24 if effort.slender else 12):
-            if not sweep(fine, climbs, climb, rule, effort.smallest, k > 0):
-                break
+        polish(fine, climbs, climb, rule, effort.smallest, 24 if effort.slender else 12)
     return climbs
 
 
@@ -175,14 +174,13 @@ def _seeded(fine, rough, points, rules, effort):
     if effort.adhesion and has_ridges(fine, points, values):
         line = ridge_points(fine.patch, fine.field)
         points, values = np.concatenate((points, line)), np.concatenate((values, scan(fine, line, rules.scan)), axis=1)
-    steps = 0.12 * PROPORTIONS * np.ones((2 * count, 3))
-    u, f = np.zeros((2 * count, 3)), np.full(2 * count, -1.0)
-    climbs = Climbs(u, f, np.zeros(2 * count), steps, np.zeros((2 * count, 2)))
+    climbs = no_climbs(count, 0.12)
+    u, f = climbs.u, climbs.f
     for body in range(2):
         k = body * count
         for best in best_seeds(points, values[body], count, effort.apart):
             u[k], f[k] = points[best], values[body, best]
-            if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_search`
+            if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
                 f[k] = stress_at(rough, body, u[k], rules.climb)
             along_turn(fine.patch, u[k], climbs.along[k])
             k += 1
@@ -260,7 +258,7 @@ def find_peaks(
         some = Patches(
             patches[group],
             chosen,
-            _rough(chosen),
+            _rough(chosen) if near is None else chosen,
             np.ascontiguousarray(other, dtype=FIELD),
             np.ascontiguousarray(poisson_ratio[group], dtype=float),
             units[group],

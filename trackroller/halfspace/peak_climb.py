@@ -24,9 +24,9 @@ MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion be
 
 
 class Rules(NamedTuple):
-    """Quadrature rules of the steps of a search, each for the plane waves and for the rays.
+    """Quadrature rules for the steps of a search: pairs of one for the plane waves and one for the rays.
 
-    `ridge` is that of the polish on the surface, where tractions with adhesion have ridges of stress.
+    `ridge` serves the polish on the surface, where tractions with adhesion cause ridges of stress.
     """
 
     scan: tuple[np.ndarray, np.ndarray]
@@ -220,6 +220,22 @@ def sweep(target, climbs, k, rules, smallest, ridge):
     widest = climbs.step[k].max()
     still = climbs.gained[k] < 1e-6 * climbs.f[k] and moved < 1e-9 and widest < 4.0 * smallest
     return not (widest < smallest or still)
+
+
+@compiled
+def no_climbs(count, step):
+    """Return climbs that are still given up, `count` in each body, with a first step."""
+    steps, along = step * PROPORTIONS * np.ones((2 * count, 3)), np.zeros((2 * count, 2))
+    along[:, 1] = 1.0
+    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along)
+
+
+@compiled
+def polish(target, climbs, k, rules, smallest, sweeps):
+    """Let climb k rise, up to `sweeps` times, until it no longer moves; `smallest` is the last step."""
+    for number in range(sweeps):
+        if not sweep(target, climbs, k, rules, smallest, number > 0):
+            break
 
 
 @compiled

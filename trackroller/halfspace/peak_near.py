@@ -7,16 +7,17 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.peak_climb import PROPORTIONS, Climbs, scan, standing, stress_at, sweep
+from trackroller.halfspace.peak_climb import PROPORTIONS, no_climbs, polish, scan, standing, stress_at, sweep
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds
 from trackroller.numerics.compiled import compiled
 
-# First step of climbs from peaks at hand. Of climbs from the line where sliding begins: seeds of each body on the
-# line, most points of the line, and over the size of the line the distance of the seeds, the first step, and the last.
-NEAR_STEP = 0.04
+NEAR_STEP = 0.04  # first step of climbs from peaks at hand
+# Climbs from the line where sliding begins: their number in each body, and the largest number of points of the line;
+# over the size of the line, the distance of their starts, the first step and the last.
 LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 4, 100, 0.1, 0.08, 0.004
-LINE_FROM = 0.93  # least stress of a seed over that of the peak at hand
-# After so many sweeps, a climb below this share of the highest stress is given up, and one so near to a higher one.
+LINE_FROM = 0.93  # least stress at their starts, over that at the peak at hand
+# After LINE_SWEEPS sweeps, a climb is given up whose stress is below LINE_WORTH of the highest, or which is closer to a
+# higher climb than LINE_GAP times the size of the line.
 LINE_SWEEPS, LINE_WORTH, LINE_GAP = 3, 0.99, 0.03
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its size: a cusp may lie beside it
 LEAST_LINE = 0.01  # size of a line of few points
@@ -33,7 +34,7 @@ def _size(line):
 
 @compiled
 def _seed_line(target, climbs, line, size, first):
-    """Put seeds from and beside the points `line` (m, 3) into the places of both bodies after the first."""
+    """Start climbs of both bodies on and beside the points `line` (m, 3); the first climb of each body stays."""
     if len(line) > LINE_POINTS:
         line = line[:: len(line) // LINE_POINTS + 1].copy()
     centre = np.zeros(3)
@@ -73,15 +74,7 @@ def climb_near(target, near, line, first, rules, smallest):
     """
     count = 1 + LINE_SEEDS
     size = _size(line) if len(line) else LEAST_LINE
-    steps = LINE_STEP * size * PROPORTIONS * np.ones((2 * count, 3))
-    u, f, gained, along = (
-        np.zeros((2 * count, 3)),
-        np.full(2 * count, -1.0),
-        np.zeros(2 * count),
-        np.zeros((2 * count, 2)),
-    )
-    climbs = Climbs(u, f, gained, steps, along)
-    climbs.along[:, 1] = 1.0
+    climbs = no_climbs(count, LINE_STEP * size)
     for body in range(2):
         k = body * count
         climbs.u[k], climbs.step[k] = near[body], NEAR_STEP * PROPORTIONS
@@ -104,7 +97,7 @@ def climb_near(target, near, line, first, rules, smallest):
 
 @compiled
 def _exchange(target, climbs, rules, smallest):
-    """Climb in each body from the highest place of the other body too, if the stress is higher there."""
+    """Move the highest climb of a body to that of the other body if the stress is higher there, and let it rise."""
     count = climbs.f.size // 2
     best = climbs.f[:count].argmax(), count + climbs.f[count:].argmax()
     places = climbs.u[best[0]].copy(), climbs.u[best[1]].copy()
@@ -113,6 +106,4 @@ def _exchange(target, climbs, rules, smallest):
         value = stress_at(target, body, place, rules)
         if value > climbs.f[own]:
             climbs.u[own], climbs.f[own], climbs.step[own] = place, value, 5.0 * smallest * PROPORTIONS
-            for k in range(12):
-                if not sweep(target, climbs, own, rules, smallest, k > 0):
-                    break
+            polish(target, climbs, own, rules, smallest, 12)

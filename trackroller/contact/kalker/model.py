@@ -70,7 +70,7 @@ class KalkerModel(ContactModel):
     def pole_stress(self, ellipse, slip, friction, rows):
         return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows))
 
-    def windows(self, ellipse, slip, friction, rows, doubled=True):
+    def windows(self, ellipse, slip, friction, rows, doubled):
         if self.correction is None:
             return iter(())
         correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)

@@ -26,9 +26,10 @@ RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
 class Spline(NamedTuple):
-    """Cubic spline through the centres of n elements: B-splines of values (n, n), and four of them at m points.
+    """Cubic spline through values at the centres of n elements, evaluated at m points.
 
-    `first` (m,) are the numbers of the first ones, `weights` (m, 4) their values at the points.
+    The matrix `of_values` (n, n) turns the values into coefficients of B-splines. At a point four B-splines are not 0:
+    `first` (m,) is the number of the first one, and `weights` (m, 4) are their values.
     """
 
     of_values: np.ndarray
@@ -38,8 +39,8 @@ class Spline(NamedTuple):
 
 @lru_cache(maxsize=64)
 def _through(n: int) -> tuple[Callable[..., Any], np.ndarray]:
-    """Return a function of points that gives the B-splines there, and the B-splines of values (n, n)."""
-    from scipy.interpolate import BSpline, make_interp_spline  # heavy: doubles the start of a command without kalker
+    """Return a function that evaluates the B-splines at points, and a matrix (n, n) from values to coefficients."""
+    from scipy.interpolate import BSpline, make_interp_spline  # at the top it would double the start-up of commands
 
     spline = make_interp_spline(np.arange(n), np.eye(n), k=3)
     return partial(BSpline.design_matrix, t=spline.t, k=3), np.asfortranarray(spline.c)
@@ -183,7 +184,7 @@ def interpolated(field: np.ndarray, across: float, along: float) -> np.ndarray:
 
 
 def shares_at(z: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Return the traction over mu p from z (n, 2, ny, nx) at any points, (n, 2, ., .).
+    """Interpolate z (n, 2, ny, nx) at any points and return the traction over mu p there, (n, 2, ., .).
 
     `x` and `y` are their places along both axes in elements; the centre of the first element is at 0.
     """
@@ -217,7 +218,10 @@ def _interpolate(fields, y, x, out):
 
 @fast
 def _splines_of(field, along, across, half, out):
-    """Write the B-splines of a field (ny, nx) into `out`; `along` and `across` are those of values, `half` is room."""
+    """Write the coefficients of the spline through a field (ny, nx) into `out`.
+
+    The matrices `along` and `across` turn values into coefficients; `half` is work space.
+    """
     half[:], out[:] = 0.0, 0.0
     for i in range(field.shape[0]):
         for k in range(max(i - NEAR, 0), min(i + NEAR, field.shape[0])):

@@ -113,9 +113,10 @@ def _around(grid: Grid, area: Spans) -> Spans:
 
 
 def _edges(parent: Grid, spans: Spans, grid: Grid, found: Spans) -> tuple[Spans, list[tuple[bool, bool]]]:
-    """Return the adhesion area `found` on the finer `grid` in elements of `parent`, and which edges it is close to.
+    """Return the adhesion area in elements of `parent`, and whether it is close to each edge of the window `spans`.
 
-    The edges are those of the window `spans` of `parent`. Elements wider than the area show a part of it only.
+    `found` is the area on the finer `grid` that covers this window. It may reach beyond the area that `parent` shows,
+    because elements wider than the area show a part of it only.
     """
     area, close = [], []
     for k, (start, end) in enumerate(found):

@@ -24,8 +24,9 @@ ENOUGH, LEVELS, CHANGED, UNRESOLVED, SEARCHED, OUTSIDE = 250, 6, 0.5, 2.0, 0.15,
 FEW, STEADY, MISSED = 40, 0.1, 0.1
 # Where a peak falls by more than this share of the tolerance, another summit may be higher: all places are searched.
 FALLS = 0.5
-DOUBLED = 0.03  # tolerance below which the tractions around a window need elements of half the size
-IN_WINDOWS = {"climb": 12, "summit": 64}  # points of rules; in the adhesion area, fewer miss up to 1.6 % of a stress
+DOUBLED_BELOW = 0.03  # below this tolerance, windows start from a solution on twice the elements
+# Quadrature points of two steps of the search. With fewer, stresses in small adhesion areas err by up to 1.6 %.
+IN_WINDOWS = {"climb": 12, "summit": 64}
 
 
 def mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
@@ -92,7 +93,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, hidden, s
             return finer
 
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
-        windows = results.scene.model.windows(*given, doubled=bool(goal[i] < DOUBLED))
+        windows = results.scene.model.windows(*given, doubled=bool(goal[i] < DOUBLED_BELOW))
         for shares, resolved in islice(windows, LEVELS):
             if resolved < FEW:
                 skipped = shares
