@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from scipy.interpolate import make_interp_spline
 from scipy.optimize import root
 
 import trackroller as tr
@@ -360,17 +359,6 @@ def test_partly_sticking_slender_patches_take_few_products(ratio, creep, spin, f
     assert found.products[0] <= 300
     one = solve_patch(ellipse, slips, friction, STEEL, KalkerSettings(tolerance=1e-10), found.traction)
     np.testing.assert_allclose(found.traction, one.traction, atol=1e-5)
-
-
-@pytest.mark.parametrize(("ny", "nx", "along", "across"), [(20, 28, 3, 3), (5, 90, 6, 2), (80, 7, 1, 1.6)])
-def test_fields_between_elements_are_cubic_splines(ny, nx, along, across):
-    """They are those of SciPy along one axis after the other; elements far away are left out of the sums only."""
-    fields = np.random.default_rng(ny).normal(size=(2, 3, ny, nx))
-    expected = fields
-    for axis, (count, parts) in enumerate(((ny, along), (nx, across)), start=2):
-        points = np.clip((np.arange(parts * count) + 0.5) / parts - 0.5, 0.0, count - 1.0)
-        expected = make_interp_spline(np.arange(count), expected, axis=axis)(points)
-    np.testing.assert_allclose(subgrid.interpolated(fields, across, along), expected, atol=1e-13)
 
 
 def test_linear_shares_of_the_traction_bound_are_kept_between_the_elements():

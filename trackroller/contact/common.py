@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import dataclasses
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any, ClassVar, Literal
 
 import numpy as np
@@ -196,12 +197,19 @@ class SurfaceTractions:
         return np.ascontiguousarray(filled(share, self.pressure[0]) if len(share) else share)
 
 
-def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
-    """Return fields (n, 2, ny, nx) with the values of the nearest loaded element where `pressure` (ny, nx) is 0."""
+@lru_cache(maxsize=16)
+def _nearest(empty: bytes, columns: int) -> np.ndarray:
+    """Return row and column of the nearest loaded element, (2, ny, nx), from a mask of the others."""
     # a heavy package, and only stresses under tractions on a grid need it
     from scipy.ndimage import distance_transform_edt  # noqa: PLC0415
 
-    row, column = distance_transform_edt(pressure <= 0.0, return_distances=False, return_indices=True)
+    mask = np.frombuffer(empty, bool).reshape(-1, columns)
+    return np.asarray(distance_transform_edt(mask, return_distances=False, return_indices=True))
+
+
+def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
+    """Return fields (n, 2, ny, nx) with the values of the nearest loaded element where `pressure` (ny, nx) is 0."""
+    row, column = _nearest((pressure <= 0.0).tobytes(), pressure.shape[1])
     return fields[:, :, row, column]
 
 

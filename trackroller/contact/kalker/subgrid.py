@@ -9,54 +9,19 @@ true size.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from functools import lru_cache, partial
+from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import numpy as np
 
 from trackroller.contact.common import filled
 from trackroller.contact.kalker.cells import cells
-from trackroller.numerics.compiled import compiled, fast
+from trackroller.numerics.compiled import compiled
+from trackroller.numerics.splines import by_splines, interpolated, spline_at
 
 PARTS = 3  # points along each side of an element
 POINTS = 2**15  # between elements that are held at once: these stay in the fast caches
-NEAR = 30  # elements from which the values act on a B-spline: farther ones have weights below 1e-16
 RIM = 0.2  # smallest divisor of slips over the largest traction bound
-
-
-class Spline(NamedTuple):
-    """Cubic spline through values at the centres of n elements, evaluated at m points.
-
-    The matrix `of_values` (n, n) turns the values into coefficients of B-splines. At a point four B-splines are not 0:
-    `first` (m,) is the number of the first one, and `weights` (m, 4) are their values.
-    """
-
-    of_values: np.ndarray
-    first: np.ndarray
-    weights: np.ndarray
-
-
-@lru_cache(maxsize=64)
-def _through(n: int) -> tuple[Callable[..., Any], np.ndarray]:
-    """Return a function that evaluates the B-splines at points, and a matrix (n, n) from values to coefficients."""
-    from scipy.interpolate import BSpline, make_interp_spline  # at the top it would double the start-up of commands
-
-    spline = make_interp_spline(np.arange(n), np.eye(n), k=3)
-    return partial(BSpline.design_matrix, t=spline.t, k=3), np.asfortranarray(spline.c)
-
-
-def _spline_at(n: int, points: np.ndarray) -> Spline:
-    """Return the spline at `points` (m,), counted from the first centre on; it is constant beyond the outer centres."""
-    splines_at, of_values = _through(n)
-    at = splines_at(np.clip(points, 0.0, n - 1.0))
-    return Spline(of_values, at.indices[::4].astype(np.int64), at.data.reshape(-1, 4))
-
-
-@lru_cache(maxsize=32)
-def _spline(n: int, parts: float) -> Spline:
-    """Return the spline with `parts` points a side of each element."""
-    return _spline_at(n, (np.arange(parts * n) + 0.5) / parts - 0.5)
 
 
 def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
@@ -177,59 +142,12 @@ def _between(z: np.ndarray, fields: Fields, parts: float) -> np.ndarray:
     return _by_law(interpolated(z, parts, parts), fields, parts)
 
 
-def interpolated(field: np.ndarray, across: float, along: float) -> np.ndarray:
-    """Interpolate a field (..., ny, nx) by cubic splines, with `across` and `along` points a side of each element."""
-    ny, nx = field.shape[-2:]
-    return _by_splines(field, _spline(ny, along), _spline(nx, across))
-
-
 def shares_at(z: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
     """Interpolate z (n, 2, ny, nx) at any points and return the traction over mu p there, (n, 2, ., .).
 
     `x` and `y` are their places along both axes in elements; the centre of the first element is at 0.
     """
-    return _bounded(_by_splines(z, _spline_at(z.shape[-2], y), _spline_at(z.shape[-1], x)))
-
-
-def _by_splines(field: np.ndarray, y: Spline, x: Spline) -> np.ndarray:
-    out = np.empty((*field.shape[:-2], y.first.size, x.first.size))
-    _interpolate(np.ascontiguousarray(field).reshape(-1, *field.shape[-2:]), y, x, out.reshape(-1, *out.shape[-2:]))
-    return out
-
-
-@fast
-def _interpolate(fields, y, x, out):
-    """Write the splines through fields (m, ny, nx) into `out`; matrix products would take all cores for few numbers."""
-    ny, nx = fields.shape[1:]
-    half, spline, wide = np.empty((ny, nx)), np.empty((ny, nx)), np.empty((ny, out.shape[2]))
-    for k in range(len(fields)):
-        _splines_of(fields[k], y.of_values, x.of_values, half, spline)
-        for i in range(ny):
-            for j in range(out.shape[2]):
-                t, w = x.first[j], x.weights[j]
-                near, far = w[0] * spline[i, t] + w[1] * spline[i, t + 1], w[2] * spline[i, t + 2]
-                wide[i, j] = near + far + w[3] * spline[i, t + 3]
-        for i in range(out.shape[1]):
-            t, w = y.first[i], y.weights[i]
-            for j in range(out.shape[2]):
-                near, far = w[0] * wide[t, j] + w[1] * wide[t + 1, j], w[2] * wide[t + 2, j] + w[3] * wide[t + 3, j]
-                out[k, i, j] = near + far
-
-
-@fast
-def _splines_of(field, along, across, half, out):
-    """Write the coefficients of the spline through a field (ny, nx) into `out`.
-
-    The matrices `along` and `across` turn values into coefficients; `half` is work space.
-    """
-    half[:], out[:] = 0.0, 0.0
-    for i in range(field.shape[0]):
-        for k in range(max(i - NEAR, 0), min(i + NEAR, field.shape[0])):
-            for j in range(field.shape[1]):
-                half[i, j] += along[i, k] * field[k, j]
-        for k in range(field.shape[1]):
-            for j in range(max(k - NEAR, 0), min(k + NEAR, field.shape[1])):
-                out[i, j] += across[j, k] * half[i, k]
+    return _bounded(by_splines(z, spline_at(z.shape[-2], y), spline_at(z.shape[-1], x)))
 
 
 def _bounded(fine: np.ndarray) -> np.ndarray:

@@ -20,6 +20,7 @@ from trackroller.contact.influence import influence
 from trackroller.contact.kalker import subgrid
 from trackroller.contact.kalker.newton import Problem, newton, room_for
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution
+from trackroller.numerics.splines import interpolated
 
 MARGIN, WIDER = 6, 0.25  # elements between the adhesion area and the edge of a window, and more over the area's size
 CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
@@ -166,7 +167,7 @@ def _solved(
     height = _heights(first, start.shape[1:], of)
     start = (start[0] + 1j * start[1]) * height
     finer = influence(hx / kx, hy / ky, poisson_ratio, *height.shape)
-    slip = subgrid.interpolated(np.stack([known.real, known.imag]), kx, ky)
+    slip = interpolated(np.stack([known.real, known.imag]), kx, ky)
     rigid = slip[0] + 1j * slip[1] - finer.product(start * (1.0 - _weights(spans, grid, parts)))
     problem = Problem(finer, rigid, height, 1.0, np.zeros(1), np.ones(1))
     at, residual, *_ = newton(

@@ -1,0 +1,20 @@
+"""Cubic splines through fields are those of SciPy."""
+
+import numpy as np
+import pytest
+from scipy.interpolate import make_interp_spline
+
+from trackroller.numerics.splines import interpolated
+
+
+@pytest.mark.parametrize(
+    ("ny", "nx", "along", "across"), [(20, 28, 3, 3), (5, 90, 6, 2), (80, 7, 1, 1.6), (4, 112, 3, 3)]
+)
+def test_fields_between_their_points_are_those_of_scipy(ny, nx, along, across):
+    """They are those of SciPy along one axis after the other."""
+    fields = np.random.default_rng(ny).normal(size=(2, 3, ny, nx))
+    expected = fields
+    for axis, (count, parts) in enumerate(((ny, along), (nx, across)), start=2):
+        points = np.clip((np.arange(parts * count) + 0.5) / parts - 0.5, 0.0, count - 1.0)
+        expected = make_interp_spline(np.arange(count), expected, axis=axis)(points)
+    np.testing.assert_allclose(interpolated(fields, across, along), expected, atol=1e-13)
