@@ -15,9 +15,12 @@ from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.kalker.patch import solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings
 from trackroller.contact.slip import Creepage
+from trackroller.halfspace import peak_near
 from trackroller.halfspace.ellipse import Room, refinement, unit_rule
-from trackroller.halfspace.peak_climb import Target, lengths, stress_at
+from trackroller.halfspace.peak_climb import Target, lengths, scan, stress_at
+from trackroller.halfspace.peak_seeds import ridge_points
 from trackroller.roller.accuracy import PRESETS, Tolerance
+from trackroller.roller.dataset import validity_bit
 from trackroller.roller.stages import window_search
 from validation.benchmarks.samples import random_designs
 
@@ -163,8 +166,64 @@ def test_the_stress_at_the_pole_is_that_of_windows(monkeypatch):
     outputs = ("contact", "peak_stress")
     fine = tr.solve(steep, outputs, accuracy={"peak": 4e-3})
     rough = tr.solve(steep, outputs, accuracy=PRESETS["standard"])
-    told = np.stack([np.concatenate(parts).reshape(2, -1).T for parts in zip(*known, strict=True)])
+    told = np.stack([np.concatenate(parts).reshape(2, -1).T for parts in zip(*known[::2], strict=True)])  # not doubled
     peak = (fine.peak_stress / fine.max_pressure).values
     missing = 1.0 - (rough.peak_stress / fine.peak_stress).values
     np.testing.assert_allclose(peak, np.stack(2 * [told[0]], axis=2), rtol=0.05)
     assert (0.03 < missing).all() and (missing < (told[1] / told[0])[..., None]).all()
+
+
+def searched(cases, accuracy, monkeypatch):
+    """Return the arguments of each search in windows, with the peaks that it found."""
+    calls, plain = [], window_search.find_peaks
+
+    def recorded(*given, near=None):
+        out = plain(*given, near=near)
+        if near is not None:
+            calls.append((given, out))
+        return out
+
+    monkeypatch.setattr(window_search, "find_peaks", recorded)
+    tr.solve(cases, ("peak_stress",), accuracy=accuracy)
+    return calls
+
+
+@pytest.mark.parametrize("angle", [70.0, 60.0])
+def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
+    """Around the trailing tip of the adhesion area, 1,500 points have no stress above the peak found."""
+    steel = {"roller_material": "1.7225-normalised", "guide_material": "EN AW-7075"}  # unlike bodies have sharp tips
+    case = tr.Case(
+        contact_angle=angle, friction_coefficient=0.5, motor_force=0.0, radial_force=-600.0, axial_force=0.0, **steel
+    )
+    calls = searched([case], 0.02, monkeypatch)
+    assert calls
+    rules = unit_rule(64), unit_rule(64)
+    for given, found in calls:
+        patches, ratios, _, (field,), _ = given
+        target = Target(patches[0], field, ratios[0], lengths(patches)[0], True, Room.empty())
+        line = peak_near._in_window(patches[0], ridge_points(patches[0], field))
+        tip, size = line[line[:, 1].argmin()], np.ptp(line, axis=0)
+        across, along = np.meshgrid(np.linspace(-0.3, 0.3, 25), np.linspace(-0.15, 0.25, 60))
+        points = np.stack([tip[0] + across * size[0], tip[1] + along * size[1], 0.0 * along], axis=2).reshape(-1, 3)
+        assert (found.stress[0] > 0.995 * scan(target, points, rules).max(axis=1)).all()
+
+
+def test_windows_begin_without_a_step():
+    """Along friction, windows take over by and by: neighbours differ by less than a fifth of the tolerance."""
+    tolerance, frictions = 0.06, np.linspace(0.25, 0.3, 40)
+    cases = [
+        tr.Case(contact_angle=70.0, friction_coefficient=mu, motor_force=0.0, radial_force=-600.0) for mu in frictions
+    ]
+    few = dataclasses.replace(Tolerance(np.inf, tolerance).settings(), peak_goal=np.inf, doublings=0)
+    peaks = [tr.solve(cases, ("peak_stress",), accuracy=own).peak_stress.values for own in (tolerance, few)]
+    added = (peaks[0] / peaks[1] - 1.0).reshape(len(cases), -1)
+    assert np.abs(added[0]).max() < 0.01 < 0.03 < added[-1].min()
+    assert np.abs(np.diff(added, axis=0)).max() < 0.2 * tolerance
+
+
+def test_the_error_of_slender_patches_is_told():
+    """Around the windows of a slender patch, elements are wider than the patch is long: the estimate says so."""
+    case = {"contact_angle": 70.0, "friction_coefficient": 0.5, "motor_force": 0.0, "radial_force": -600.0}
+    ds = tr.solve(tr.Case(roller_profile_radius=-6.02, **case), ("contact", "peak_stress"), accuracy={"peak": 3e-3})
+    assert (ds.semi_axis_lateral > 8.0 * ds.semi_axis_rolling).all()
+    assert (ds.error_estimate > 3e-3).all() and ds.validity.values & validity_bit("tolerance_missed")

@@ -86,6 +86,7 @@ class ContactModel:
     most_slender = math.inf  # largest axis ratio of an ellipse that the model solves
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution
+    elements = 1  # across a patch, of a model that has windows
     refines = False  # `surface` is exact for any number of elements of a refined patch
     difference_step = 1e-3  # relative step of derivatives, above the noise of the model
     residual = 1e-7  # relative residual of the equilibrium that the model can reach
@@ -131,15 +132,20 @@ class ContactModel:
         """
         return None
 
-    def pole_stress(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[Any, Any]:
-        """Return the stress near the spin pole over p_max, and what elements miss of it, (m,) each; 0 if unknown."""
+    def pole_stress(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int) -> Any:
+        """Return the stress near the spin pole over p_max, and what elements miss of it, (m,) each; 0 if unknown.
+
+        The elements are those of the patch after `doublings`.
+        """
         return np.zeros(len(rows)), np.zeros(len(rows))
 
-    def windows(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doubled: bool) -> Iterator[Any]:
+    def windows(
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int
+    ) -> Iterator[Any]:
         """Return an iterator over functions of `shares` of one patch with finer elements around its adhesion area.
 
-        With each comes the number of elements in this area. Around the area are the elements of the patch, or those of
-        half the size if `doubled`. A model without such elements gives none.
+        With each comes the number of elements in this area. Around the area are the elements of the patch after
+        `doublings`. A model without such elements gives none.
         """
         return iter(())
 

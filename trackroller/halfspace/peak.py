@@ -118,7 +118,7 @@ def _search_rows(first, last, patches, rules, effort, room, out):
     """Write stress, place and relative error of the peaks of patches `first` to `last` into `out` (n, 2, 6)."""
     for i in range(first, last):
         row, nu, unit = patches.rows[i], patches.poisson_ratio[i], patches.units[i]
-        fine = Target(row, patches.fields[i], nu, unit, effort.slender, room)
+        fine = Target(row, patches.fields[i], nu, unit, effort.slender or effort.close, room)
         if effort.close:
             line = ridge_points(row, patches.fields[i])
             climbs = climb_near(fine, patches.near[i], line, rules.climb, rules.ridge, effort.smallest)
@@ -190,7 +190,7 @@ def _seeded(fine, rough, points, rules, effort):
 def _rough(fields: np.ndarray) -> np.ndarray:
     """Return fields with at most ROUGH elements along each axis for the first climbs: these stay in the fast caches."""
     while min(fields.shape[-2:]) > 4 * ROUGH:  # neighbours of so fine a grid hardly differ
-        fields = fields[..., ::2, ::2]
+        fields = np.ascontiguousarray(fields[..., ::2, ::2])
     while min(fields.shape[-2:]) > ROUGH and not (fields.shape[-1] % 2 or fields.shape[-2] % 2):
         fields = np.ascontiguousarray(_merged(fields), FIELD)
     return fields

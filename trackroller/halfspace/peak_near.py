@@ -7,46 +7,79 @@ from __future__ import annotations
 
 import numpy as np
 
+from trackroller.halfspace.ellipse_kernels import grades_of
 from trackroller.halfspace.peak_climb import PROPORTIONS, no_climbs, polish, scan, standing, stress_at, sweep
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds
 from trackroller.numerics.compiled import compiled
 
 NEAR_STEP = 0.04  # first step of climbs from peaks at hand
 # Climbs from the line where sliding begins: their number in each body, and the largest number of points of the line;
-# over the size of the line, the distance of their starts, the first step and the last.
-LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 4, 100, 0.1, 0.08, 0.004
+# over the extent of the line, the distance of their starts, the first step and the last.
+LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 4, 60, 0.1, 0.08, 0.01
 LINE_FROM = 0.93  # least stress at their starts, over that at the peak at hand
 # After LINE_SWEEPS sweeps, a climb is given up whose stress is below LINE_WORTH of the highest, or which is closer to a
-# higher climb than LINE_GAP times the size of the line.
-LINE_SWEEPS, LINE_WORTH, LINE_GAP = 3, 0.99, 0.03
-OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its size: a cusp may lie beside it
-LEAST_LINE = 0.01  # size of a line of few points
+# higher climb than LINE_GAP times the smaller extent of the line.
+LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
+# After so many sweeps, a climb ends whose stress rises by a smaller share.
+SETTLED = 4, 2e-4
+OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
+LEAST_LINE = 1e-3  # extent of a line of few points
+# The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
+TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
 
 
 @compiled
-def _size(line):
-    """Return the size of a line of points on the surface (m, 3)."""
-    size = LEAST_LINE
-    for d in range(2):
-        size = max(size, line[:, d].max() - line[:, d].min())
+def _in_window(patch, line):
+    """Return those of the points `line` (m, 3) around which the elements of the field are densest."""
+    (mid_x, width_x, _, _), (mid_y, width_y, _, _) = grades_of(patch)
+    if width_x <= 0.0:
+        return line
+    return line[(np.abs(line[:, 0] - mid_x) < width_x) & (np.abs(line[:, 1] - mid_y) < width_y)]
+
+
+@compiled
+def _extent(line):
+    """Return the extents of a line of points on the surface (m, 3) along x and y, and the smaller one, (3,)."""
+    size = np.full(3, LEAST_LINE)
+    if len(line):
+        for d in range(2):
+            size[d] = max(LEAST_LINE, line[:, d].max() - line[:, d].min())
+    size[2] = min(size[0], size[1])
     return size
 
 
 @compiled
+def _around_tip(line, size):
+    """Return points around the trailing end of the points `line` (m, 3)."""
+    tip, out = line[line[:, 1].argmin()], np.zeros((len(TIP_ACROSS) * len(TIP_ALONG), 3))
+    for k in range(len(out)):
+        out[k, 0] = tip[0] + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]
+        out[k, 1] = tip[1] + TIP_ALONG[k // len(TIP_ACROSS)] * size[1]
+    return out
+
+
+@compiled
 def _seed_line(target, climbs, line, size, first):
-    """Start climbs of both bodies on and beside the points `line` (m, 3); the first climb of each body stays."""
+    """Start climbs of both bodies on and beside the points `line` (m, 3); the first climb of each body stays.
+
+    The second climb of each body starts at the trailing tip.
+    """
+    around = _around_tip(line, size)
     if len(line) > LINE_POINTS:
         line = line[:: len(line) // LINE_POINTS + 1].copy()
     centre = np.zeros(3)
     for d in range(2):
         centre[d] = line[:, d].mean()
     out_of = line - centre
-    line = np.concatenate((line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of))
+    line = np.concatenate((around, line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of))
     values = scan(target, line, first)
     for body in range(2):
-        k = body * (1 + LINE_SEEDS)
+        k = body * (2 + LINE_SEEDS)
         enough = LINE_FROM * climbs.f[k]
-        for best in best_seeds(line, values[body], LINE_SEEDS, LINE_APART * size):
+        tip = values[body, : len(around)].argmax()
+        climbs.u[k + 1], climbs.f[k + 1] = line[tip], values[body, tip]
+        k += 1
+        for best in best_seeds(line / size, values[body], LINE_SEEDS, LINE_APART):
             k += 1
             if values[body, best] > enough:
                 climbs.u[k], climbs.f[k] = line[best], values[body, best]
@@ -56,8 +89,8 @@ def _seed_line(target, climbs, line, size, first):
 def climb_near(target, near, line, first, rules, smallest):
     """Climb from the peaks at hand and from the points where sliding begins, and return the climbs.
 
-    The steps of climbs from the line follow from its size, so that an adhesion area far smaller than the patch is
-    searched as closely as a large one.
+    The steps of climbs from the line follow from its extents, so that an adhesion area far smaller than the patch is
+    searched as closely as a large one, and a narrow one across as closely as along.
 
     Parameters
     ----------
@@ -72,26 +105,32 @@ def climb_near(target, near, line, first, rules, smallest):
     smallest : float
         Last step of the climbs from the peaks at hand.
     """
-    count = 1 + LINE_SEEDS
-    size = _size(line) if len(line) else LEAST_LINE
-    climbs = no_climbs(count, LINE_STEP * size)
+    count = 2 + LINE_SEEDS
+    line = _in_window(target.patch, line)
+    size = _extent(line)
+    climbs = no_climbs(count, 1.0)
+    for d, axis in enumerate((1, 0, 2)):  # the first axis is that of y, see `no_climbs`
+        climbs.step[:, d] = LINE_STEP * size[axis]
+    least = np.full(2 * count, LINE_SMALLEST * size[2])
     for body in range(2):
         k = body * count
-        climbs.u[k], climbs.step[k] = near[body], NEAR_STEP * PROPORTIONS
-        along_turn(target.patch, near[body], climbs.along[k])
+        climbs.u[k] = near[body]
+        if not len(line) or not len(_in_window(target.patch, near[body : body + 1])):
+            climbs.step[k], least[k] = NEAR_STEP * PROPORTIONS, smallest
+            along_turn(target.patch, near[body], climbs.along[k])
         climbs.f[k] = stress_at(target, body, near[body], first)
     if len(line):
         _seed_line(target, climbs, line, size, first)
     left = climbs.f > 0.0
     for k in range(24):
         if k == LINE_SWEEPS:
-            left = standing(climbs, LINE_WORTH, LINE_GAP * size, 2)
+            left = standing(climbs, LINE_WORTH, LINE_GAP * size[2], 3)
             for climb in np.flatnonzero(left):
                 climbs.f[climb] = stress_at(target, climb // count, climbs.u[climb], rules)
         for climb in np.flatnonzero(left):
-            least = LINE_SMALLEST * size if climb % count else smallest
-            left[climb] = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least, k > 0)
-    _exchange(target, climbs, rules, LINE_SMALLEST * size)
+            moves = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least[climb], k > 0)
+            left[climb] = moves and (k < SETTLED[0] or climbs.gained[climb] > SETTLED[1] * climbs.f[climb])
+    _exchange(target, climbs, rules, LINE_SMALLEST * size[2])
     return climbs
 
 

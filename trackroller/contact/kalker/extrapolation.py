@@ -28,9 +28,9 @@ FEW = 5.0  # elements in an adhesion area at which half of the change between th
 # Factors of `unseen_adhesion`: share, power of b/a, range of b/a, and two spins of an element: where the elements
 # begin to miss the adhesion area, and where the share that they resolve has halved.
 UNSEEN, UNSEEN_POWER, RATIOS, SEEN, SMALL = 0.62, 0.8, (0.25, 3.5), 0.57, 5.0
-# Terms of `pole_stress`: constant, times ln(spin), of the pressure, and times |ln(b/a)|; of what elements miss, and the
-# spin that they resolve.
-AT_POLE, MISSED = (1.807, 0.174, 0.0184, 0.05), (0.16, 2.7)
+# Terms of `pole_stress`: constant, times ln(spin), of the pressure, times |ln(b/a)|, and of unlike bodies, (K/mu)^2; of
+# what elements miss, and the spin that FITTED_AT elements resolve.
+AT_POLE, MISSED = (1.807, 0.174, 0.0184, 0.05, 0.13), (0.17, 2.6)
 
 
 def weight(used: np.ndarray, ratio: np.ndarray, coupling: np.ndarray) -> np.ndarray:
@@ -130,23 +130,23 @@ def _unseen(ellipse, creep: Creepage, friction, elastic: Elastic, elements: int)
 
 
 def pole_stress(
-    ellipse: Ellipse, creep: Creepage, friction: np.ndarray, elastic: Elastic
+    ellipse: Ellipse, creep: Creepage, friction: np.ndarray, elastic: Elastic, elements: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Return the von Mises stress on the surface near the spin pole over p_max, and how much of it 28 elements miss.
+    """Return the von Mises stress on the surface near the spin pole over p_max, and how much of it elements miss.
 
     Both are (n,) [1], and 0 without a pole inside. The tractions turn around a small adhesion area. Their stress grows
     with the logarithm of the size of the patch over that of the area, as below a vortex of tractions. The terms were
-    fitted to 238 random patches in windows: the stress is within 3 % of theirs in the mean, and within 8 %. Slenderness
-    and what elements miss follow wider designs.
+    fitted to 238 random patches in windows: the stress is within 3 % of theirs in the mean, and within 8 %. The terms
+    of slenderness, of unlike bodies and of what elements miss follow wider designs.
     """
-    constant, growth, pressed, longer = AT_POLE
+    constant, growth, pressed, longer, unlike = AT_POLE
     spin, pole = _pole(ellipse, creep, friction, elastic)
     ratio = _ratio(ellipse)
     with np.errstate(invalid="ignore", divide="ignore"):
         bound = friction * np.sqrt(1.0 - pole * pole)
         stress = bound * (constant + growth * np.log(np.maximum(spin, 1.0))) + pressed / bound
-        stress *= 1.0 + longer * np.abs(np.log(ratio))
-        missed = bound * MISSED[0] * np.log(spin * np.maximum(ratio, 1.0) / MISSED[1])
+        stress *= (1.0 + longer * np.abs(np.log(ratio))) * (1.0 + unlike * (elastic.coupling / friction) ** 2)
+        missed = bound * MISSED[0] * np.log(spin * np.maximum(ratio, 1.0) * FITTED_AT / (MISSED[1] * elements))
     inside = np.isfinite(stress) & (bound > 0.0)
     return np.where(inside, stress, 0.0), np.where(inside, np.maximum(missed, 0.0), 0.0)
 

@@ -30,9 +30,9 @@ class KalkerModel(ContactModel):
 
     def __init__(self, given: Rollers, settings: Accuracy, trusts_table: bool = False) -> None:
         self.given, law, elastic = given, given.law, given.elastic
-        elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
+        self.elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
         discretisation = KalkerSettings(
-            elements=elements,
+            elements=self.elements,
             tolerance=1e-8,
             law=law,
             profile_slip=given.profile_slip,
@@ -67,14 +67,15 @@ class KalkerModel(ContactModel):
             finer = coarse = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
         return (*shares(ellipse, finer, max(parts // doublings, PARTS)), finer.converged)
 
-    def pole_stress(self, ellipse, slip, friction, rows):
-        return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows))
+    def pole_stress(self, ellipse, slip, friction, rows, doublings):
+        elastic, elements = self.given.elastic.take(rows), self.elements * 2**doublings
+        return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, elastic, elements)
 
-    def windows(self, ellipse, slip, friction, rows, doubled):
+    def windows(self, ellipse, slip, friction, rows, doublings):
         if self.correction is None:
             return iter(())
         correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)
-        if doubled:
+        for _ in range(doublings):
             coarse = correction.on_finer(ellipse, slip, friction, rows, coarse)
         elastic = correction.elastic.take(rows)
         bound = friction * ellipse.max_pressure / elastic.shear_modulus

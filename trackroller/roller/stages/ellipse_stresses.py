@@ -39,15 +39,17 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # Adhesion areas of fewer elements, or with less of the patch, get windows; elements that double resolve larger areas.
 # Of a smaller share even 160 elements may miss the needle, whose peak may be 4 % higher.
 SMALL, SMALL_SHARE = 30, 0.05
-# A small area may hide a peak at the spin pole. It does not where the peak is higher than the stress at the pole by
-# more than ABOVE, where elements miss little of this stress, or where the estimated error of the peak is smaller than
-# the tolerance by the factor HIDES. Below STRICT the stress at the pole does not count.
-ABOVE, HIDES, STRICT = 0.02, 12.0, 5e-3
+# A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
+# miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
+# as large as the tolerance. No area has windows where the estimated error of its peak is smaller than the tolerance by
+# the factor HIDES. Up to STRICT, all other small areas have them. From RESOLVED on, elements of half the size are
+# enough where they miss little of the stress at the pole.
+HIDES, STRICT, RESOLVED = 12.0, 5e-3, 0.05
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
-# error of the search, of which the larger one counts.
-DOUBLED = 1.4, 0.4
+# error of the search, of which the larger one counts; and the first factor for small adhesion areas.
+DOUBLED, DOUBLED_SMALL = (1.4, 0.4), 2.5
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
 
@@ -165,24 +167,30 @@ class EllipseStresses(PatchStresses):
             self._search_doubled(search, peak, goal, doubt > goal, goal < 0.0)
             return peak
         peak.error[:] *= SAFETY
-        goal, estimate = peak_goal(results.scene.table, self.options)[results.rows[flat]], peak.error.max(axis=1)
-        small = self._small(flat)
-        (stress, missed), least = results.scene.model.pole_stress(*results.of(flat)), peak.stress.min(axis=1)
-        spike = np.minimum((1.0 + ABOVE) * stress - least, missed) > 0.5 * goal * least
-        hidden = small & (HIDES * estimate > goal) & (spike | (goal <= STRICT))
-        doubt = ~hidden & (estimate > FADES[0] * goal)
-        self._search_doubled(search, peak, goal, doubt, small)
-        hidden |= small & (peak.error.max(axis=1) > goal)
-        search_windows(results, search, peak, goal, hidden, spike)
+        goal, small = peak_goal(results.scene.table, self.options)[results.rows[flat]], self._small(flat)
+        hides, least = small * (HIDES * peak.error.max(axis=1) > goal), peak.stress.min(axis=1)
+        excess = []
+        for doublings in (0, 1):
+            stress, missed = results.scene.model.pole_stress(*results.of(flat), doublings)
+            excess.append(np.minimum(stress - least, missed) / least)
+        share = hides * np.where(goal <= STRICT, 1.0, rise(np.where(goal < RESOLVED, *excess) / goal, FADES))
+        peak.error[:] = np.fmax(peak.error, (hides * np.clip(excess[0], 0.0, goal))[:, None])
+        doubt = (share < 1.0) & (peak.error.max(axis=1) > FADES[0] * goal)
+        self._search_doubled(search, peak, goal, doubt, small > 0.0)
+        share = np.fmax(share, small * rise(peak.error.max(axis=1) / goal, FADES))
+        search_windows(results, search, peak, goal, share)
         return peak
 
     def _small(self, flat: np.ndarray) -> np.ndarray:
-        """Return True where the adhesion area at the spin pole is small, for the patches `flat`, (m,)."""
+        """Return 1 where the adhesion area at the spin pole is small, for the patches `flat`, (m,).
+
+        It falls to 0 where the area is no longer small.
+        """
         patch, slip, friction, rows = self.results.of(flat)
         sticks: Any = self.results.scene.model.stick(patch, slip, friction, rows)
         pole = np.abs(self.results.slip.pole_lateral[flat]) < patch.semi_axis_lateral
         few = max(SMALL / (0.25 * np.pi * self.options.settings.elements**2), SMALL_SHARE)
-        return (sticks < few) & pole & (friction > LITTLE_FRICTION)
+        return (1.0 - rise(sticks / few, FADES)) * pole * (friction > LITTLE_FRICTION)
 
     def _search_doubled(self, search: Search, peak: Peak, goal, doubt, small) -> None:
         """Search patches again under tractions on twice the elements, and again while their error is above `goal` (m,).
@@ -195,7 +203,10 @@ class EllipseStresses(PatchStresses):
         own = bool(results.scene.model.peak_error)
         old, share = peak.take(slice(None)), np.ones((len(peak.stress), 1))
         old = replace(old, stress=old.stress.copy(), error=old.error.copy())
-        rough = np.flatnonzero(doubt & (results.slides_along[flat] == 0))
+        rough, weight = (
+            np.flatnonzero(doubt & (results.slides_along[flat] == 0)),
+            np.where(small, DOUBLED_SMALL, DOUBLED[0]),
+        )
         for doublings in range(1, wanted.doublings + 1):
             done = []
             for piece in _pieces(rough.size, PIECE if own else FINER_PIECE):
@@ -207,7 +218,7 @@ class EllipseStresses(PatchStresses):
                 finer = find_peaks(patches[rows], ratios[rows], settings, fields, coarse, own).take(converged)
                 rows = rows[converged]
                 if wanted.peak_goal:
-                    changed = DOUBLED[0] * np.abs(finer.stress / old.stress[rows] - 1.0)
+                    changed = weight[rows, None] * np.abs(finer.stress / old.stress[rows] - 1.0)
                     finer.error[:] = np.fmax(changed, DOUBLED[1] * finer.error)
                     share[rows, 0] *= rise(old.error[rows].max(axis=1) / goal[rows], FADES)
                 else:  # the change between two grids may be small by chance, and is no estimate then

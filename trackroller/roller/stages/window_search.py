@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import islice
 from typing import Any, NamedTuple
@@ -15,16 +15,20 @@ from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.stages.scene import Results
 
-# Finer elements around adhesion areas: elements in the area with which its peak is resolved, levels at most, estimated
-# error over the last change of a peak with so many elements and with fewer, over the error of the search, and from the
-# tractions outside.
-ENOUGH, LEVELS, CHANGED, UNRESOLVED, SEARCHED, OUTSIDE = 250, 6, 0.5, 2.0, 0.15, 1e-3
-# Fewer elements in the area suffice if the peak then changes by less than this share of the tolerance, or if the stress
-# that they miss, at most MISSED over the root of their number, is below the tolerance. Less than FEW are not searched.
-FEW, STEADY, MISSED = 40, 0.1, 0.1
+# Levels of windows at most. A peak at the trailing tip of the adhesion area errs by at most BOUND over the root of the
+# number of elements in the area in 99 of 100 areas, where there are fewer than MANY elements or more. Less than FEW
+# are not searched, and more than ENOUGH are asked for only where their peak does not settle.
+LEVELS, BOUND, MANY, FEW, ENOUGH = 6, (0.3, 0.16), 100, 50, 160
+# Where this bound is too large for the tolerance, the error follows from the changes of the peak with the last levels:
+# factors on the last change and on the one before. A change of more than BEYOND times the bound is an error itself.
+# SEARCHED weighs the error of the search.
+CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
+# Error from the tractions outside: the least, and for OUTSIDE_AT elements that over the square of the axis ratio.
+OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT = 1e-3, 6e-5, 48
 # Where a peak falls by more than this share of the tolerance, another summit may be higher: all places are searched.
 FALLS = 0.5
-DOUBLED_BELOW = 0.03  # below this tolerance, windows start from a solution on twice the elements
+# Below this tolerance, and above this axis ratio, windows start from a solution on twice the elements.
+DOUBLED_BELOW, DOUBLED_ABOVE = 0.03, 8.0
 # Quadrature points of two steps of the search. With fewer, stresses in small adhesion areas err by up to 1.6 %.
 IN_WINDOWS = {"climb": 12, "summit": 64}
 
@@ -59,8 +63,13 @@ class Search(NamedTuple):
     settings: PeakSettings
 
 
-def search_windows(results: Results, search: Search, peak: Peak, goal, hidden, spike) -> None:
-    """Search the patches `hidden` again with finer elements around their adhesion areas, until the peaks settle.
+def _bound(resolved: float) -> float:
+    """Return the bound of the error of a peak with `resolved` elements in the adhesion area."""
+    return BOUND[resolved >= MANY] / np.sqrt(max(resolved, 1.0))
+
+
+def search_windows(results: Results, search: Search, peak: Peak, goal, share) -> None:
+    """Search patches again with finer elements around their adhesion areas, until the peaks settle.
 
     Parameters
     ----------
@@ -72,43 +81,54 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, hidden, s
         Their peaks so far, overwritten.
     goal : numpy.ndarray, shape (m,)
         Tolerances of the peaks [1].
-    hidden, spike : numpy.ndarray of bool, shape (m,)
-        Patches to search, and those whose stress at the spin pole may exceed the peak: an adhesion area of few elements
-        shows neither its peak nor that it is missing, so that enough elements are asked for.
+    share : numpy.ndarray, shape (m,)
+        Share of the windows in each peak, from 0 (no search) to 1, so that peaks have no step where windows begin.
     """
-    patches, ratios, flat, second, settings = search
-    settings = replace(settings, **IN_WINDOWS)
-    patch, slip, friction, rows = results.of(flat)
-    enough = np.clip((MISSED / goal) ** 2, FEW, ENOUGH)
-    for i in np.flatnonzero(hidden & (results.slides_along[flat] == 0)).tolist():
-        one, skipped = slice(i, i + 1), None
-
-        def found(shares: Callable[[], Any], i: int = i, one: slice = one) -> Peak:
-            field, grades = shares()
-            field = mirrored(field.astype(FIELD), second[one])
-            given = _graded(patches[one], grades, bool(second[i])), ratios[one], settings, field, field
-            finer = find_peaks(*given, near=peak.take(one))
-            if np.any(finer.stress < (1.0 - FALLS * goal[i]) * peak.stress[one]):
-                finer = finer.higher(find_peaks(*given))
-            return finer
-
+    search, model = search._replace(settings=replace(search.settings, **IN_WINDOWS)), results.scene.model
+    patch, slip, friction, rows = results.of(search.flat)
+    ratio = patch.semi_axis_lateral / patch.semi_axis_rolling
+    ratio = np.fmax(ratio, 1.0 / ratio)
+    doublings = (goal < DOUBLED_BELOW).astype(int) + (ratio > DOUBLED_ABOVE)
+    outside = OUTSIDE + OUTSIDE_SLENDER * (ratio * OUTSIDE_AT / (model.elements * 2**doublings)) ** 2
+    for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
-        windows = results.scene.model.windows(*given, doubled=bool(goal[i] < DOUBLED_BELOW))
-        for shares, resolved in islice(windows, LEVELS):
-            if resolved < FEW:
-                skipped = shares
-                continue
-            finer, factor = found(shares), CHANGED if resolved >= ENOUGH else UNRESOLVED
-            changed = np.abs(finer.stress / peak.stress[one] - 1.0)
-            if skipped is not None and changed.max() > STEADY * goal[i]:
-                changed = np.abs(finer.stress / found(skipped).stress - 1.0)
-            skipped = None
-            finer.error[:] = factor * changed + SEARCHED * finer.error + OUTSIDE
-            peak.put(one, finer)
-            steady = changed.max() <= STEADY * goal[i] and not spike[i]
-            if (steady or resolved >= enough[i]) and finer.error.max() <= goal[i]:
-                break
-        if skipped is not None:  # no window resolves the area
-            finer = found(skipped)
-            finer.error[:] = np.fmax(UNRESOLVED * np.abs(finer.stress / peak.stress[one] - 1.0), peak.error[one])
-            peak.put(one, finer)
+        windows = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
+        one, old = slice(i, i + 1), peak.take([i])
+        _search_one(windows, search, i, peak, goal[i], outside[i])
+        for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
+            value[one] = plain + share[i] * (value[one] - plain)
+
+
+def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal: float, outside: float) -> None:
+    """Search the patch number i of a search in one window after the other."""
+    skipped, before, resolved, last, one = None, None, 0.0, np.zeros((1, 2)), slice(i, i + 1)
+    for shares, resolved in windows:
+        if resolved < np.clip((BOUND[0] / goal) ** 2, FEW, ENOUGH):
+            skipped = shares
+            continue
+        finer = _found(shares, search, i, peak, goal)
+        other, error = SEARCHED * finer.error + outside, np.full((1, 2), _bound(resolved))
+        if (error + other).max() > goal and (before or skipped):
+            change = np.abs(finer.stress / (before or _found(skipped, search, i, peak, goal)).stress - 1.0)
+            settled = np.fmax(CHANGED[0] * change, CHANGED[1] * last)
+            error, last = np.where(change > BEYOND * error, change, np.fmin(error, settled)), change
+        finer.error[:], before, skipped = error + other, finer, None
+        peak.put(one, finer)
+        if finer.error.max() <= goal:
+            break
+    if skipped is not None:  # no window resolves the area
+        finer = _found(skipped, search, i, peak, goal)
+        finer.error[:] = np.fmax(_bound(resolved), peak.error[one])
+        peak.put(one, finer)
+
+
+def _found(shares: Any, search: Search, i: int, peak: Peak, goal: float) -> Peak:
+    """Return the peak of the patch number i of a search under the tractions that `shares` returns."""
+    one, (field, grades) = slice(i, i + 1), shares()
+    field = mirrored(field.astype(FIELD), search.second[one])
+    patch = _graded(search.patches[one], grades, bool(search.second[i]))
+    given = patch, search.ratios[one], search.settings, field, field
+    finer = find_peaks(*given, near=peak.take(one))
+    if np.any(finer.stress < (1.0 - FALLS * goal) * peak.stress[one]):
+        finer = finer.higher(find_peaks(*given))
+    return finer
