@@ -60,9 +60,9 @@ def test_forces_keep_their_tolerance():
 @pytest.mark.parametrize(
     ("asked", "least"),
     [
-        ({"forces": 1e-2, "peak": 3e-2}, 0.975),
+        ({"forces": 1e-2, "peak": 3e-2}, 0.985),
         ({"forces": 1e-3}, 0.975),
-        ({"forces": 3e-3, "peak": 3e-3}, 0.95),  # two truths differ by 0.4 % at the smallest adhesion areas
+        ({"forces": 3e-3, "peak": 3e-3}, 0.97),  # two truths differ by 0.4 % at the smallest adhesion areas
     ],
 )
 def test_many_designs_keep_their_tolerances(asked, least):
