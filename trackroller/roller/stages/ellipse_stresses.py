@@ -158,7 +158,7 @@ class EllipseStresses(PatchStresses):
             peak.put(piece, find_peaks(patches[piece], ratios[piece], effort, fields, coarse, bool(own)))
         if not own:
             settings = _finer_search(settings)
-        search = Search(patches, ratios, flat, second, settings)
+        search = Search(patches, ratios, flat, second, settings, self.options.settings.doublings)
         if not self.options.settings.peak_goal:
             # a model with an error of its own gains nothing from elements where the search alone is rough
             doubt = (CHANGE_WEIGHT * peak.change if own else peak.error).max(axis=1)
@@ -202,7 +202,7 @@ class EllipseStresses(PatchStresses):
         elements to the next, so that they have no step; patches marked as `small` (m,) double once, because windows
         serve them better. `peak` is overwritten.
         """
-        (patches, ratios, flat, second, settings), results, wanted = search, self.results, self.options.settings
+        (patches, ratios, flat, second, settings, _), results, wanted = search, self.results, self.options.settings
         own = bool(results.scene.model.peak_error)
         old, share = peak.take(slice(None)), np.ones((len(peak.stress), 1))
         old = replace(old, stress=old.stress.copy(), error=old.error.copy())

@@ -54,13 +54,17 @@ def _graded(patches: np.ndarray, grades: np.ndarray, image: bool) -> np.ndarray:
 
 
 class Search(NamedTuple):
-    """Records, Poisson's ratios and numbers of m patches, whether they are mirrored, and how to search them."""
+    """Records, Poisson's ratios and numbers of m patches, whether they are mirrored, and how to search them.
+
+    `doublings` is how often their elements may double.
+    """
 
     patches: np.ndarray
     ratios: np.ndarray
     flat: np.ndarray
     second: np.ndarray
     settings: PeakSettings
+    doublings: int
 
 
 def _bound(resolved: float) -> float:
@@ -88,7 +92,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     patch, slip, friction, rows = results.of(search.flat)
     ratio = patch.semi_axis_lateral / patch.semi_axis_rolling
     ratio = np.fmax(ratio, 1.0 / ratio)
-    doublings = (goal < DOUBLED_BELOW).astype(int) + (ratio > DOUBLED_ABOVE)
+    doublings = np.minimum((goal < DOUBLED_BELOW).astype(int) + (ratio > DOUBLED_ABOVE), max(search.doublings, 1))
     outside = OUTSIDE + OUTSIDE_SLENDER * (ratio * OUTSIDE_AT / (model.elements * 2**doublings)) ** 2
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
