@@ -42,9 +42,10 @@ SMALL, SMALL_SHARE = 30, 0.05
 # A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
 # as large as the tolerance. No area has windows where the estimated error of its peak is smaller than the tolerance by
-# the factor HIDES. Up to STRICT, all other small areas have them. Elements of half the size are enough where they miss
-# little of the stress at the pole, except below RESOLVED in unlike bodies, whose K/mu exceeds UNLIKE.
-HIDES, STRICT, RESOLVED, UNLIKE = 12.0, 5e-3, 0.05, 0.05
+# the factor HIDES. Up to STRICT, all other small areas have them. Elements of half the size serve instead of windows
+# where DOUBTED times the error that they leave is smaller than the tolerance. Below RESOLVED they do so only for like
+# bodies, whose K/mu is below UNLIKE.
+HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, 0.05, 1.4
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
@@ -175,7 +176,7 @@ class EllipseStresses(PatchStresses):
             excess.append(np.minimum(stress - least, missed) / least)
         *_, friction, rows = results.of(flat)
         unlike = np.abs(results.scene.model.given.elastic.coupling[rows]) > UNLIKE * friction
-        share = rise(np.where(unlike & (goal < RESOLVED), *excess) / goal, FADES)
+        share = rise(np.where(unlike & (goal < RESOLVED), excess[0], DOUBTED * excess[1]) / goal, FADES)
         share = hides * np.where(goal <= STRICT, 1.0, share)
         peak.error[:] = np.fmax(peak.error, (hides * np.clip(excess[0], 0.0, goal))[:, None])
         doubt = (share < 1.0) & (peak.error.max(axis=1) > FADES[0] * goal)
