@@ -169,21 +169,28 @@ class EllipseStresses(PatchStresses):
             return peak
         peak.error[:] *= SAFETY
         goal, small = peak_goal(results.scene.table, self.options)[results.rows[flat]], self._small(flat)
-        hides, least = small * (HIDES * peak.error.max(axis=1) > goal), peak.stress.min(axis=1)
-        excess = []
-        for doublings in (0, 1):
-            stress, missed = results.scene.model.pole_stress(*results.of(flat), doublings)
-            excess.append(np.minimum(stress - least, missed) / least)
-        *_, friction, rows = results.of(flat)
-        unlike = np.abs(results.scene.model.given.elastic.coupling[rows]) > UNLIKE * friction
-        share = rise(np.where(unlike & (goal < RESOLVED), excess[0], DOUBTED * excess[1]) / goal, FADES)
-        share = hides * np.where(goal <= STRICT, 1.0, share)
-        peak.error[:] = np.fmax(peak.error, (hides * np.clip(excess[0], 0.0, goal))[:, None])
+        share, hidden = self._hidden(peak, flat, goal, small)
+        peak.error[:] = np.fmax(peak.error, hidden[:, None])
         doubt = (share < 1.0) & (peak.error.max(axis=1) > FADES[0] * goal)
         self._search_doubled(search, peak, goal, doubt, small > 0.0)
         share = np.fmax(share, small * rise(peak.error.max(axis=1) / goal, FADES))
         search_windows(results, search, peak, goal, share)
         return peak
+
+    def _hidden(self, peak: Peak, flat: np.ndarray, goal: np.ndarray, small: np.ndarray) -> tuple[np.ndarray, ...]:
+        """Return the share of windows in the peaks of the patches `flat`, and the error that they may hide, (m,) each.
+
+        See `HIDES`. `small` (m,) is that of `_small`; the error is at most the tolerance `goal` (m,).
+        """
+        (patch, slip, friction, rows), model = self.results.of(flat), self.results.scene.model
+        least, excess = peak.stress.min(axis=1), []
+        for doublings in (0, 1):
+            stress, missed = model.pole_stress(patch, slip, friction, rows, doublings)
+            excess.append(np.minimum(stress - least, missed) / least)
+        unlike = np.abs(model.given.elastic.coupling[rows]) > UNLIKE * friction
+        share = rise(np.where(unlike & (goal < RESOLVED), excess[0], DOUBTED * excess[1]) / goal, FADES)
+        hides = small * (HIDES * peak.error.max(axis=1) > goal)
+        return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal)
 
     def _small(self, flat: np.ndarray) -> np.ndarray:
         """Return 1 where the adhesion area at the spin pole is small, for the patches `flat`, (m,).
@@ -207,10 +214,8 @@ class EllipseStresses(PatchStresses):
         own = bool(results.scene.model.peak_error)
         old, share = peak.take(slice(None)), np.ones((len(peak.stress), 1))
         old = replace(old, stress=old.stress.copy(), error=old.error.copy())
-        rough, weight = (
-            np.flatnonzero(doubt & (results.slides_along[flat] == 0)),
-            np.where(small, DOUBLED_SMALL, DOUBLED[0]),
-        )
+        rough = np.flatnonzero(doubt & (results.slides_along[flat] == 0))
+        weight = np.where(small, DOUBLED_SMALL, DOUBLED[0])
         for doublings in range(1, wanted.doublings + 1):
             done = []
             for piece in _pieces(rough.size, PIECE if own else FINER_PIECE):
