@@ -20,7 +20,7 @@ LINE_FROM = 0.93  # least stress at their starts, over that at the peak at hand
 # After LINE_SWEEPS sweeps, a climb is given up whose stress is below LINE_WORTH of the highest, or which is closer to a
 # higher climb than LINE_GAP times the smaller extent of the line.
 LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
-# After so many sweeps, a climb ends whose stress rises by a smaller share.
+# After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.
 SETTLED = 4, 2e-4
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
 LEAST_LINE = 1e-3  # extent of a line of few points
@@ -30,7 +30,7 @@ TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 
 
 @compiled
 def _in_window(patch, line):
-    """Return those of the points `line` (m, 3) around which the elements of the field are densest."""
+    """Return the points of `line` (m, 3) that lie where the field is densest."""
     (mid_x, width_x, _, _), (mid_y, width_y, _, _) = grades_of(patch)
     if width_x <= 0.0:
         return line

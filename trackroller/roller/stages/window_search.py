@@ -15,15 +15,16 @@ from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.stages.scene import Results
 
-# Levels of windows at most. A peak at the trailing tip of the adhesion area errs by at most BOUND over the root of the
-# number of elements in the area in 99 of 100 areas, where there are fewer than MANY elements or more. Less than FEW
-# are not searched, and more than ENOUGH are asked for only where their peak does not settle.
+# Largest number of levels. In 99 of 100 areas, the peak at the trailing tip errs by at most BOUND over the root of the
+# number of elements in the area; the second value holds from MANY elements on. Areas of fewer than FEW elements are not
+# searched. More than ENOUGH elements are used only where the peak does not settle.
 LEVELS, BOUND, MANY, FEW, ENOUGH = 6, (0.3, 0.16), 100, 50, 160
 # Where this bound is too large for the tolerance, the error follows from the changes of the peak with the last levels:
 # factors on the last change and on the one before. A change of more than BEYOND times the bound is an error itself.
 # SEARCHED weighs the error of the search.
 CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
-# Error from the tractions outside: the least, and for OUTSIDE_AT elements that over the square of the axis ratio.
+# Relative error from the tractions outside the windows: its least value, and on OUTSIDE_AT elements its value over the
+# square of the axis ratio.
 OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT = 1e-3, 6e-5, 48
 # Where a peak falls by more than this share of the tolerance, another summit may be higher: all places are searched.
 FALLS = 0.5
