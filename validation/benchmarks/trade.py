@@ -164,7 +164,7 @@ def measure(cases: int = 90, seed: int = 3, repeats: int = 2) -> dict[str, Any]:
 
 
 def draw(measured: dict[str, Any], folder: Path) -> None:
-    """Draw the cost over the error that 95 % keep, and the cost in parts of the space of designs, `trade.png`."""
+    """Draw the cost over the error that 99 % keep, and the cost in parts of the space of designs, `trade.png`."""
     with style.look():
         figure = style.new_figure(90, 2 * style.COLUMN_MM)
         panels = figure.subplots(1, 3, width_ratios=(1, 1, 1.3))
@@ -172,16 +172,25 @@ def draw(measured: dict[str, Any], folder: Path) -> None:
             panels, (("friction_force", "friction force"), ("peak_stress", "peak stress")), strict=False
         ):
             for model, colour, marker in zip(MODELS, style.palette(len(MODELS)), style.MARKERS, strict=False):
-                own = [row for row in measured["rows"] if row["model"] == model]
-                own.sort(key=lambda row: -float(row["errors"][quantity][1]))
-                at = [row["complete"] for row in own]
-                axes.plot(
-                    at, [max(row["errors"][quantity][1], 1e-9) for row in own], marker=marker, color=colour, label=model
-                )
+                for presets, line in ((True, ":"), (False, "-")):
+                    own = [
+                        row
+                        for row in measured["rows"]
+                        if row["model"] == model and (row["accuracy"] in ACCURACIES) == presets
+                    ]
+                    axes.plot(
+                        [row["complete"] for row in own],
+                        [max(row["errors"][quantity][2], 1e-9) for row in own],
+                        marker=marker,
+                        color=colour,
+                        linestyle=line,
+                        markerfacecolor="none" if presets else colour,
+                        label=None if presets else model,
+                    )
             axes.set_xscale("log")
             axes.set_yscale("log")
             axes.set_xlabel("cost of a complete case")
-            axes.set_ylabel(f"error of the {words} that 95 % keep")
+            axes.set_ylabel(f"error of the {words} that 99 % keep")
         panels[0].legend(frameon=False, fontsize=6)
         places = []
         for k, (name, parts) in enumerate(measured["by_part"].items()):
@@ -195,7 +204,7 @@ def draw(measured: dict[str, Any], folder: Path) -> None:
         panels[2].invert_yaxis()
         panels[2].set_xlabel("cost of kalker, accuracy: 0.01")
         panels[2].legend(frameon=False, fontsize=6)
-        style.head(figure, "What accuracy costs", "costs over that of a complete case of sliding at standard")
+        style.head(figure, "What accuracy costs", "over a complete case of sliding at standard; filled: tolerances")
         style.save(figure, folder, "trade")
         (folder / "trade.svg").unlink()  # the page shows the PNG
 

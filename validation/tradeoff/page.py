@@ -80,7 +80,7 @@ def _trade(measured: Mapping[str, Any]) -> dict[str, Any]:
             f"`{row['accuracy']}`",
             f"{row['complete']:.2g}",
             f"{row['forces']:.2g}",
-            *(_error(float(row["errors"][name][1])) for name in QUANTITIES),
+            *(_error(float(row["errors"][name][2])) for name in QUANTITIES),
             f"{100 * row['missed']:.2g} %",
         )
         for row in measured["rows"]
