@@ -61,7 +61,8 @@ def test_a_slider_moves_the_picture_first_in_preview_then_in_standard(page):
         for (const value of [35, 40, 50, 60, 70]) { slider.value = value; slider.dispatchEvent(new Event('input'));
           await new Promise((done) => setTimeout(done, 60)); }
         slider.dispatchEvent(new Event('change'));
-        while (stage.dataset.stage !== 'complete') await new Promise((done) => setTimeout(done, 50));
+        while (!seen.length || stage.dataset.stage !== 'complete')
+          await new Promise((done) => setTimeout(done, 50));
         return seen; })()""")
     assert stages == ["preview", "standard", "complete"]
     assert page.run("location.hash") == "#axial_force=70"
