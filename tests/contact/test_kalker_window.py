@@ -209,7 +209,7 @@ def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
 
 
 def test_windows_begin_without_a_step():
-    """Along friction, windows take over by and by: neighbours differ by less than a fifth of the tolerance."""
+    """The peaks of neighbouring frictions differ by less than a fifth of the tolerance where windows begin."""
     tolerance, frictions = 0.06, np.linspace(0.25, 0.3, 40)
     cases = [
         tr.Case(contact_angle=70.0, friction_coefficient=mu, motor_force=0.0, radial_force=-600.0) for mu in frictions
@@ -222,7 +222,7 @@ def test_windows_begin_without_a_step():
 
 
 def test_the_error_of_slender_patches_is_told():
-    """Around the windows of a slender patch, elements are wider than the patch is long: the estimate says so."""
+    """Around the windows of a slender patch, elements are wide, so that the estimated error is large."""
     case = {"contact_angle": 70.0, "friction_coefficient": 0.5, "motor_force": 0.0, "radial_force": -600.0}
     slender = tr.Case(roller_profile_radius=-6.02, **case)
     ds = tr.solve(slender, ("contact", "peak_stress"), accuracy={"peak": 3e-3})

@@ -86,7 +86,7 @@ class ContactModel:
     most_slender = math.inf  # largest axis ratio of an ellipse that the model solves
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution
-    elements = 1  # across a patch, of a model that has windows
+    elements = 1  # along each axis of a patch; only models with windows set it
     refines = False  # `surface` is exact for any number of elements of a refined patch
     difference_step = 1e-3  # relative step of derivatives, above the noise of the model
     residual = 1e-7  # relative residual of the equilibrium that the model can reach

@@ -50,7 +50,7 @@ def _extent(line):
 
 @compiled
 def _around_tip(line, size):
-    """Return points around the trailing end of the points `line` (m, 3)."""
+    """Return search points around the trailing tip of the adhesion area, whose boundary is `line` (m, 3)."""
     tip, out = line[line[:, 1].argmin()], np.zeros((len(TIP_ACROSS) * len(TIP_ALONG), 3))
     for k in range(len(out)):
         out[k, 0] = tip[0] + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]

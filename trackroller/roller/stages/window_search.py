@@ -121,7 +121,7 @@ def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal
         peak.put(one, finer)
         if finer.error.max() <= goal:
             break
-    if skipped is not None:  # no window resolves the area
+    if skipped is not None:  # every window had too few elements in the area
         finer = _found(skipped, search, i, peak, goal)
         finer.error[:] = np.fmax(_bound(resolved), peak.error[one])
         peak.put(one, finer)
