@@ -6,6 +6,7 @@ from scipy.integrate import dblquad
 
 from trackroller.contact import influence
 from trackroller.contact.kalker.cells import unit_cells
+from trackroller.contact.kalker.newton import Problem, newton, room_for
 
 NU = 0.31
 
@@ -45,6 +46,41 @@ def test_fast_product_equals_the_sum_over_elements():
             halo.append((xx * field[0] + xy * field[1]).sum() + 1j * (xy * field[0] + yy * field[1]).sum())
         assert moved[row, column] == pytest.approx(halo[1], abs=1e-12)
         assert slip[row, column] == pytest.approx(influence.difference(*halo, hy), abs=1e-12)
+
+
+def shift_of_carter(elements, share, sharpened):
+    """Return where sliding begins on a line of elements, less its place by Carter (1926), in elements, over ten phases.
+
+    Rolling in plane strain (Johnson 1985, section 8.3): with creepage 2 (1 - nu) (1 - c) mu p0/G the trailing part of
+    the contact, of length 2 - 2c for a half length of 1, slides.
+    """
+    h, shifts = 2.0 / elements, []
+    line = influence.influence(1e4, h, NU, elements + 1, 1, sharpened=sharpened)  # wide elements: plane strain
+    u = influence.displacements(1e4, h, NU, 4, 2, 0, 0)
+    here, ahead, far = (influence._sharpened(u) if sharpened else u[:, 1:-1, 1:-1])[1, 2:, 0]
+    own = (1.5 * here - 2.0 * ahead + 0.5 * far) / h  # `line.own` holds the mean with slips across
+    # a second difference is taken across, too, where the line has no neighbours
+    wide = 1.0 + 2.0 * influence.SHARPER * sharpened
+    for phase in np.arange(10) / 10:
+        y = h * (np.arange(elements + 1) + 0.5 - phase) - 1.0
+        height = np.sqrt(np.maximum(1.0 - y * y, 0.0))[:, None]
+        rigid = np.full(height.shape, -2.0j * wide * (1.0 - NU) * (1.0 - share))
+        problem = Problem(line, rigid, height, 1.0, np.zeros(1), np.ones(1))
+        (traction, slip), residual, *_ = newton(problem, room_for(*height.shape, 80), 0j * rigid, 1e-10, 60)
+        assert residual <= 1e-10
+        z = (traction.imag / np.maximum(height, 0.1) - slip.imag / (own * np.maximum(height, 0.1)))[:, 0]
+        first = np.flatnonzero((z < 1.0) & (np.abs(y) < 0.9))[0]
+        begins = y[first] - h * (1.0 - z[first]) / (z[first - 1] - z[first])
+        shifts.append((begins - (1.0 - 2.0 * share)) / h)
+    return np.mean(shifts)
+
+
+@pytest.mark.parametrize("elements", [40, 160])
+@pytest.mark.parametrize("share", [0.3, 0.4])
+def test_sharpened_elements_see_where_sliding_begins_without_an_error_of_first_order(elements, share):
+    """Carter's closed form: elements of constant traction shift it by the same part of an element on any number."""
+    assert shift_of_carter(elements, share, sharpened=False) == pytest.approx(0.16, abs=0.02)
+    assert abs(shift_of_carter(elements, share, sharpened=True)) < 0.03
 
 
 def test_coupling_slip_of_a_hertzian_circle():

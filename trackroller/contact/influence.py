@@ -20,6 +20,10 @@ from trackroller.numerics.compiled import compiled, fast, formula
 
 ROUND = 1e-5  # least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by less
 THIRD = 1.0 / 3.0
+# Elements of constant traction see sliding begin 0.16 elements too close to the leading edge, whatever their number.
+# The tractions at the tip of an adhesion area then err with first order. With this share of the second differences of
+# their influence taken away, the place where sliding begins by Carter's closed form errs by less than 0.03 elements.
+SHARPER = 1.0 / 12.0
 DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
 
 
@@ -152,9 +156,18 @@ def difference(behind, here, ahead, far, hy):
 
 
 @compiled
-def _functions(hx, hy, poisson, ny, nx, rolling):
+def _sharpened(u):
+    """Return influence functions (3, m, n) less `SHARPER` times their second differences, (3, m - 2, n - 2)."""
+    along = u[:, 1:-1] - SHARPER * (u[:, 2:] - 2.0 * u[:, 1:-1] + u[:, :-2])
+    return along[:, :, 1:-1] - SHARPER * (along[:, :, 2:] - 2.0 * along[:, :, 1:-1] + along[:, :, :-2])
+
+
+@compiled
+def _functions(hx, hy, poisson, ny, nx, rolling, sharpened):
     """Return the fields of `Influence`, of the slips in `rolling` or of the displacements."""
-    u = displacements(hx, hy, poisson, ny, nx, 1, 2)
+    more = int(sharpened)
+    u = displacements(hx, hy, poisson, ny + more, nx + more, 1, 2)
+    u = _sharpened(u) if sharpened else u
     kernel = u[:, 1 : 2 * ny].copy()
     if rolling:
         for c in range(3):
@@ -195,8 +208,8 @@ class Influence(NamedTuple):
 
 
 @lru_cache(maxsize=64)
-def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool) -> Influence:
-    return Influence(*_functions(hx, hy, poisson, ny, nx, rolling))
+def _influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool, sharpened: bool) -> Influence:
+    return Influence(*_functions(hx, hy, poisson, ny, nx, rolling, sharpened))
 
 
 def rounded(*values: float) -> tuple[float, ...]:
@@ -204,10 +217,15 @@ def rounded(*values: float) -> tuple[float, ...]:
     return tuple(float(f"{value:.{DIGITS}g}") for value in values)
 
 
-def influence(hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool = True) -> Influence:
-    """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept."""
+def influence(
+    hx: float, hy: float, poisson: float, ny: int, nx: int, rolling: bool = True, sharpened: bool = False
+) -> Influence:
+    """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept.
+
+    `sharpened` ones see where sliding begins without an error of first order, see `SHARPER`.
+    """
     hx, hy, poisson = rounded(hx, hy, poisson)
-    return _influence(hx, hy, poisson, ny, nx, rolling)
+    return _influence(hx, hy, poisson, ny, nx, rolling, sharpened)
 
 
 def coupling_slip(pressure: np.ndarray, hx: float, hy: float) -> np.ndarray:

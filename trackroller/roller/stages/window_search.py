@@ -18,7 +18,7 @@ from trackroller.roller.stages.scene import Results
 # Largest number of levels. In 99 of 100 areas, the peak at the trailing tip errs by at most BOUND over the root of the
 # number of elements in the area; the second value holds from MANY elements on. Areas of fewer than FEW elements are not
 # searched. More than ENOUGH elements are used only where the peak does not settle.
-LEVELS, BOUND, MANY, FEW, ENOUGH = 6, (0.3, 0.16), 100, 50, 160
+LEVELS, BOUND, MANY, FEW, ENOUGH = 6, (0.2, 0.135), 100, 50, 160
 # Where this bound is too large for the tolerance, the error follows from the changes of the peak with the last levels:
 # factors on the last change and on the one before. A change of more than BEYOND times the bound is an error itself.
 # SEARCHED weighs the error of the search.
