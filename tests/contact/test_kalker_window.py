@@ -17,6 +17,7 @@ from trackroller.contact.kalker.problem import KalkerSettings
 from trackroller.contact.slip import Creepage
 from trackroller.halfspace import peak_near
 from trackroller.halfspace.ellipse import Room, refinement, unit_rule
+from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.peak_climb import Target, lengths, scan, stress_at
 from trackroller.halfspace.peak_seeds import ridge_points
 from trackroller.roller.accuracy import PRESETS, Tolerance
@@ -115,16 +116,24 @@ def test_no_window_cuts_its_adhesion_area(ratio, slip, spin, coupling, monkeypat
     assert len(levels) == 4 and edges[-1] >= window.CLOSE
 
 
-def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
-    """The stress is that of 160 quadrature points; a search of the whole patch finds little more, see `FALLS`."""
+def searched(cases, accuracy, monkeypatch):
+    """Return the arguments of each search in windows, with the peaks that it found."""
     calls, plain = [], window_search.find_peaks
 
     def recorded(*given, near=None):
-        calls.append((given, plain(*given, near=near)))
-        return calls[-1][1]
+        out = plain(*given, near=near)
+        if near is not None:
+            calls.append((given, out))
+        return out
 
     monkeypatch.setattr(window_search, "find_peaks", recorded)
-    tr.solve(random_designs(100, 1), ("peak_stress",), accuracy=0.06)
+    tr.solve(cases, ("peak_stress",), accuracy=accuracy)
+    return calls
+
+
+def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
+    """The stress is that of 160 quadrature points; a search of the whole patch finds little more, see `FALLS`."""
+    calls = searched(random_designs(100, 1), 0.06, monkeypatch)
     assert len(calls) > 10
     rules = unit_rule(160), unit_rule(160)
     for given, found in calls[:12]:
@@ -134,7 +143,7 @@ def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
         places = np.stack([found.x, found.y, found.z], 2)[0] / target.unit
         exact = [stress_at(target, body, place, rules) for body, place in enumerate(places)]
         np.testing.assert_allclose(found.stress[0], exact, rtol=2e-3)
-        assert (found.stress > (1.0 - window_search.FALLS * 0.06) * plain(*given).stress).all()
+        assert (found.stress > (1.0 - window_search.FALLS * 0.06) * find_peaks(*given).stress).all()
 
 
 @pytest.mark.parametrize("number", [18, 49])
@@ -173,21 +182,6 @@ def test_the_stress_at_the_pole_is_that_of_windows(monkeypatch):
     missing = 1.0 - (rough.peak_stress / fine.peak_stress).values
     np.testing.assert_allclose(peak, np.stack(2 * [told[0]], axis=2), rtol=0.05)
     assert (0.03 < missing).all() and (missing < (told[1] / told[0])[..., None]).all()
-
-
-def searched(cases, accuracy, monkeypatch):
-    """Return the arguments of each search in windows, with the peaks that it found."""
-    calls, plain = [], window_search.find_peaks
-
-    def recorded(*given, near=None):
-        out = plain(*given, near=near)
-        if near is not None:
-            calls.append((given, out))
-        return out
-
-    monkeypatch.setattr(window_search, "find_peaks", recorded)
-    tr.solve(cases, ("peak_stress",), accuracy=accuracy)
-    return calls
 
 
 @pytest.mark.parametrize("angle", [70.0, 60.0])

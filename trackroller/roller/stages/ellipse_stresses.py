@@ -49,8 +49,8 @@ HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, 0.05, 1.4
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
-# error of the search, of which the larger one counts. DOUBLED_SMALL replaces the
-# first factor where the adhesion area is small.
+# error of the search, of which the larger one counts. DOUBLED_SMALL replaces the first factor where the adhesion area
+# is small.
 DOUBLED, DOUBLED_SMALL = (1.4, 0.4), 2.5
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
