@@ -43,9 +43,10 @@ SMALL, SMALL_SHARE = 30, 0.05
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
 # as large as the tolerance. No area has windows where the estimated error of its peak is smaller than the tolerance by
 # the factor HIDES. Up to STRICT, all other small areas have them. Elements of half the size serve instead of windows
-# where DOUBTED times the error that they leave is smaller than the tolerance. Below RESOLVED they do so only for like
-# bodies, whose K/mu is below UNLIKE.
-HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, 0.05, 1.4
+# where DOUBTED times the error that they leave is smaller than the tolerance, but only for like bodies, whose K/mu is
+# below the first number of UNLIKE: tips of unlike bodies are sharper. From RESOLVED on they also serve for bodies with
+# K/mu above the second number, where the formula often gives too high a stress.
+HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6), 1.4
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
@@ -188,8 +189,9 @@ class EllipseStresses(PatchStresses):
         for doublings in (0, 1):
             stress, missed = model.pole_stress(patch, slip, friction, rows, doublings)
             excess.append(np.minimum(stress - least, missed) / least)
-        unlike = np.abs(model.given.elastic.coupling[rows]) > UNLIKE * friction
-        share = rise(np.where(unlike & (goal < RESOLVED), excess[0], DOUBTED * excess[1]) / goal, FADES)
+        unlike, strong = (np.abs(model.given.elastic.coupling[rows]) > bound * friction for bound in UNLIKE)
+        doubles = ~unlike | (strong & (goal >= RESOLVED))
+        share = rise(np.where(doubles, DOUBTED * excess[1], excess[0]) / goal, FADES)
         hides = small * (HIDES * peak.error.max(axis=1) > goal)
         return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal)
 
