@@ -49,17 +49,20 @@ def test_fast_product_equals_the_sum_over_elements():
 
 
 def shift_of_carter(elements, share, sharpened):
-    """Return where sliding begins on a line of elements, less its place by Carter (1926), in elements, over ten phases.
+    """Return how far the computed end of the adhesion area lies ahead of Carter's (1926), in elements.
 
-    Rolling in plane strain (Johnson 1985, section 8.3): with creepage 2 (1 - nu) (1 - c) mu p0/G the trailing part of
-    the contact, of length 2 - 2c for a half length of 1, slides.
+    It is the mean over ten positions of the elements against the contact. Rolling in plane strain (Johnson 1985,
+    section 8.3): the half length of the contact is 1, the creepage 2 (1 - nu) (1 - c) mu p0/G. A part of length 2 c
+    from the leading edge on adheres; c is `share`. The rest slides.
     """
     h, shifts = 2.0 / elements, []
     line = influence.influence(1e4, h, NU, elements + 1, 1, sharpened=sharpened)  # wide elements: plane strain
     u = influence.displacements(1e4, h, NU, 4, 2, 0, 0)
     here, ahead, far = (influence._sharpened(u) if sharpened else u[:, 1:-1, 1:-1])[1, 2:, 0]
-    own = (1.5 * here - 2.0 * ahead + 0.5 * far) / h  # `line.own` holds the mean with slips across
-    # a second difference is taken across, too, where the line has no neighbours
+    # slip of an element along the line by its own traction; `line.own` is the mean of this slip and the lateral one
+    own = (1.5 * here - 2.0 * ahead + 0.5 * far) / h
+    # Sharpening also subtracts the second difference across the line. The line has no neighbours there, so that its
+    # influence grows by this factor.
     wide = 1.0 + 2.0 * influence.SHARPER * sharpened
     for phase in np.arange(10) / 10:
         y = h * (np.arange(elements + 1) + 0.5 - phase) - 1.0
@@ -78,7 +81,7 @@ def shift_of_carter(elements, share, sharpened):
 @pytest.mark.parametrize("elements", [40, 160])
 @pytest.mark.parametrize("share", [0.3, 0.4])
 def test_sharpened_elements_see_where_sliding_begins_without_an_error_of_first_order(elements, share):
-    """Carter's closed form: elements of constant traction shift it by the same part of an element on any number."""
+    """On 40 and 160 elements, constant tractions shift the end of the adhesion area by the same part of an element."""
     assert shift_of_carter(elements, share, sharpened=False) == pytest.approx(0.16, abs=0.02)
     assert abs(shift_of_carter(elements, share, sharpened=True)) < 0.03
 

@@ -17,6 +17,7 @@ from trackroller.contact.kalker.problem import KalkerSettings
 from trackroller.contact.slip import Creepage
 from trackroller.halfspace import peak_near
 from trackroller.halfspace.ellipse import Room, refinement, unit_rule
+from trackroller.halfspace.ellipse_kernels import GRADES
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.peak_climb import Target, lengths, scan, stress_at
 from trackroller.halfspace.peak_seeds import ridge_points
@@ -89,7 +90,7 @@ def test_points_are_dense_in_the_window_and_fill_the_patch():
         assert abs(place[0] + 1.0) < steps[0] and abs(place[-1] - 1.0) < steps[-1]
         assert steps.min() <= 2.0 / 28 / 2**4 / window.PARTS < steps.max() < 0.03
         assert steps.argmin() == pytest.approx(np.abs(place - grade[0]).argmin(), abs=1)
-    assert field[0, 0].size < 0.12 * (28 * 2**4 * window.PARTS) ** 2
+    assert field[0, 0].size < 0.02 * (28 * 2**4 * window.PARTS) ** 2
 
 
 SHAPES = [(0.1, 0.01, 0.08, 0.15), (0.6, 0.01, 0.08, 0.15), (3.0, 0.01, 0.08, 0.15)]
@@ -132,7 +133,7 @@ def searched(cases, accuracy, monkeypatch):
 
 
 def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
-    """The stress is that of 160 quadrature points; a search of the whole patch finds little more, see `FALLS`."""
+    """Peaks agree with 160 quadrature points. A search of the whole patch finds none that is higher beyond `FALLS`."""
     calls = searched(random_designs(100, 1), 0.06, monkeypatch)
     assert len(calls) > 10
     rules = unit_rule(160), unit_rule(160)
@@ -198,14 +199,14 @@ def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
         patches, ratios, _, (field,), _ = given
         target = Target(patches[0], field, ratios[0], lengths(patches)[0], True, Room.empty())
         line = peak_near._in_window(patches[0], ridge_points(patches[0], field))
-        tip, size = line[line[:, 1].argmin()], np.ptp(line, axis=0)
+        tip, size = [patches[0][name] for name in GRADES[::4]], np.ptp(line, axis=0)  # the field is densest at the tip
         across, along = np.meshgrid(np.linspace(-0.3, 0.3, 25), np.linspace(-0.15, 0.25, 60))
         points = np.stack([tip[0] + across * size[0], tip[1] + along * size[1], 0.0 * along], axis=2).reshape(-1, 3)
         assert (found.stress[0] > 0.995 * scan(target, points, rules).max(axis=1)).all()
 
 
 def test_windows_begin_without_a_step():
-    """The peaks of neighbouring frictions differ by less than a fifth of the tolerance where windows begin."""
+    """What windows add to a peak changes by less than a fifth of the tolerance from one friction to the next."""
     tolerance, frictions = 0.06, np.linspace(0.25, 0.3, 40)
     cases = [
         tr.Case(contact_angle=70.0, friction_coefficient=mu, motor_force=0.0, radial_force=-600.0) for mu in frictions

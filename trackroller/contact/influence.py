@@ -20,9 +20,10 @@ from trackroller.numerics.compiled import compiled, fast, formula
 
 ROUND = 1e-5  # least |a^2 - b^2|/(a b) at which the closed form for ellipses keeps its digits; the form errs by less
 THIRD = 1.0 / 3.0
-# Elements of constant traction see sliding begin 0.16 elements too close to the leading edge, whatever their number.
-# The tractions at the tip of an adhesion area then err with first order. With this share of the second differences of
-# their influence taken away, the place where sliding begins by Carter's closed form errs by less than 0.03 elements.
+# Elements of constant traction make the adhesion area end 0.16 elements too close to the leading edge, however many
+# elements there are. The tractions at its trailing end therefore err with first order. Subtracting SHARPER times the
+# second differences of the influence functions mends this: against the closed form of Carter's rolling contact,
+# the end of the adhesion area then errs by less than 0.03 elements in the mean.
 SHARPER = 1.0 / 12.0
 DIGITS = 13  # digits of element sizes and Poisson's ratio; patches that differ by rounding share influence functions
 
@@ -222,7 +223,8 @@ def influence(
 ) -> Influence:
     """Return the influence functions of ny x nx elements of size hy x hx for G = 1; the last ones used are kept.
 
-    `sharpened` ones see where sliding begins without an error of first order, see `SHARPER`.
+    `sharpened` influence functions place the trailing end of the adhesion area without an error of first order, see
+    `SHARPER`.
     """
     hx, hy, poisson = rounded(hx, hy, poisson)
     return _influence(hx, hy, poisson, ny, nx, rolling, sharpened)

@@ -23,7 +23,7 @@ LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
 # After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.
 SETTLED = 4, 2e-4
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
-DENSE = 6.0  # distance up to which a field is dense, over the width of its grading
+DENSE = 6.0  # distance from its densest point up to which a field counts as dense, over the width of its grading
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
@@ -33,8 +33,6 @@ TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 
 def _in_window(patch, line):
     """Return the points of `line` (m, 3) that lie where the field is dense."""
     (mid_x, width_x, _, _), (mid_y, width_y, _, _) = grades_of(patch)
-    if width_x <= 0.0:
-        return line
     return line[(np.abs(line[:, 0] - mid_x) < DENSE * width_x) & (np.abs(line[:, 1] - mid_y) < DENSE * width_y)]
 
 
@@ -50,18 +48,13 @@ def _extent(line):
 
 
 @compiled
-def _around_tip(patch, line, size):
-    """Return search points around the place where the field is densest, the trailing tip of the adhesion area.
-
-    Where the field is equally dense, the tip is the last point of `line` (m, 3), the boundary of the area.
-    """
-    (mid_x, width_x, _, _), (mid_y, _, _, _) = grades_of(patch)
-    tip, out = line[line[:, 1].argmin()].copy(), np.zeros((len(TIP_ACROSS) * len(TIP_ALONG), 3))
-    if width_x > 0.0:
-        tip[0], tip[1] = mid_x, mid_y
+def _around_tip(patch, size):
+    """Return surface points around the trailing tip of the adhesion area, (24, 3); the field is densest at the tip."""
+    (mid_x, _, _, _), (mid_y, _, _, _) = grades_of(patch)
+    out = np.zeros((len(TIP_ACROSS) * len(TIP_ALONG), 3))
     for k in range(len(out)):
-        out[k, 0] = tip[0] + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]
-        out[k, 1] = tip[1] + TIP_ALONG[k // len(TIP_ACROSS)] * size[1]
+        out[k, 0] = mid_x + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]
+        out[k, 1] = mid_y + TIP_ALONG[k // len(TIP_ACROSS)] * size[1]
     return out
 
 
@@ -71,7 +64,7 @@ def _seed_line(target, climbs, line, size, first):
 
     The second climb of each body starts at the trailing tip.
     """
-    around = _around_tip(target.patch, line, size)
+    around = _around_tip(target.patch, size)
     if len(line) > LINE_POINTS:
         line = line[:: len(line) // LINE_POINTS + 1].copy()
     centre = np.zeros(3)

@@ -26,9 +26,10 @@ MARGIN, WIDER = 6, 0.25  # elements between the adhesion area and the edge of a 
 CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 30_000  # elements of a window
-# Points of the traction along each side of the finest elements at the trailing tip, distance of points far from the tip
-# over the distance from it, and divisor of the number of points. With 2 points a side the traction turns too slowly
-# about the tip, which hides 1 % of the stress on 200 elements in the area.
+# The traction is sampled most densely at the trailing tip of the adhesion area, with PARTS points along each side of an
+# element. Further away the distance between points is SPACING times their distance from the tip. The number of points
+# along each axis is a multiple of MULTIPLE. The traction changes direction at the tip within a few elements: with 2
+# points along each side and 200 elements in the area, the peak stress would come out 1 % too low.
 PARTS, SPACING, MULTIPLE = 8, 0.02, 16
 
 Spans = tuple[tuple[int, int], tuple[int, int]]  # first and last element, plus 1, along x and y
@@ -46,7 +47,7 @@ class Grid(NamedTuple):
     first, of : tuple of int
         Number of the first element along x and y, and numbers over the patch.
     sharpened : bool
-        Which influence functions it was solved with, see `influence`.
+        Whether its influence functions were sharpened, see `influence`.
     """
 
     traction: np.ndarray
@@ -182,10 +183,10 @@ def _solved(
 
 
 def _grade(place: float, of: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points along one axis that are dense around a place, and their grading.
+    """Return points along one axis that are densest at `place`, and their grading.
 
-    The points (m,) and the place are in half sides of the patch, which the finest elements would divide into `of`
-    elements. For the grading see `halfspace.ellipse_kernels.GRADES`.
+    The points (m,) and `place` are in half sides of the patch; `of` finest elements would fill the whole patch. For the
+    grading see `halfspace.ellipse_kernels.GRADES`.
     """
     width = min(2.0 / (of * PARTS * SPACING), 1.0)
     start, end = (math.asinh((side - place) / width) for side in (-1.0, 1.0))
@@ -195,7 +196,7 @@ def _grade(place: float, of: int) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _tip(grid: Grid, area: Spans) -> tuple[float, float]:
-    """Return the place x, y of the trailing tip of an adhesion area of the grid [half sides of the patch]."""
+    """Return x and y of the trailing tip of the adhesion area in half sides of the patch; `area` are its elements."""
     (start, end), (row, _) = area
     tip = start + int(np.argmin(np.hypot(*grid.z[0, :, row, start:end]))), row
     x, y = ((2.0 * (first + k) + 1.0) / of - 1.0 for first, k, of in zip(grid.first, tip, grid.of, strict=True))
@@ -203,10 +204,10 @@ def _tip(grid: Grid, area: Spans) -> tuple[float, float]:
 
 
 def _field(grids: list[Grid], windows: list[Spans], area: Spans) -> tuple[np.ndarray, np.ndarray]:
-    """Return the traction over mu p of the whole patch at points dense around the tip of the area, (1, 2, ., .).
+    """Return the traction over mu p of the whole patch, (1, 2, ny, nx), and the grading of its points, (8,).
 
-    `area` are the elements of the adhesion area in the finest window. The second result is the grading of the points
-    along x and y, (8,).
+    The points are densest at the trailing tip of the adhesion area. `area` are the elements of this area in the finest
+    window. The grading is that along x and then along y.
     """
     finest = grids[-1]
     axes = [_grade(*given) for given in zip(_tip(finest, area), finest.of, strict=True)]
@@ -248,9 +249,9 @@ def fields(
     Yields
     ------
     tuple
-        Function that returns the traction over mu p with the windows, (1, 2, ., .), at points that are dense around the
-        trailing tip of the adhesion area, and the grading of these points along x and y, (8,), see
-        `halfspace.ellipse_kernels.GRADES`; and the number of elements in the adhesion area.
+        Function that returns the traction over mu p, (1, 2, ny, nx), at points that are densest at the trailing tip of
+        the adhesion area, and the grading of these points along x and y, (8,), see `halfspace.ellipse_kernels.GRADES`;
+        and the number of elements in the adhesion area.
     """
     own = subgrid.fields_of(patch, solution)
     z, count = own.before_law(), own.traction.shape[-1]

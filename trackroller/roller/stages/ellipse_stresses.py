@@ -43,15 +43,15 @@ SMALL, SMALL_SHARE = 30, 0.05
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
 # as large as the tolerance. No area has windows where the estimated error of its peak is smaller than the tolerance by
 # the factor HIDES. Up to STRICT, all other small areas have them. Elements of half the size serve instead of windows
-# where DOUBTED times the error that they leave is smaller than the tolerance, but only for like bodies, whose K/mu is
-# below the first number of UNLIKE: tips of unlike bodies are sharper. From RESOLVED on they also serve for bodies with
-# K/mu above the second number, where the formula often gives too high a stress.
+# where DOUBTED times the error that they leave is smaller than the tolerance. They do so for bodies of similar moduli,
+# whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
+# also do so where K/mu is above UNLIKE[1], because there the formula often gives too high a stress.
 HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6), 1.4
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
-# The same on twice the elements: factors on the change of the peak, by the order of convergence of 1.3, and on the
-# error of the search, of which the larger one counts. DOUBLED_SMALL replaces the first factor where the adhesion area
-# is small.
+# The estimated error of a peak on twice the elements is the larger one of two: DOUBLED[0] times the change of the peak,
+# which follows from the order of convergence of 1.3, and DOUBLED[1] times the error of the search. Where the adhesion
+# area is small, DOUBLED_SMALL serves instead of DOUBLED[0].
 DOUBLED, DOUBLED_SMALL = (1.4, 0.4), 2.5
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
