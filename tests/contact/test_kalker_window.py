@@ -23,8 +23,9 @@ from trackroller.halfspace.peak_climb import Target, lengths, scan, stress_at
 from trackroller.halfspace.peak_seeds import ridge_points
 from trackroller.roller.accuracy import PRESETS, Tolerance
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.stages import window_search
+from trackroller.roller.stages import ellipse_stresses, window_search
 from validation.benchmarks.samples import random_designs
+from validation.tradeoff.sample import sample
 
 MU, G, NU = 0.5, 8e4, 0.3
 PATCH = Ellipse(np.array([1.0]), np.array([0.6]), np.array([800.0]))
@@ -64,10 +65,10 @@ def test_a_window_of_a_resolved_area_keeps_the_tractions():
     elastic = Elastic(np.array([G]), np.array([NU]), np.zeros(1))
     coarse = solve_patch(PATCH, slow, MU, elastic, dataclasses.replace(SETTINGS, elements=56))
     (made, _), *_ = islice(window.fields(PATCH, coarse, NU, BOUND, SETTINGS), 1)
-    field, grades = made()
+    field, grades = made(8)
     fine = solve_patch(PATCH, slow, MU, elastic, dataclasses.replace(SETTINGS, elements=112))
     z = subgrid.fields_of(PATCH, fine).before_law()
-    x, y = (points(axis, count) for axis, count in zip((grades[:4], grades[4:]), field.shape[:1:-1], strict=True))
+    x, y = (points(axis, count) for axis, count in zip(np.split(grades, 2), field.shape[:1:-1], strict=True))
     same = subgrid.shares_at(z, *(56.0 * (place + 1.0) - 0.5 for place in (x, y)))
     height = np.sqrt(np.maximum(1.0 - x**2 - y[:, None] ** 2, 0.0))
     apart = np.hypot(*(field - same)[0]) * height
@@ -77,20 +78,22 @@ def test_a_window_of_a_resolved_area_keeps_the_tractions():
 
 def points(grade, count):
     """Return the points of a graded axis over its half side, by the definition of `ellipse_kernels.GRADES`."""
-    mid, width, start, span = grade
+    mid, width, start, span, *_ = grade
     return mid + width * np.sinh(start + span * (np.arange(count) + 0.5) / count)
 
 
-def test_points_are_dense_in_the_window_and_fill_the_patch():
+@pytest.mark.parametrize("parts", [4, 8])
+def test_points_are_dense_in_the_window_and_fill_the_patch(parts):
     *_, (made, _) = islice(window.fields(PATCH, solution(28), NU, BOUND, SETTINGS), 4)
-    field, grades = made()
-    for grade, count in ((grades[:4], field.shape[-1]), (grades[4:], field.shape[-2])):
+    field, grades = made(parts)
+    for grade, count in zip(np.split(grades, 2), field.shape[:1:-1], strict=True):
         place = points(grade, count)
         steps = np.diff(place)
         assert abs(place[0] + 1.0) < steps[0] and abs(place[-1] - 1.0) < steps[-1]
-        assert steps.min() <= 2.0 / 28 / 2**4 / window.PARTS < steps.max() < 0.03
+        assert steps.min() <= 2.0 / 28 / 2**4 / parts < steps.max() < 0.24 / parts
         assert steps.argmin() == pytest.approx(np.abs(place - grade[0]).argmin(), abs=1)
-    assert field[0, 0].size < 0.02 * (28 * 2**4 * window.PARTS) ** 2
+        assert grade[4] < grade[0] < grade[5]  # the tip belongs to the area
+    assert field[0, 0].size < 0.02 * (28 * 2**4 * parts) ** 2
 
 
 SHAPES = [(0.1, 0.01, 0.08, 0.15), (0.6, 0.01, 0.08, 0.15), (3.0, 0.01, 0.08, 0.15)]
@@ -134,7 +137,7 @@ def searched(cases, accuracy, monkeypatch):
 
 def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
     """Peaks agree with 160 quadrature points. A search of the whole patch finds none that is higher beyond `FALLS`."""
-    calls = searched(random_designs(100, 1), 0.06, monkeypatch)
+    calls = searched(random_designs(120, 1), 0.06, monkeypatch)
     assert len(calls) > 10
     rules = unit_rule(160), unit_rule(160)
     for given, found in calls[:12]:
@@ -145,6 +148,23 @@ def test_peaks_in_windows_are_integrated_well_and_high(monkeypatch):
         exact = [stress_at(target, body, place, rules) for body, place in enumerate(places)]
         np.testing.assert_allclose(found.stress[0], exact, rtol=2e-3)
         assert (found.stress > (1.0 - window_search.FALLS * 0.06) * find_peaks(*given).stress).all()
+
+
+def test_an_area_that_no_element_of_the_patch_shows_is_found():
+    """The patch is 7 times longer across than along rolling, and its elements with |z| close to 1 lie far apart."""
+    ds = tr.solve(sample(101, 84)[100], ("contact", "peak_stress"), accuracy=0.01)
+    assert (ds.semi_axis_lateral > 6.0 * ds.semi_axis_rolling).all()
+    assert (ds.error_estimate < 0.01).all()
+
+
+def test_peaks_that_the_formula_knows_need_no_windows():
+    designs = random_designs(100, 1)
+    told = tr.solve(designs, ("peak_stress",), accuracy=0.06).error_estimate.values.reshape(len(designs), -1)
+    known = np.flatnonzero((told == ellipse_stresses.KNOWN).any(axis=1))
+    assert len(known) > 5
+    some = [designs[i] for i in known]
+    rough, fine = (tr.solve(some, ("peak_stress",), accuracy=own).peak_stress for own in (0.06, 0.01))
+    assert (np.abs(rough / fine - 1.0).values.reshape(told[known].shape) < told[known]).all()
 
 
 @pytest.mark.parametrize("number", [18, 49])
@@ -198,8 +218,8 @@ def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
     for given, found in calls:
         patches, ratios, _, (field,), _ = given
         target = Target(patches[0], field, ratios[0], lengths(patches)[0], True, Room.empty())
-        line = peak_near._in_window(patches[0], ridge_points(patches[0], field))
-        tip, size = [patches[0][name] for name in GRADES[::4]], np.ptp(line, axis=0)  # the field is densest at the tip
+        line = peak_near._at_area(patches[0], ridge_points(patches[0], field))
+        tip, size = [patches[0][name] for name in GRADES[::6]], np.ptp(line, axis=0)  # the field is densest at the tip
         across, along = np.meshgrid(np.linspace(-0.3, 0.3, 25), np.linspace(-0.15, 0.25, 60))
         points = np.stack([tip[0] + across * size[0], tip[1] + along * size[1], 0.0 * along], axis=2).reshape(-1, 3)
         assert (found.stress[0] > 0.995 * scan(target, points, rules).max(axis=1)).all()

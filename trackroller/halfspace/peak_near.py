@@ -23,17 +23,20 @@ LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
 # After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.
 SETTLED = 4, 2e-4
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
-DENSE = 6.0  # distance from its densest point up to which a field counts as dense, over the width of its grading
+AROUND = 0.15  # distance from the adhesion area up to which points belong to it, over its extent
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
 
 
 @compiled
-def _in_window(patch, line):
-    """Return the points of `line` (m, 3) that lie where the field is dense."""
-    (mid_x, width_x, _, _), (mid_y, width_y, _, _) = grades_of(patch)
-    return line[(np.abs(line[:, 0] - mid_x) < DENSE * width_x) & (np.abs(line[:, 1] - mid_y) < DENSE * width_y)]
+def _at_area(patch, points):
+    """Return those of the points (m, 3) that lie in or beside the adhesion area that the field resolves."""
+    more_x, more_y = AROUND * (patch.high_x - patch.low_x), AROUND * (patch.high_y - patch.low_y)
+    x, y = points[:, 0], points[:, 1]
+    beside_x = (x < patch.low_x - more_x) | (x > patch.high_x + more_x)
+    beside_y = (y < patch.low_y - more_y) | (y > patch.high_y + more_y)
+    return points[~(beside_x | beside_y)]
 
 
 @compiled
@@ -106,7 +109,7 @@ def climb_near(target, near, line, first, rules, smallest):
         Last step of the climbs from the peaks at hand.
     """
     count = 2 + LINE_SEEDS
-    line = _in_window(target.patch, line)
+    line = _at_area(target.patch, line)
     size = _extent(line)
     climbs = no_climbs(count, 1.0)
     for d, axis in enumerate((1, 0, 2)):  # the first axis is that of y, see `no_climbs`
@@ -115,7 +118,7 @@ def climb_near(target, near, line, first, rules, smallest):
     for body in range(2):
         k = body * count
         climbs.u[k] = near[body]
-        if not len(line) or not len(_in_window(target.patch, near[body : body + 1])):
+        if not len(line) or not len(_at_area(target.patch, near[body : body + 1])):
             climbs.step[k], least[k] = NEAR_STEP * PROPORTIONS, smallest
             along_turn(target.patch, near[body], climbs.along[k])
         climbs.f[k] = stress_at(target, body, near[body], first)

@@ -14,6 +14,7 @@ from functools import partial
 from typing import NamedTuple
 
 import numpy as np
+from scipy.fft import next_fast_len
 
 from trackroller.contact.common import Ellipse
 from trackroller.contact.influence import influence
@@ -24,13 +25,13 @@ from trackroller.numerics.splines import interpolated
 
 MARGIN, WIDER = 6, 0.25  # elements between the adhesion area and the edge of a window, and more over the area's size
 CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
+UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with |z| below this times the smallest
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 30_000  # elements of a window
-# The traction is sampled most densely at the trailing tip of the adhesion area, with PARTS points along each side of an
-# element. Further away the distance between points is SPACING times their distance from the tip. The number of points
-# along each axis is a multiple of MULTIPLE. The traction changes direction at the tip within a few elements: with 2
-# points along each side and 200 elements in the area, the peak stress would come out 1 % too low.
-PARTS, SPACING, MULTIPLE = 8, 0.02, 16
+# The traction is sampled most densely at the trailing tip of the adhesion area, with a given number of points along
+# each side of an element. Further away the distance between points is SPACING over this number times their distance
+# from the tip. The number of points along each axis is a multiple of MULTIPLE.
+SPACING, MULTIPLE = 0.16, 16
 
 Spans = tuple[tuple[int, int], tuple[int, int]]  # first and last element, plus 1, along x and y
 
@@ -89,14 +90,14 @@ def _heights(first: tuple[int, int], shape: tuple[int, ...], of: tuple[int, int]
 
 
 def _area(grid: Grid) -> Spans:
-    """Return the elements of the adhesion area, or the element next to adhesion."""
+    """Return the elements of the adhesion area, or those next to adhesion."""
     loaded = _heights(grid.first, grid.traction.shape, grid.of) > 0.0
     for axis, (start, of) in enumerate(zip(grid.first[::-1], grid.of[::-1], strict=True)):  # not at the window's edge
         places = np.arange(loaded.shape[axis])
         near = ((start > 0) & (places < MARGIN)) | ((start + places.size < of) & (places >= places.size - MARGIN))
         loaded &= ~(near[:, None] if axis == 0 else near)
     length = np.where(loaded, np.hypot(grid.z[0, 0], grid.z[0, 1]), np.inf)
-    rows, columns = np.nonzero(length <= max(1.0, length.min()))
+    rows, columns = np.nonzero(length <= max(1.0, UNSEEN * length.min()))
     return (int(columns.min()), int(columns.max()) + 1), (int(rows.min()), int(rows.max()) + 1)
 
 
@@ -114,7 +115,10 @@ def _around(grid: Grid, area: Spans) -> Spans:
     spans = []
     for (start, end), (low, high) in zip(area, _limits(grid), strict=True):
         margin = MARGIN + int(WIDER * (end - start))
-        spans.append((max(start - margin, low), min(end + margin, high)))
+        first, last = max(start - margin, low), min(end + margin, high)
+        count = next_fast_len(last - first)  # transforms of other numbers of elements take up to 1.5 times longer
+        last = min(first + count, high)
+        spans.append((max(last - count, low), last))
     return spans[0], spans[1]
 
 
@@ -182,42 +186,47 @@ def _solved(
     return Grid(at[0], at[1], np.stack([z.real, z.imag])[None], first, of, True), bool(residual <= settings.tolerance)
 
 
-def _grade(place: float, of: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points along one axis that are densest at `place`, and their grading.
+def _grade(place: float, low: float, high: float, of: int, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return points along one axis that are densest at `place`, and their grading (6,).
 
-    The points (m,) and `place` are in half sides of the patch; `of` finest elements would fill the whole patch. For the
-    grading see `halfspace.ellipse_kernels.GRADES`.
+    The points (m,), `place`, and the ends `low` and `high` of the adhesion area are in half sides of the patch; `of`
+    finest elements would fill the whole patch. At `place` there are `points` to an element. For the grading see
+    `halfspace.ellipse_kernels.GRADES`.
     """
-    width = min(2.0 / (of * PARTS * SPACING), 1.0)
+    width = min(2.0 / (of * SPACING), 1.0)
     start, end = (math.asinh((side - place) / width) for side in (-1.0, 1.0))
-    count = MULTIPLE * math.ceil((end - start) / (MULTIPLE * SPACING))
+    count = MULTIPLE * math.ceil((end - start) * points / (MULTIPLE * SPACING))
     scale = start + (end - start) * (np.arange(count) + 0.5) / count
-    return place + width * np.sinh(scale), np.array([place, width, start, end - start])
+    return place + width * np.sinh(scale), np.array([place, width, start, end - start, low, high])
 
 
-def _tip(grid: Grid, area: Spans) -> tuple[float, float]:
-    """Return x and y of the trailing tip of the adhesion area in half sides of the patch; `area` are its elements."""
-    (start, end), (row, _) = area
-    tip = start + int(np.argmin(np.hypot(*grid.z[0, :, row, start:end]))), row
-    x, y = ((2.0 * (first + k) + 1.0) / of - 1.0 for first, k, of in zip(grid.first, tip, grid.of, strict=True))
-    return x, y
+def _tip(grid: Grid, area: Spans) -> Iterator[tuple[float, float, float]]:
+    """Yield the place of the trailing tip of the adhesion area and both ends of this area along x, and along y.
+
+    They are in half sides of the patch; `area` are the elements of the area.
+    """
+    (left, right), (row, _) = area
+    tip = left + int(np.argmin(np.hypot(*grid.z[0, :, row, left:right]))), row
+    for first, k, (low, high), of in zip(grid.first, tip, area, grid.of, strict=True):
+        place, start, end = (2.0 * (first + at) / of - 1.0 for at in (k + 0.5, low, high))
+        yield place, start, end
 
 
-def _field(grids: list[Grid], windows: list[Spans], area: Spans) -> tuple[np.ndarray, np.ndarray]:
-    """Return the traction over mu p of the whole patch, (1, 2, ny, nx), and the grading of its points, (8,).
+def _field(grids: list[Grid], windows: list[Spans], area: Spans, points: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the traction over mu p of the whole patch, (1, 2, ny, nx), and the grading of its points, (12,).
 
-    The points are densest at the trailing tip of the adhesion area. `area` are the elements of this area in the finest
-    window. The grading is that along x and then along y.
+    The points are densest at the trailing tip of the adhesion area: `points` along each side of an element. `area` are
+    the elements of this area in the finest window. The grading is that along x and then along y.
     """
     finest = grids[-1]
-    axes = [_grade(*given) for given in zip(_tip(finest, area), finest.of, strict=True)]
+    axes = [_grade(*ends, of, points) for ends, of in zip(_tip(finest, area), finest.of, strict=True)]
     (x, _), (y, _) = axes
     (nx, ny), whole = grids[0].of, grids[0].z
     out = subgrid.shares_at(whole, 0.5 * nx * (x + 1.0) - 0.5, 0.5 * ny * (y + 1.0) - 0.5)
     for parent, spans, grid in zip(grids, windows, grids[1:], strict=False):
         inside, places, weights = [], [], []
-        for k, (points, _) in enumerate(axes):
-            place = 0.5 * grid.of[k] * (points + 1.0) - grid.first[k]
+        for k, (along, _) in enumerate(axes):
+            place = 0.5 * grid.of[k] * (along + 1.0) - grid.first[k]
             start, end = np.searchsorted(place, (0.0, grid.z.shape[3 - k]))
             inside.append(slice(start, end))
             places.append(place[start:end])
@@ -229,7 +238,7 @@ def _field(grids: list[Grid], windows: list[Spans], area: Spans) -> tuple[np.nda
 
 def fields(
     patch: Ellipse, solution: PatchSolution, poisson_ratio: float, bound: float, settings: KalkerSettings
-) -> Iterator[tuple[Callable[[], tuple[np.ndarray, np.ndarray]], float]]:
+) -> Iterator[tuple[Callable[[int], tuple[np.ndarray, np.ndarray]], float]]:
     """Yield the traction of one patch over mu p with one, two, ... windows.
 
     A window that turns out too small for the next one is made larger, so that a number of windows may come twice. The
@@ -249,9 +258,9 @@ def fields(
     Yields
     ------
     tuple
-        Function that returns the traction over mu p, (1, 2, ny, nx), at points that are densest at the trailing tip of
-        the adhesion area, and the grading of these points along x and y, (8,), see `halfspace.ellipse_kernels.GRADES`;
-        and the number of elements in the adhesion area.
+        Function of the number of points along each side of an element at the trailing tip of the adhesion area, where
+        points are densest. It returns the traction over mu p, (1, 2, ny, nx), and the grading of its points along x and
+        y, (12,), see `halfspace.ellipse_kernels.GRADES`. Then the number of elements in the adhesion area.
     """
     own = subgrid.fields_of(patch, solution)
     z, count = own.before_law(), own.traction.shape[-1]

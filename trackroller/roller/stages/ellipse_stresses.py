@@ -45,8 +45,11 @@ SMALL, SMALL_SHARE = 30, 0.05
 # the factor HIDES. Up to STRICT, all other small areas have them. Elements of half the size serve instead of windows
 # where DOUBTED times the error that they leave is smaller than the tolerance. They do so for bodies of similar moduli,
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
-# also do so where K/mu is above UNLIKE[1], because there the formula often gives too high a stress.
-HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6), 1.4
+# also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
+HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6, 0.3), 1.4
+# Where the formula says that elements miss less than LEVEL, the peak of a small area errs by at most KNOWN, even if it
+# changes by more with the elements. This holds for axis ratios below LONGEST; longer elements miss more.
+KNOWN, LEVEL, LONGEST = 0.047, 0.055, 4.6
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The estimated error of a peak on twice the elements is the larger one of two: DOUBLED[0] times the change of the peak,
@@ -171,8 +174,8 @@ class EllipseStresses(PatchStresses):
             return peak
         peak.error[:] *= SAFETY
         goal, small = peak_goal(results.scene.table, self.options)[results.rows[flat]], self._small(flat)
-        share, hidden = self._hidden(peak, flat, goal, small)
-        peak.error[:] = np.fmax(peak.error, hidden[:, None])
+        share, least, most = self._hidden(peak, flat, goal, small)
+        peak.error[:] = np.fmax(np.fmin(peak.error, most[:, None]), least[:, None])
         doubt = (share < 1.0) & (peak.error.max(axis=1) > FADES[0] * goal)
         self._search_doubled(search, peak, goal, doubt, small > 0.0)
         share = np.fmax(share, small * rise(peak.error.max(axis=1) / goal, FADES))
@@ -180,20 +183,25 @@ class EllipseStresses(PatchStresses):
         return peak
 
     def _hidden(self, peak: Peak, flat: np.ndarray, goal: np.ndarray, small: np.ndarray) -> tuple[np.ndarray, ...]:
-        """Return the share of windows in the peaks of the patches `flat`, and the error that they may hide, (m,) each.
+        """Return the share of windows in the peaks of patches `flat`, and their least and largest errors, (m,) each.
 
-        See `HIDES`. `small` (m,) is that of `_small`; the error is at most the tolerance `goal` (m,).
+        See `HIDES` and `KNOWN`. `small` (m,) is that of `_small`; the least error is at most the tolerance `goal` (m,).
         """
         (patch, slip, friction, rows), model = self.results.of(flat), self.results.scene.model
         least, excess = peak.stress.min(axis=1), []
         for doublings in (0, 1):
             stress, missed = model.pole_stress(patch, slip, friction, rows, doublings)
             excess.append(np.minimum(stress - least, missed) / least)
-        unlike, strong = (np.abs(model.given.elastic.coupling[rows]) > bound * friction for bound in UNLIKE)
-        doubles = ~unlike | (strong & (goal >= RESOLVED))
+        coupling = np.abs(model.given.elastic.coupling[rows])
+        strong = (coupling > UNLIKE[1] * friction) & (coupling < UNLIKE[2]) & (goal >= RESOLVED)
+        doubles = strong | (coupling <= UNLIKE[0] * friction)
         share = rise(np.where(doubles, DOUBTED * excess[1], excess[0]) / goal, FADES)
         hides = small * (HIDES * peak.error.max(axis=1) > goal)
-        return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal)
+        ratio = patch.semi_axis_rolling / patch.semi_axis_lateral
+        ratio = np.fmax(ratio, 1.0 / ratio)
+        known = small * (1.0 - rise(excess[0] / LEVEL, FADES)) * (1.0 - rise(ratio / LONGEST, FADES))
+        most = np.divide(KNOWN, known, out=np.full(known.shape, np.inf), where=known > 0.0)
+        return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal), most
 
     def _small(self, flat: np.ndarray) -> np.ndarray:
         """Return 1 where the adhesion area at the spin pole is small, for the patches `flat`, (m,).
