@@ -47,9 +47,9 @@ SMALL, SMALL_SHARE = 30, 0.05
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
 HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6, 0.3), 1.4
-# Where the formula says that elements miss less than LEVEL, the peak of a small area errs by at most KNOWN, even if it
-# changes by more with the elements. This holds for axis ratios below LONGEST; longer elements miss more.
-KNOWN, LEVEL, LONGEST = 0.047, 0.055, 4.6
+# Where the formula says that elements miss less than LEVEL, the peaks of 99 in 100 small areas err by at most KNOWN,
+# even if they change by more with the elements. This holds for axis ratios below LONGEST; longer elements miss more.
+KNOWN, LEVEL, LONGEST = 0.04, 0.055, 4.6
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
 # The estimated error of a peak on twice the elements is the larger one of two: DOUBLED[0] times the change of the peak,
