@@ -17,7 +17,6 @@ from trackroller.contact.kalker.problem import KalkerSettings
 from trackroller.contact.slip import Creepage
 from trackroller.halfspace import peak_near
 from trackroller.halfspace.ellipse import Room, refinement, unit_rule
-from trackroller.halfspace.ellipse_kernels import GRADES
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.peak_climb import Target, lengths, scan, stress_at
 from trackroller.halfspace.peak_seeds import ridge_points
@@ -92,7 +91,7 @@ def test_points_are_dense_in_the_window_and_fill_the_patch(parts):
         assert abs(place[0] + 1.0) < steps[0] and abs(place[-1] - 1.0) < steps[-1]
         assert steps.min() <= 2.0 / 28 / 2**4 / parts < steps.max() < 0.24 / parts
         assert steps.argmin() == pytest.approx(np.abs(place - grade[0]).argmin(), abs=1)
-        assert grade[4] < grade[0] < grade[5]  # the tip belongs to the area
+        assert grade[4] < grade[0] < grade[5]  # the trailing tip lies between the ends of the area
     assert field[0, 0].size < 0.02 * (28 * 2**4 * parts) ** 2
 
 
@@ -219,7 +218,7 @@ def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
         patches, ratios, _, (field,), _ = given
         target = Target(patches[0], field, ratios[0], lengths(patches)[0], True, Room.empty())
         line = peak_near._at_area(patches[0], ridge_points(patches[0], field))
-        tip, size = [patches[0][name] for name in GRADES[::6]], np.ptp(line, axis=0)  # the field is densest at the tip
+        tip, size = [patches[0][f"mid_{axis}"] for axis in "xy"], np.ptp(line, axis=0)
         across, along = np.meshgrid(np.linspace(-0.3, 0.3, 25), np.linspace(-0.15, 0.25, 60))
         points = np.stack([tip[0] + across * size[0], tip[1] + along * size[1], 0.0 * along], axis=2).reshape(-1, 3)
         assert (found.stress[0] > 0.995 * scan(target, points, rules).max(axis=1)).all()

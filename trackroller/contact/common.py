@@ -232,6 +232,12 @@ def error_of_work(patch: Any, slip: Any, friction, driving: np.ndarray, moment: 
         return np.asarray(np.fmax(WORK_SHARE * friction * patch.normal_force * speed / np.abs(work), 1.0))
 
 
+def slenderness(patch: Any) -> np.ndarray:
+    """Return the larger semi-axis of each patch over the smaller one, (n,) [1]."""
+    ratio = patch.semi_axis_rolling / patch.semi_axis_lateral
+    return np.maximum(ratio, 1.0 / ratio)
+
+
 def force_scales(patch: Any, friction: np.ndarray) -> np.ndarray:
     """Return the scales of F_T, F_A and M_R: mu F_N, mu F_N and mu F_N c, (m, 3); 1e-300 where there is no friction."""
     scale = np.empty((len(friction), 3))

@@ -142,10 +142,11 @@ class ContactModel:
     def windows(
         self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int
     ) -> Iterator[Any]:
-        """Return an iterator over functions of `shares` of one patch with finer elements around its adhesion area.
+        """Return an iterator over the tractions of one patch on finer and finer elements around its adhesion area.
 
-        With each comes the number of elements in this area. Around the area are the elements of the patch after
-        `doublings`. A model without such elements gives none.
+        Each item is a function and the number of elements in this area. The function takes how many points of the
+        traction to give along each side of an element; it returns the traction and the grading of its points. The
+        other elements are those of the patch after `doublings`. A model without finer elements gives no item.
         """
         return iter(())
 

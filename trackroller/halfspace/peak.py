@@ -233,8 +233,8 @@ def find_peaks(
         Polish the best seeds at once, without climbs below few elements. On 12 elements across, whose own error is
         larger, the peaks err as much as after climbs.
     near : Peak, optional
-        Peaks at hand. The search climbs from their places, and from the line where sliding begins in the dense part of
-        graded fields; it looks nowhere else.
+        Peaks at hand, for graded fields. The search climbs from their places, and from the boundary of the adhesion
+        area around which the field is dense; it looks nowhere else.
 
     Returns
     -------

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.ellipse_kernels import grades_of
 from trackroller.halfspace.peak_climb import PROPORTIONS, no_climbs, polish, scan, standing, stress_at, sweep
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds
 from trackroller.numerics.compiled import compiled
@@ -23,7 +22,7 @@ LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
 # After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.
 SETTLED = 4, 2e-4
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
-AROUND = 0.15  # distance from the adhesion area up to which points belong to it, over its extent
+AROUND = 0.15  # distance from the ends of the adhesion area up to which points count as at it, over its extent
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
@@ -31,12 +30,11 @@ TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 
 
 @compiled
 def _at_area(patch, points):
-    """Return those of the points (m, 3) that lie in or beside the adhesion area that the field resolves."""
+    """Return those of the points (m, 3) in the rectangle around the adhesion area, widened by AROUND on each side."""
     more_x, more_y = AROUND * (patch.high_x - patch.low_x), AROUND * (patch.high_y - patch.low_y)
     x, y = points[:, 0], points[:, 1]
-    beside_x = (x < patch.low_x - more_x) | (x > patch.high_x + more_x)
-    beside_y = (y < patch.low_y - more_y) | (y > patch.high_y + more_y)
-    return points[~(beside_x | beside_y)]
+    near_x = (x >= patch.low_x - more_x) & (x <= patch.high_x + more_x)
+    return points[near_x & (y >= patch.low_y - more_y) & (y <= patch.high_y + more_y)]
 
 
 @compiled
@@ -52,12 +50,14 @@ def _extent(line):
 
 @compiled
 def _around_tip(patch, size):
-    """Return surface points around the trailing tip of the adhesion area, (24, 3); the field is densest at the tip."""
-    (mid_x, _, _, _), (mid_y, _, _, _) = grades_of(patch)
+    """Return 24 points on the surface around the trailing tip of the adhesion area, (24, 3).
+
+    The tip is where the field is densest. `size` are the extents of the line where sliding begins, see `_extent`.
+    """
     out = np.zeros((len(TIP_ACROSS) * len(TIP_ALONG), 3))
     for k in range(len(out)):
-        out[k, 0] = mid_x + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]
-        out[k, 1] = mid_y + TIP_ALONG[k // len(TIP_ACROSS)] * size[1]
+        out[k, 0] = patch.mid_x + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]
+        out[k, 1] = patch.mid_y + TIP_ALONG[k // len(TIP_ACROSS)] * size[1]
     return out
 
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Ellipse
+from trackroller.contact.common import Elastic, Ellipse, slenderness
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import subgrid
 from trackroller.contact.slip import Creepage
@@ -178,9 +178,9 @@ def force_error(
     change : of F_T, F_A (and M_R) from elements of twice the size, (n, 3) [N]
     elements : along each axis
     """
-    ratio, capacity = _ratio(ellipse), friction * ellipse.normal_force
+    capacity = friction * ellipse.normal_force
     finer, largest = error_scale(elements), np.abs(change[:, :2]).max(axis=1)
-    factor = FITTED * np.maximum(ratio, 1.0 / ratio) ** SLENDER * np.cbrt(stick + 3e-3)
+    factor = FITTED * slenderness(ellipse) ** SLENDER * np.cbrt(stick + 3e-3)
     return factor * np.sqrt(finer * capacity * (largest + 1e-3 * finer * capacity))
 
 

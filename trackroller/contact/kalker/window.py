@@ -28,9 +28,9 @@ CLOSE = 4  # elements between the area and the edge below which a window is made
 UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with |z| below this times the smallest
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 30_000  # elements of a window
-# The traction is sampled most densely at the trailing tip of the adhesion area, with a given number of points along
-# each side of an element. Further away the distance between points is SPACING over this number times their distance
-# from the tip. The number of points along each axis is a multiple of MULTIPLE.
+# A traction is given at points that are densest at the trailing tip of the adhesion area. The caller chooses how many
+# of them an element has along each side there. Far from the tip, the step from point to point is SPACING over this
+# number, times the distance from the tip. Along each axis, the number of points is a multiple of MULTIPLE.
 SPACING, MULTIPLE = 0.16, 16
 
 Spans = tuple[tuple[int, int], tuple[int, int]]  # first and last element, plus 1, along x and y
@@ -116,7 +116,7 @@ def _around(grid: Grid, area: Spans) -> Spans:
     for (start, end), (low, high) in zip(area, _limits(grid), strict=True):
         margin = MARGIN + int(WIDER * (end - start))
         first, last = max(start - margin, low), min(end + margin, high)
-        count = next_fast_len(last - first)  # transforms of other numbers of elements take up to 1.5 times longer
+        count = next_fast_len(last - first)  # large prime factors make transforms up to 1.5 times slower
         last = min(first + count, high)
         spans.append((max(last - count, low), last))
     return spans[0], spans[1]
@@ -186,40 +186,40 @@ def _solved(
     return Grid(at[0], at[1], np.stack([z.real, z.imag])[None], first, of, True), bool(residual <= settings.tolerance)
 
 
-def _grade(place: float, low: float, high: float, of: int, points: int) -> tuple[np.ndarray, np.ndarray]:
-    """Return points along one axis that are densest at `place`, and their grading (6,).
+def _grade(place: float, of: int, points: int) -> tuple[np.ndarray, tuple[float, ...]]:
+    """Return points (m,) along one axis that are densest at `place`, and mid, width, start and span of their grading.
 
-    The points (m,), `place`, and the ends `low` and `high` of the adhesion area are in half sides of the patch; `of`
-    finest elements would fill the whole patch. At `place` there are `points` to an element. For the grading see
-    `halfspace.ellipse_kernels.GRADES`.
+    The points and `place` are in half sides of the patch; `of` finest elements would fill the whole patch. At `place`
+    each element has `points` of them. For the grading see `halfspace.ellipse_kernels.GRADES`.
     """
     width = min(2.0 / (of * SPACING), 1.0)
     start, end = (math.asinh((side - place) / width) for side in (-1.0, 1.0))
     count = MULTIPLE * math.ceil((end - start) * points / (MULTIPLE * SPACING))
     scale = start + (end - start) * (np.arange(count) + 0.5) / count
-    return place + width * np.sinh(scale), np.array([place, width, start, end - start, low, high])
+    return place + width * np.sinh(scale), (place, width, start, end - start)
 
 
-def _tip(grid: Grid, area: Spans) -> Iterator[tuple[float, float, float]]:
-    """Yield the place of the trailing tip of the adhesion area and both ends of this area along x, and along y.
+def _in_half_sides(grid: Grid, place: tuple[float, float]) -> list[float]:
+    """Return x and y, in half sides of the patch, of a place in elements from the first corner of a grid."""
+    return [2.0 * (first + at) / of - 1.0 for first, at, of in zip(grid.first, place, grid.of, strict=True)]
 
-    They are in half sides of the patch; `area` are the elements of the area.
-    """
-    (left, right), (row, _) = area
-    tip = left + int(np.argmin(np.hypot(*grid.z[0, :, row, left:right]))), row
-    for first, k, (low, high), of in zip(grid.first, tip, area, grid.of, strict=True):
-        place, start, end = (2.0 * (first + at) / of - 1.0 for at in (k + 0.5, low, high))
-        yield place, start, end
+
+def _tip(grid: Grid, area: Spans) -> list[float]:
+    """Return x and y of the trailing tip of the adhesion area in half sides of the patch; `area` are its elements."""
+    (start, end), (row, _) = area
+    column = start + int(np.argmin(np.hypot(*grid.z[0, :, row, start:end])))
+    return _in_half_sides(grid, (column + 0.5, row + 0.5))
 
 
 def _field(grids: list[Grid], windows: list[Spans], area: Spans, points: int) -> tuple[np.ndarray, np.ndarray]:
     """Return the traction over mu p of the whole patch, (1, 2, ny, nx), and the grading of its points, (12,).
 
-    The points are densest at the trailing tip of the adhesion area: `points` along each side of an element. `area` are
-    the elements of this area in the finest window. The grading is that along x and then along y.
+    At the trailing tip of the adhesion area, an element has `points` along each side. `area` are the elements of this
+    area in the finest window. The grading is that along x, followed by that along y.
     """
     finest = grids[-1]
-    axes = [_grade(*ends, of, points) for ends, of in zip(_tip(finest, area), finest.of, strict=True)]
+    axes = [_grade(place, of, points) for place, of in zip(_tip(finest, area), finest.of, strict=True)]
+    ends = zip(*(_in_half_sides(finest, corner) for corner in zip(*area, strict=True)), strict=True)
     (x, _), (y, _) = axes
     (nx, ny), whole = grids[0].of, grids[0].z
     out = subgrid.shares_at(whole, 0.5 * nx * (x + 1.0) - 0.5, 0.5 * ny * (y + 1.0) - 0.5)
@@ -233,7 +233,7 @@ def _field(grids: list[Grid], windows: list[Spans], area: Spans, points: int) ->
             weights.append(_ramp(places[k] * parent.of[k] / grid.of[k], spans[k], parent.z.shape[3 - k], *EDGE))
         part = out[0, :, inside[1], inside[0]]
         part += weights[1][:, None] * weights[0] * (subgrid.shares_at(grid.z, *(p - 0.5 for p in places))[0] - part)
-    return out, np.concatenate([grade for _, grade in axes])
+    return out, np.array([number for (_, grade), end in zip(axes, ends, strict=True) for number in (*grade, *end)])
 
 
 def fields(
@@ -258,9 +258,9 @@ def fields(
     Yields
     ------
     tuple
-        Function of the number of points along each side of an element at the trailing tip of the adhesion area, where
-        points are densest. It returns the traction over mu p, (1, 2, ny, nx), and the grading of its points along x and
-        y, (12,), see `halfspace.ellipse_kernels.GRADES`. Then the number of elements in the adhesion area.
+        A function, and the number of elements in the adhesion area. The function takes how many points an element has
+        along each side at the trailing tip of this area. It returns the traction over mu p at all points,
+        (1, 2, ny, nx), and their grading along x and y, (12,), see `halfspace.ellipse_kernels.GRADES`.
     """
     own = subgrid.fields_of(patch, solution)
     z, count = own.before_law(), own.traction.shape[-1]

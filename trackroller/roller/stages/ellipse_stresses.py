@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import sliding
+from trackroller.contact.common import slenderness
 from trackroller.contact.settings import FADES
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.bounds import lower_bounds
@@ -47,14 +48,14 @@ SMALL, SMALL_SHARE = 30, 0.05
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
 HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6, 0.3), 1.4
-# Where the formula says that elements miss less than LEVEL, the peaks of 99 in 100 small areas err by at most KNOWN,
-# even if they change by more with the elements. This holds for axis ratios below LONGEST; longer elements miss more.
+# If, by this formula, the peak of a small area is less than LEVEL too low, it errs by at most KNOWN in 99 of 100 cases,
+# even where its change with the elements is larger. Above the axis ratio LONGEST such peaks err by more.
 KNOWN, LEVEL, LONGEST = 0.04, 0.055, 4.6
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0
-# The estimated error of a peak on twice the elements is the larger one of two: DOUBLED[0] times the change of the peak,
-# which follows from the order of convergence of 1.3, and DOUBLED[1] times the error of the search. Where the adhesion
-# area is small, DOUBLED_SMALL serves instead of DOUBLED[0].
+# On twice the elements, the estimated error of a peak is the larger of two numbers: the change of the peak with the
+# elements times DOUBLED[0], and the error of the search times DOUBLED[1]. DOUBLED[0] follows from the order of
+# convergence of 1.3; for small adhesion areas it is DOUBLED_SMALL.
 DOUBLED, DOUBLED_SMALL = (1.4, 0.4), 2.5
 FINER_PIECE = 16  # refined patches whose tractions on grids are held at once
 
@@ -197,10 +198,8 @@ class EllipseStresses(PatchStresses):
         doubles = strong | (coupling <= UNLIKE[0] * friction)
         share = rise(np.where(doubles, DOUBTED * excess[1], excess[0]) / goal, FADES)
         hides = small * (HIDES * peak.error.max(axis=1) > goal)
-        ratio = patch.semi_axis_rolling / patch.semi_axis_lateral
-        ratio = np.fmax(ratio, 1.0 / ratio)
-        known = small * (1.0 - rise(excess[0] / LEVEL, FADES)) * (1.0 - rise(ratio / LONGEST, FADES))
-        most = np.divide(KNOWN, known, out=np.full(known.shape, np.inf), where=known > 0.0)
+        known = small * (1.0 - rise(excess[0] / LEVEL, FADES)) * (1.0 - rise(slenderness(patch) / LONGEST, FADES))
+        most = KNOWN / np.maximum(known, 1e-9)  # no limit where the error is not known
         return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal), most
 
     def _small(self, flat: np.ndarray) -> np.ndarray:

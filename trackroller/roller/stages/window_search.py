@@ -9,6 +9,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from trackroller.contact.common import slenderness
 from trackroller.halfspace.ellipse import FIELD
 from trackroller.halfspace.ellipse_kernels import GRADES
 from trackroller.halfspace.peak import Peak, find_peaks
@@ -34,9 +35,10 @@ DOUBLED_BELOW, DOUBLED_ABOVE = 0.03, 8.0
 # number holds. The traction changes direction there within a few elements. With 200 elements in the area, peaks are
 # 1 % too low with 2 points, and 0.1 % with 4.
 POINTS, DENSER_BELOW = (4, 8), 0.05
-# Quadrature points of steps of the search, and the tolerance below which the second ones hold. With fewer points at the
-# summit, stresses in small adhesion areas err by up to 1.6 %; with fewer in the polish, climbs end 0.2 % below it.
-IN_WINDOWS, CLOSER_BELOW = ({"climb": 12, "summit": 64}, {"climb": 12, "summit": 64, "polish": 48}), 0.012
+# Quadrature points of the steps of a search, and those of its polish for tolerances below CLOSER_BELOW. With 16 points
+# at the summit, stresses in small adhesion areas err by up to 1.6 %. With 24 points in the polish, climbs may end 0.2 %
+# below the summit.
+IN_WINDOWS, CLOSER, CLOSER_BELOW = {"climb": 12, "summit": 64}, {"polish": 48}, 0.012
 
 
 def mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
@@ -49,7 +51,10 @@ def mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
 
 
 def _graded(patches: np.ndarray, grades: np.ndarray, image: bool) -> np.ndarray:
-    """Return records of patches whose fields have the grading `grades` (12,), or its mirror image in x."""
+    """Return copies of the records of patches with the grading `grades` (12,) of their fields.
+
+    With `image`, they get the grading of the fields' mirror images in x.
+    """
     mid, width, start, span, low, high, *along = grades
     if image:
         mid, start, low, high = -mid, -start - span, -high, -low
@@ -96,8 +101,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     """
     model = results.scene.model
     patch, slip, friction, rows = results.of(search.flat)
-    ratio = patch.semi_axis_lateral / patch.semi_axis_rolling
-    ratio = np.fmax(ratio, 1.0 / ratio)
+    ratio = slenderness(patch)
     doublings = np.minimum((goal < DOUBLED_BELOW).astype(int) + (ratio > DOUBLED_ABOVE), max(search.doublings, 1))
     outside = OUTSIDE + SLENDER * np.maximum(ratio - SLENDER_FROM, 0.0)
     outside += OUTSIDE_SLENDER * (ratio * OUTSIDE_AT / (model.elements * 2**doublings)) ** 2
@@ -105,8 +109,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
         windows = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
         one, old = slice(i, i + 1), peak.take([i])
-        settings = replace(search.settings, **IN_WINDOWS[int(goal[i] < CLOSER_BELOW)])
-        _search_one(windows, search._replace(settings=settings), i, peak, goal[i], outside[i])
+        _search_one(windows, search, i, peak, goal[i], outside[i])
         for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
             value[one] = plain + share[i] * (value[one] - plain)
 
@@ -139,7 +142,8 @@ def _found(shares: Any, search: Search, i: int, peak: Peak, goal: float) -> Peak
     one, (field, grades) = slice(i, i + 1), shares(POINTS[int(goal < DENSER_BELOW)])
     field = mirrored(field.astype(FIELD), search.second[one])
     patch = _graded(search.patches[one], grades, bool(search.second[i]))
-    given = patch, search.ratios[one], search.settings, field, field
+    settings = replace(search.settings, **IN_WINDOWS, **(CLOSER if goal < CLOSER_BELOW else {}))
+    given = patch, search.ratios[one], settings, field, field
     finer = find_peaks(*given, near=peak.take(one))
     if np.any(finer.stress < (1.0 - FALLS * goal) * peak.stress[one]):
         finer = finer.higher(find_peaks(*given))
