@@ -9,7 +9,7 @@ import pytest
 
 from validation.house import LONGEST_FUNCTION, MOST_LINES, survey
 
-LINES_OF_CODE = 27_596  # largest number of lines of code in all rooms, without those of FOR_LIMITS
+LINES_OF_CODE = 27_606  # largest number of lines of code in all rooms, without those of FOR_LIMITS
 FOR_LIMITS = 1_835  # more lines for the limits of the room `damage`, and for what declares and serves them
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {

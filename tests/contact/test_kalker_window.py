@@ -238,7 +238,7 @@ def test_windows_begin_without_a_step():
 
 
 def test_the_error_of_slender_patches_is_told():
-    """Around the windows of a slender patch, elements are wide, so that the estimated error is large."""
+    """Other windows of a slender patch have the same highest summit, within the estimated error, which is large."""
     case = {"contact_angle": 70.0, "friction_coefficient": 0.5, "motor_force": 0.0, "radial_force": -600.0}
     slender = tr.Case(roller_profile_radius=-6.02, **case)
     ds = tr.solve(slender, ("contact", "peak_stress"), accuracy={"peak": 3e-3})
@@ -246,4 +246,4 @@ def test_the_error_of_slender_patches_is_told():
     assert (ds.error_estimate > 3e-3).all() and ds.validity.values & validity_bit("tolerance_missed")
     once = dataclasses.replace(PRESETS["reference"], peak_goal=1e-3)  # its elements may double only once
     apart = np.abs(tr.solve(slender, ("peak_stress",), accuracy=once).peak_stress / ds.peak_stress - 1.0)
-    assert (apart < ds.error_estimate).all()
+    assert (apart < ds.error_estimate).all() and (apart < 5e-3).all()  # 1 % where the tip of one body is missed

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.peak_climb import PROPORTIONS, no_climbs, polish, scan, standing, stress_at, sweep
+from trackroller.halfspace.peak_climb import PROPORTIONS, _try, no_climbs, polish, scan, standing, stress_at, sweep
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds
 from trackroller.numerics.compiled import compiled
 
@@ -124,12 +124,13 @@ def climb_near(target, near, line, first, rules, smallest):
         climbs.f[k] = stress_at(target, body, near[body], first)
     if len(line):
         _seed_line(target, climbs, line, size, first)
-    left = climbs.f > 0.0
+    left, start = climbs.f > 0.0, climbs.u.copy()
     for k in range(24):
         if k == LINE_SWEEPS:
             left = standing(climbs, LINE_WORTH, LINE_GAP * size[2], 3)
             for climb in np.flatnonzero(left):
                 climbs.f[climb] = stress_at(target, climb // count, climbs.u[climb], rules)
+                _try(target, climbs, climb, start[climb].copy(), rules)  # the first rules may have led it away
         for climb in np.flatnonzero(left):
             moves = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least[climb], k > 0)
             left[climb] = moves and (k < SETTLED[0] or climbs.gained[climb] > SETTLED[1] * climbs.f[climb])
@@ -139,13 +140,15 @@ def climb_near(target, near, line, first, rules, smallest):
 
 @compiled
 def _exchange(target, climbs, rules, smallest):
-    """Move the highest climb of a body to that of the other body if the stress is higher there, and let it rise."""
+    """Climb in each body from the highest place of the other body, where a summit may have been missed."""
     count = climbs.f.size // 2
     best = climbs.f[:count].argmax(), count + climbs.f[count:].argmax()
     places = climbs.u[best[0]].copy(), climbs.u[best[1]].copy()
+    if ((places[1] - places[0]) ** 2).sum() < smallest * smallest:
+        return
     for body in range(2):
-        own, place = best[body], places[1 - body]
+        k, place = body * count + (best[body] == body * count), places[1 - body]
         value = stress_at(target, body, place, rules)
-        if value > climbs.f[own]:
-            climbs.u[own], climbs.f[own], climbs.step[own] = place, value, 5.0 * smallest * PROPORTIONS
-            polish(target, climbs, own, rules, smallest, 12)
+        if value > LINE_WORTH * climbs.f[best[body]]:
+            climbs.u[k], climbs.f[k], climbs.step[k] = place, value, 5.0 * smallest * PROPORTIONS
+            polish(target, climbs, k, rules, smallest, 12)

@@ -27,7 +27,7 @@ MARGIN, WIDER = 6, 0.25  # elements between the adhesion area and the edge of a 
 CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
 UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with |z| below this times the smallest
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
-MOST = 30_000  # elements of a window
+MOST = 60_000  # elements of a window
 # A traction is given at points that are densest at the trailing tip of the adhesion area. The caller chooses how many
 # of them an element has along each side there. Far from the tip, the step from point to point is SPACING over this
 # number, times the distance from the tip. Along each axis, the number of points is a multiple of MULTIPLE.

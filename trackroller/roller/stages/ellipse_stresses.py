@@ -24,7 +24,7 @@ from trackroller.roller.requirements import distinct_rows, normalised_patches
 from trackroller.roller.stages.case import peak_goal
 from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import surface_tractions
-from trackroller.roller.stages.window_search import Search, mirrored, search_windows
+from trackroller.roller.stages.window_search import STRICT, Search, mirrored, search_windows
 
 SECTION_ORDER = 24  # quadrature points of sections: they meet the rim exactly, where the quadrature is hardest
 SEEDS, FINALISTS = 5, 2  # least effort of the search under tractions with adhesion
@@ -38,8 +38,9 @@ CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # Adhesion areas of fewer elements, or with less of the patch, get windows; elements that double resolve larger areas.
-# Of a smaller share even 160 elements may miss the needle, whose peak may be 4 % higher.
-SMALL, SMALL_SHARE = 30, 0.05
+# Of a smaller share even 160 elements may miss the needle, whose peak may be 4 % higher. The second share holds for
+# tolerances up to STRICT.
+SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
 # as large as the tolerance. No area has windows where the estimated error of its peak is smaller than the tolerance by
@@ -47,7 +48,7 @@ SMALL, SMALL_SHARE = 30, 0.05
 # where DOUBTED times the error that they leave is smaller than the tolerance. They do so for bodies of similar moduli,
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
-HIDES, STRICT, RESOLVED, UNLIKE, DOUBTED = 12.0, 5e-3, 0.05, (0.05, 0.6, 0.3), 1.4
+HIDES, RESOLVED, UNLIKE, DOUBTED = 12.0, 0.05, (0.05, 0.6, 0.3), 1.4
 # If, by this formula, the peak of a small area is less than LEVEL too low, it errs by at most KNOWN in 99 of 100 cases,
 # even where its change with the elements is larger. Above the axis ratio LONGEST such peaks err by more.
 KNOWN, LEVEL, LONGEST = 0.04, 0.055, 4.6
@@ -174,7 +175,8 @@ class EllipseStresses(PatchStresses):
             self._search_doubled(search, peak, goal, doubt > goal, goal < 0.0)
             return peak
         peak.error[:] *= SAFETY
-        goal, small = peak_goal(results.scene.table, self.options)[results.rows[flat]], self._small(flat)
+        goal = peak_goal(results.scene.table, self.options)[results.rows[flat]]
+        small = self._small(flat, goal)
         share, least, most = self._hidden(peak, flat, goal, small)
         peak.error[:] = np.fmax(np.fmin(peak.error, most[:, None]), least[:, None])
         doubt = (share < 1.0) & (peak.error.max(axis=1) > FADES[0] * goal)
@@ -202,15 +204,16 @@ class EllipseStresses(PatchStresses):
         most = KNOWN / np.maximum(known, 1e-9)  # no limit where the error is not known
         return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal), most
 
-    def _small(self, flat: np.ndarray) -> np.ndarray:
+    def _small(self, flat: np.ndarray, goal: np.ndarray) -> np.ndarray:
         """Return 1 where the adhesion area at the spin pole is small, for the patches `flat`, (m,).
 
-        It falls to 0 where the area is no longer small.
+        It falls to 0 where the area is no longer small. `goal` (m,) are the tolerances of the peaks.
         """
         patch, slip, friction, rows = self.results.of(flat)
         sticks: Any = self.results.scene.model.stick(patch, slip, friction, rows)
         pole = np.abs(self.results.slip.pole_lateral[flat]) < patch.semi_axis_lateral
-        few = max(SMALL / (0.25 * np.pi * self.options.settings.elements**2), SMALL_SHARE)
+        share = np.where(goal > STRICT, *SMALL_SHARE)
+        few = np.maximum(SMALL / (0.25 * np.pi * self.options.settings.elements**2), share)
         return (1.0 - rise(sticks / few, FADES)) * pole * (friction > LITTLE_FRICTION)
 
     def _search_doubled(self, search: Search, peak: Peak, goal, doubt, small) -> None:

@@ -17,20 +17,24 @@ from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.stages.scene import Results
 
 # Largest number of levels. In 99 of 100 areas, the peak at the trailing tip errs by at most BOUND over the root of the
-# number of elements in the area; the second value holds from MANY elements on. Areas of fewer than FEW elements are not
-# searched. More than ENOUGH elements are used only where the peak does not settle.
-LEVELS, BOUND, MANY, FEW, ENOUGH = 6, (0.25, 0.1), 150, 50, 160
-# Where this bound is too large for the tolerance, the error in areas of MANY elements follows from the changes of the
-# peak with the last levels: factors on the last change and on the one before. A change of more than BEYOND times the
-# bound is an error itself. SEARCHED weighs the error of the search.
+# number of elements in the area; the second and third value hold from the numbers MANY on. Areas of fewer than FEW
+# elements are not searched. More than ENOUGH elements are used only where the peak does not settle.
+LEVELS, BOUND, MANY, FEW, ENOUGH = 8, (0.25, 0.1, 0.075), (150, 1200), 50, 160
+# In slender patches this bound is larger: it grows by SLENDER for each 1 of the axis ratio above SLENDER_FROM.
+SLENDER, SLENDER_FROM = 0.12, 3.0
+# Where this bound is too large for the tolerance, the error in areas of at least MANY[0] elements follows from the
+# changes of the peak with the last two levels: factors on the last change and on the one before. A change of more than
+# BEYOND times the bound is an error itself. SEARCHED weighs the error of the search.
 CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
-# Relative error from the tractions outside the windows: its least value; its value over the square of the axis ratio,
-# on OUTSIDE_AT elements; and its value over the axis ratio less SLENDER_FROM, which more elements do not lower.
-OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, SLENDER, SLENDER_FROM = 1e-3, 6e-5, 48, 6e-4, 3.0
+# Relative error from the tractions outside the windows: its least value, and its value over the square of the axis
+# ratio on OUTSIDE_AT elements. The larger of the two counts. Above the axis ratio DOUBLED_ABOVE, searches may miss the
+# tip; NEEDLE times the axis ratio beyond it is added.
+OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 6e-5, 48, 2e-3
 # Where a peak falls by more than this share of the tolerance, another summit may be higher: all places are searched.
 FALLS = 0.5
-# Below this tolerance, and above this axis ratio, windows start from a solution on twice the elements.
-DOUBLED_BELOW, DOUBLED_ABOVE = 0.03, 8.0
+# Windows start from a solution on twice the elements below the first tolerance, and on twice as many again up to STRICT
+# or above this axis ratio.
+DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
 # Points of the traction along each side of an element at the trailing tip, and the tolerance below which the second
 # number holds. The traction changes direction there within a few elements. With 200 elements in the area, peaks are
 # 1 % too low with 2 points, and 0.1 % with 4.
@@ -80,7 +84,7 @@ class Search(NamedTuple):
 
 def _bound(resolved: float) -> float:
     """Return the bound of the error of a peak with `resolved` elements in the adhesion area."""
-    return BOUND[resolved >= MANY] / np.sqrt(max(resolved, 1.0))
+    return BOUND[np.searchsorted(MANY, resolved, "right")] / np.sqrt(max(resolved, 1.0))
 
 
 def search_windows(results: Results, search: Search, peak: Peak, goal, share) -> None:
@@ -102,28 +106,34 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     model = results.scene.model
     patch, slip, friction, rows = results.of(search.flat)
     ratio = slenderness(patch)
-    doublings = np.minimum((goal < DOUBLED_BELOW).astype(int) + (ratio > DOUBLED_ABOVE), max(search.doublings, 1))
-    outside = OUTSIDE + SLENDER * np.maximum(ratio - SLENDER_FROM, 0.0)
-    outside += OUTSIDE_SLENDER * (ratio * OUTSIDE_AT / (model.elements * 2**doublings)) ** 2
+    finer = (ratio > DOUBLED_ABOVE) | (goal <= STRICT)
+    doublings = np.minimum((goal < DOUBLED_BELOW).astype(int) + finer, max(search.doublings, 1))
+    outside = np.fmax(OUTSIDE, OUTSIDE_SLENDER * (ratio * OUTSIDE_AT / (model.elements * 2**doublings)) ** 2)
+    outside += NEEDLE * np.maximum(ratio - DOUBLED_ABOVE, 0.0)
+    longer = 1.0 + SLENDER * np.maximum(ratio - SLENDER_FROM, 0.0)
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
         windows = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
         one, old = slice(i, i + 1), peak.take([i])
-        _search_one(windows, search, i, peak, goal[i], outside[i])
+        _search_one(windows, search, i, peak, goal[i], (outside[i], longer[i]))
         for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
             value[one] = plain + share[i] * (value[one] - plain)
 
 
-def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal: float, outside: float) -> None:
-    """Search the patch number i of a search in one window after the other."""
-    skipped, before, resolved, last, one = None, None, 0.0, np.zeros((1, 2)), slice(i, i + 1)
+def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal: float, known) -> None:
+    """Search the patch number i of a search in one window after the other.
+
+    `known` are the error from the tractions outside the windows, and the factor of slender patches on `_bound`.
+    """
+    outside, longer = known
+    skipped, before, resolved, last, one = None, None, 0.0, np.ones((1, 2)), slice(i, i + 1)
     for shares, resolved in windows:
         if resolved < np.clip((BOUND[0] / goal) ** 2, FEW, ENOUGH):
             skipped = shares
             continue
         finer = _found(shares, search, i, peak, goal)
-        other, error = SEARCHED * finer.error + outside, np.full((1, 2), _bound(resolved))
-        if (error + other).max() > goal and resolved >= MANY and (before or skipped):
+        other, error = SEARCHED * finer.error + outside, np.full((1, 2), longer * _bound(resolved))
+        if (error + other).max() > goal and resolved >= MANY[0] and (before or skipped):
             change = np.abs(finer.stress / (before or _found(skipped, search, i, peak, goal)).stress - 1.0)
             settled = np.fmax(CHANGED[0] * change, CHANGED[1] * last)
             error, last = np.where(change > BEYOND * error, change, np.fmin(error, settled)), change
@@ -133,7 +143,7 @@ def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal
             break
     if skipped is not None:  # every window had too few elements in the area
         finer = _found(skipped, search, i, peak, goal)
-        finer.error[:] = np.fmax(_bound(resolved), peak.error[one])
+        finer.error[:] = np.fmax(longer * _bound(resolved), peak.error[one])
         peak.put(one, finer)
 
 
