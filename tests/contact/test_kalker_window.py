@@ -91,7 +91,7 @@ def test_points_are_dense_in_the_window_and_fill_the_patch(parts):
         assert abs(place[0] + 1.0) < steps[0] and abs(place[-1] - 1.0) < steps[-1]
         assert steps.min() <= 2.0 / 28 / 2**4 / parts < steps.max() < 0.24 / parts
         assert steps.argmin() == pytest.approx(np.abs(place - grade[0]).argmin(), abs=1)
-        assert grade[4] < grade[0] < grade[5]  # the trailing tip lies between the ends of the area
+        assert grade[4] < grade[0] < grade[5]  # along each axis, the trailing tip lies within the adhesion area
     assert field[0, 0].size < 0.02 * (28 * 2**4 * parts) ** 2
 
 
@@ -238,7 +238,7 @@ def test_windows_begin_without_a_step():
 
 
 def test_the_error_of_slender_patches_is_told():
-    """Other windows of a slender patch have the same highest summit, within the estimated error, which is large."""
+    """A slender patch has the same peaks on other elements, within 0.5 % and within its large estimated error."""
     case = {"contact_angle": 70.0, "friction_coefficient": 0.5, "motor_force": 0.0, "radial_force": -600.0}
     slender = tr.Case(roller_profile_radius=-6.02, **case)
     ds = tr.solve(slender, ("contact", "peak_stress"), accuracy={"peak": 3e-3})
@@ -246,4 +246,4 @@ def test_the_error_of_slender_patches_is_told():
     assert (ds.error_estimate > 3e-3).all() and ds.validity.values & validity_bit("tolerance_missed")
     once = dataclasses.replace(PRESETS["reference"], peak_goal=1e-3)  # its elements may double only once
     apart = np.abs(tr.solve(slender, ("peak_stress",), accuracy=once).peak_stress / ds.peak_stress - 1.0)
-    assert (apart < ds.error_estimate).all() and (apart < 5e-3).all()  # 1 % where the tip of one body is missed
+    assert (apart < ds.error_estimate).all() and (apart < 5e-3).all()  # 1 % if the search misses the tip

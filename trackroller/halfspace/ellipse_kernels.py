@@ -25,8 +25,8 @@ XX, YY, ZZ, XY, YZ, ZX = range(6)  # components of a stress
 # at y = k0 + k1 (x + a) left of pole_x and at y = k0 + k2 (x - a) right of pole_x.
 FIELDS = ("a", "b", "friction", "sine", "cosine", "radius", "shift", "fixed", "pole_x", "k0", "k1", "k2")
 # A field of tractions may have finer elements around a point: those of equal size on the scale
-# (asinh((x/a - mid)/width) - start) / span, and likewise along y. A width of 0 stands for elements of equal size. Along
-# each axis, low and high are the ends of the adhesion area to which this point belongs.
+# (asinh((x/a - mid)/width) - start) / span, and likewise along y. A width of 0 stands for elements of equal size. This
+# point is the trailing tip of an adhesion area, which extends from low to high along each axis.
 GRADES = tuple(f"{name}_{axis}" for axis in "xy" for name in ("mid", "width", "start", "span", "low", "high"))
 PATCH = np.dtype([(name, np.float64) for name in (*FIELDS, *GRADES)])
 

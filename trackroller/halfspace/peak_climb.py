@@ -142,7 +142,7 @@ def _project(u):
 
 
 @compiled
-def _try(target, climbs, k, u, rules):
+def try_place(target, climbs, k, u, rules):
     """Move climb k to the point nearest to u (3,) if the stress is higher there."""
     _project(u)
     value = stress_at(target, 2 * k // climbs.f.size, u, rules)
@@ -183,7 +183,7 @@ def _along(target, climbs, k, axis, d, rules):
     if curve < 0.0:
         jump = min(max(0.5 * step * (heights[1] - heights[0]) / curve, -2.0 * step), 2.0 * step)
         if abs(jump) > 0.05 * step and abs(abs(jump) - step) > 0.05 * step:
-            _try(target, climbs, k, u_0 + jump * axis, rules)
+            try_place(target, climbs, k, u_0 + jump * axis, rules)
     distance = np.abs(climbs.u[k] - u_0).sum()
     if distance < 0.5 * step:
         climbs.step[k, d] = 0.35 * step
@@ -213,7 +213,7 @@ def sweep(target, climbs, k, rules, smallest, ridge):
     for d in range(3):
         moved = max(moved, _along(target, climbs, k, axes[d], d, rules))
     if ridge and ((climbs.u[k] - start) ** 2).sum() > 1e-8:
-        _try(target, climbs, k, 2.0 * climbs.u[k] - start, rules)
+        try_place(target, climbs, k, 2.0 * climbs.u[k] - start, rules)
     if target.slender:
         _turn(climbs, k, start)
     climbs.gained[k] = climbs.f[k] - before

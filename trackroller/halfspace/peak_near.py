@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.halfspace.peak_climb import PROPORTIONS, _try, no_climbs, polish, scan, standing, stress_at, sweep
+from trackroller.halfspace.peak_climb import PROPORTIONS, no_climbs, polish, scan, standing, stress_at, sweep, try_place
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds
 from trackroller.numerics.compiled import compiled
 
@@ -130,7 +130,8 @@ def climb_near(target, near, line, first, rules, smallest):
             left = standing(climbs, LINE_WORTH, LINE_GAP * size[2], 3)
             for climb in np.flatnonzero(left):
                 climbs.f[climb] = stress_at(target, climb // count, climbs.u[climb], rules)
-                _try(target, climbs, climb, start[climb].copy(), rules)  # the first rules may have led it away
+                # by the rule of the first sweeps, a climb may have left its start for a lower stress
+                try_place(target, climbs, climb, start[climb], rules)
         for climb in np.flatnonzero(left):
             moves = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least[climb], k > 0)
             left[climb] = moves and (k < SETTLED[0] or climbs.gained[climb] > SETTLED[1] * climbs.f[climb])
@@ -140,7 +141,7 @@ def climb_near(target, near, line, first, rules, smallest):
 
 @compiled
 def _exchange(target, climbs, rules, smallest):
-    """Climb in each body from the highest place of the other body, where a summit may have been missed."""
+    """Climb in each body from the summit of the other body, which its own climbs may have missed."""
     count = climbs.f.size // 2
     best = climbs.f[:count].argmax(), count + climbs.f[count:].argmax()
     places = climbs.u[best[0]].copy(), climbs.u[best[1]].copy()

@@ -200,12 +200,12 @@ def _grade(place: float, of: int, points: int) -> tuple[np.ndarray, tuple[float,
 
 
 def _in_half_sides(grid: Grid, place: tuple[float, float]) -> list[float]:
-    """Return x and y, in half sides of the patch, of a place in elements from the first corner of a grid."""
+    """Convert a place, in elements from the first corner of a grid, to x and y in half sides of the patch."""
     return [2.0 * (first + at) / of - 1.0 for first, at, of in zip(grid.first, place, grid.of, strict=True)]
 
 
 def _tip(grid: Grid, area: Spans) -> list[float]:
-    """Return x and y of the trailing tip of the adhesion area in half sides of the patch; `area` are its elements."""
+    """Return x and y of the trailing tip of the adhesion area `area`, in half sides of the patch."""
     (start, end), (row, _) = area
     column = start + int(np.argmin(np.hypot(*grid.z[0, :, row, start:end])))
     return _in_half_sides(grid, (column + 0.5, row + 0.5))

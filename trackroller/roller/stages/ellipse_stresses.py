@@ -37,9 +37,9 @@ REFINED_ERROR, REFINED_AT = 1.5e-2, 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
-# Adhesion areas of fewer elements, or with less of the patch, get windows; elements that double resolve larger areas.
-# Of a smaller share even 160 elements may miss the needle, whose peak may be 4 % higher. The second share holds for
-# tolerances up to STRICT.
+# Adhesion areas get windows if they have fewer than SMALL elements, or cover a smaller share of the patch than
+# SMALL_SHARE, whose second value holds for tolerances up to STRICT. Larger areas are resolved by doubling the elements.
+# In areas below the first share, even 160 elements along an axis may miss the needle, and give a peak 4 % too low.
 SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
@@ -49,8 +49,9 @@ SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
 HIDES, RESOLVED, UNLIKE, DOUBTED = 12.0, 0.05, (0.05, 0.6, 0.3), 1.4
-# If, by this formula, the peak of a small area is less than LEVEL too low, it errs by at most KNOWN in 99 of 100 cases,
-# even where its change with the elements is larger. Above the axis ratio LONGEST such peaks err by more.
+# Where this formula says that the peak of a small area is too low by less than LEVEL, the peak errs by at most KNOWN in
+# 99 of 100 cases, even if it changes by more when the elements double. In patches with an axis ratio above LONGEST,
+# such peaks have larger errors.
 KNOWN, LEVEL, LONGEST = 0.04, 0.055, 4.6
 # Factor on the estimated error of a peak where it has to keep a tolerance; the error of 1 in 100 designs is larger.
 SAFETY = 2.0

@@ -16,24 +16,25 @@ from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.stages.scene import Results
 
-# Largest number of levels. In 99 of 100 areas, the peak at the trailing tip errs by at most BOUND over the root of the
-# number of elements in the area; the second and third value hold from the numbers MANY on. Areas of fewer than FEW
-# elements are not searched. More than ENOUGH elements are used only where the peak does not settle.
+# Largest number of levels. In 99 of 100 adhesion areas, the peak at the trailing tip errs by at most BOUND divided by
+# the square root of the number of elements in the area. The three values of BOUND hold below MANY[0] elements, from
+# MANY[0] to MANY[1], and above. Areas of fewer than FEW elements are not searched. More than ENOUGH elements are used
+# only where the peak does not settle.
 LEVELS, BOUND, MANY, FEW, ENOUGH = 8, (0.25, 0.1, 0.075), (150, 1200), 50, 160
-# In slender patches this bound is larger: it grows by SLENDER for each 1 of the axis ratio above SLENDER_FROM.
+# In slender patches this bound is multiplied by 1 + SLENDER (axis ratio - SLENDER_FROM).
 SLENDER, SLENDER_FROM = 0.12, 3.0
 # Where this bound is too large for the tolerance, the error in areas of at least MANY[0] elements follows from the
 # changes of the peak with the last two levels: factors on the last change and on the one before. A change of more than
 # BEYOND times the bound is an error itself. SEARCHED weighs the error of the search.
 CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
-# Relative error from the tractions outside the windows: its least value, and its value over the square of the axis
-# ratio on OUTSIDE_AT elements. The larger of the two counts. Above the axis ratio DOUBLED_ABOVE, searches may miss the
-# tip; NEEDLE times the axis ratio beyond it is added.
+# Relative error of a peak from the tractions outside the windows: OUTSIDE, or, if this is larger, OUTSIDE_SLENDER times
+# the square of the axis ratio, on OUTSIDE_AT elements along an axis. In patches with an axis ratio above DOUBLED_ABOVE,
+# the search may miss the tip; NEEDLE (axis ratio - DOUBLED_ABOVE) is added.
 OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 6e-5, 48, 2e-3
 # Where a peak falls by more than this share of the tolerance, another summit may be higher: all places are searched.
 FALLS = 0.5
-# Windows start from a solution on twice the elements below the first tolerance, and on twice as many again up to STRICT
-# or above this axis ratio.
+# Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
+# tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
 DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
 # Points of the traction along each side of an element at the trailing tip, and the tolerance below which the second
 # number holds. The traction changes direction there within a few elements. With 200 elements in the area, peaks are
@@ -106,8 +107,8 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     model = results.scene.model
     patch, slip, friction, rows = results.of(search.flat)
     ratio = slenderness(patch)
-    finer = (ratio > DOUBLED_ABOVE) | (goal <= STRICT)
-    doublings = np.minimum((goal < DOUBLED_BELOW).astype(int) + finer, max(search.doublings, 1))
+    again = (ratio > DOUBLED_ABOVE) | (goal <= STRICT)
+    doublings = np.minimum((goal < DOUBLED_BELOW).astype(int) + again, max(search.doublings, 1))
     outside = np.fmax(OUTSIDE, OUTSIDE_SLENDER * (ratio * OUTSIDE_AT / (model.elements * 2**doublings)) ** 2)
     outside += NEEDLE * np.maximum(ratio - DOUBLED_ABOVE, 0.0)
     longer = 1.0 + SLENDER * np.maximum(ratio - SLENDER_FROM, 0.0)
@@ -115,18 +116,19 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
         windows = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
         one, old = slice(i, i + 1), peak.take([i])
-        _search_one(windows, search, i, peak, goal[i], (outside[i], longer[i]))
+        _search_one(windows, search, i, peak, goal[i], outside[i], longer[i])
         for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
             value[one] = plain + share[i] * (value[one] - plain)
 
 
-def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal: float, known) -> None:
+def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal, outside, longer) -> None:
     """Search the patch number i of a search in one window after the other.
 
-    `known` are the error from the tractions outside the windows, and the factor of slender patches on `_bound`.
+    `goal` is the tolerance, `outside` the error from the tractions outside the windows, and `longer` the factor by
+    which the bound of the error is larger in slender patches.
     """
-    outside, longer = known
-    skipped, before, resolved, last, one = None, None, 0.0, np.ones((1, 2)), slice(i, i + 1)
+    skipped, before, resolved, one = None, None, 0.0, slice(i, i + 1)
+    last = np.full((1, 2), np.inf)  # the first change alone does not show that a peak has settled
     for shares, resolved in windows:
         if resolved < np.clip((BOUND[0] / goal) ** 2, FEW, ENOUGH):
             skipped = shares
