@@ -142,7 +142,9 @@ def convolve(field, p, q, work, out):
     _combined(p, q, work[1], work[0])
     c2c(work[0], work[1], np.array([0]), False, 0.5 / ny, 1)
     c2c(work[1, :ny], work[0, :ny], np.array([1]), False, 0.5 / nx, 1)
-    out[:] = work[0, :ny, :nx]
+    for i in range(ny):
+        for j in range(nx):
+            out[i, j] = work[0, i, j]
 
 
 @formula

@@ -15,7 +15,6 @@ import numpy as np
 
 from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement
 from trackroller.halfspace.peak_climb import (
-    PROPORTIONS,
     Rules,
     Target,
     has_ridges,
@@ -23,6 +22,7 @@ from trackroller.halfspace.peak_climb import (
     no_climbs,
     polish,
     scan,
+    set_steps,
     standing,
     stress_at,
     sweep,
@@ -30,7 +30,7 @@ from trackroller.halfspace.peak_climb import (
 from trackroller.halfspace.peak_near import climb_near
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds, ridge_points, scan_points, spike
 from trackroller.halfspace.peak_settings import PeakSettings
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import assign, compiled, woven
 from trackroller.numerics.rows import Rows
 from trackroller.numerics.threads import share_rows
 
@@ -134,7 +134,7 @@ def _search_rows(first, last, patches, rules, effort, room, out):
                 out[i, body, 4] += out[i, body, 5]
 
 
-@compiled
+@woven
 def _climbed(fine, rough, points, rules, effort):
     """Return climbs from the highest points of a scan, below few elements at first; the best are polished."""
     climbs = _seeded(fine, rough, points, rules, effort)
@@ -143,12 +143,12 @@ def _climbed(fine, rough, points, rules, effort):
     most = max(effort.finalists, 2)
     for k in range(0 if effort.quick else len(GAPS)):
         if k == 1:
-            climbs.step[:] = 0.08 * PROPORTIONS
+            set_steps(climbs, 0.08)
         rule = rules.scan if k == 0 and effort.gridded else rules.climb
         stand = standing(climbs, max(1.0 - GAPS[k] * most, 1e-9), 0.15 if k > 0 else 0.0, most)
         for climb in np.flatnonzero(stand):
             sweep(rough, climbs, climb, rule, 0.06, k > 1)
-    climbs.step[:] = max(3.0 * effort.smallest, 0.01) * PROPORTIONS
+    set_steps(climbs, max(3.0 * effort.smallest, 0.01))
     for climb in np.flatnonzero(standing(climbs, 0.97, 0.1, effort.finalists)):
         rule = rules.ridge if climbs.u[climb, 2] == 0.0 else rules.polish
         climbs.f[climb] = stress_at(fine, climb // effort.seeds, climbs.u[climb], rule)
@@ -156,18 +156,19 @@ def _climbed(fine, rough, points, rules, effort):
     return climbs
 
 
-@compiled
+@woven
 def _write_highest(fine, climbs, rule, out):
     """Write the highest climb of each body, in normalised coordinates, into `out` (2, 6)."""
     count = climbs.f.size // 2
     for body in range(2):
         best = body * count + climbs.f[body * count : (body + 1) * count].argmax()
         summit = stress_at(fine, body, climbs.u[best], rule)
-        out[body, 0], out[body, 1:4] = summit, climbs.u[best]
+        out[body, 0] = summit
+        assign(out[body, 1:4], climbs.u[best])
         out[body, 4] = 4.0 * (abs(summit - climbs.f[best]) + climbs.gained[best]) / summit
 
 
-@compiled
+@woven
 def _seeded(fine, rough, points, rules, effort):
     """Scan the patch and return climbs from the highest places, below few elements at first."""
     count, values = effort.seeds, scan(rough, points, rules.scan)
@@ -179,7 +180,8 @@ def _seeded(fine, rough, points, rules, effort):
     for body in range(2):
         k = body * count
         for best in best_seeds(points, values[body], count, effort.apart):
-            u[k], f[k] = points[best], values[body, best]
+            assign(u[k], points[best])
+            f[k] = values[body, best]
             if not effort.gridded:  # the first sweep of the others takes the rule of the scan, see `_climbed`
                 f[k] = stress_at(rough, body, u[k], rules.climb)
             along_turn(fine.patch, u[k], climbs.along[k])

@@ -14,7 +14,7 @@ import numpy as np
 from trackroller.halfspace.ellipse import Room, near_parts, unit_rule
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import assign, compiled, woven
 
 PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
 RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
@@ -131,6 +131,13 @@ def scan(target, points, rules):
     return out
 
 
+@woven
+def set_steps(climbs, size):
+    """Set the steps of all climbs to `size`."""
+    for k in range(climbs.f.size):
+        assign(climbs.step[k], size * PROPORTIONS)
+
+
 @compiled
 def _project(u):
     """Move a point u (3,) to the nearest point of the closed half-space below the patch."""
@@ -147,10 +154,11 @@ def try_place(target, climbs, k, u, rules):
     _project(u)
     value = stress_at(target, 2 * k // climbs.f.size, u, rules)
     if value > climbs.f[k]:
-        climbs.u[k], climbs.f[k] = u, value
+        assign(climbs.u[k], u)
+        climbs.f[k] = value
 
 
-@compiled
+@woven
 def _axes(target, climbs, k, axes):
     """Write the axes (3, 3) of the pattern of climb k: radius, circumference and depth.
 
@@ -165,20 +173,25 @@ def _axes(target, climbs, k, axes):
     axes[0, 0], axes[0, 1], axes[1, 0], axes[1, 1], axes[2, 2] = c, s, -s, c, 1.0
 
 
-@compiled
+@woven
 def _along(target, climbs, k, axis, d, rules):
     """Search along axis d (3,): both sides, then the top of the parabola; return the move over the step."""
     u_0, f_0, step = climbs.u[k].copy(), climbs.f[k], climbs.step[k, d]
     sides, heights = np.empty((2, 3)), np.full(2, f_0)
-    sides[0], sides[1] = u_0 + step * axis, u_0 - step * axis
+    assign(sides[0], u_0 + step * axis)
+    assign(sides[1], u_0 - step * axis)
     fresh = np.empty(2, np.bool_)
     for side in range(2):
         _project(sides[side])
         fresh[side] = np.abs(sides[side] - u_0).sum() >= 1e-12
-    heights[fresh] = stresses_at(target, 2 * k // climbs.f.size, sides[fresh], rules)
+    found, count = stresses_at(target, 2 * k // climbs.f.size, sides[fresh], rules), 0
     for side in range(2):
+        if fresh[side]:
+            heights[side] = found[count]
+            count += 1
         if heights[side] > climbs.f[k]:
-            climbs.u[k], climbs.f[k] = sides[side], heights[side]
+            assign(climbs.u[k], sides[side])
+            climbs.f[k] = heights[side]
     curve = heights[0] - 2.0 * f_0 + heights[1]
     if curve < 0.0:
         jump = min(max(0.5 * step * (heights[1] - heights[0]) / curve, -2.0 * step), 2.0 * step)
@@ -192,7 +205,7 @@ def _along(target, climbs, k, axis, d, rules):
     return distance / step
 
 
-@compiled
+@woven
 def _turn(climbs, k, start):
     """Turn the first axis of climb k into the direction of its move from `start` (3,) (Rosenbrock)."""
     x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
@@ -265,7 +278,7 @@ def standing(climbs, share, gap, most):
     return stand
 
 
-@compiled
+@woven
 def has_ridges(target, points, values):
     """Return whether a stress at the surface is not far below the largest in one of the bodies."""
     if target.patch.friction <= LITTLE_FRICTION:

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.halfspace.peak_climb import PROPORTIONS, no_climbs, polish, scan, standing, stress_at, sweep, try_place
 from trackroller.halfspace.peak_seeds import along_turn, best_seeds
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import assign, compiled, woven
 
 NEAR_STEP = 0.04  # first step of climbs from peaks at hand
 # Climbs from the line where sliding begins: their number in each body, and the largest number of points of the line;
@@ -37,7 +37,7 @@ def _at_area(patch, points):
     return points[near_x & (y >= patch.low_y - more_y) & (y <= patch.high_y + more_y)]
 
 
-@compiled
+@woven
 def _extent(line):
     """Return the extents of a line of points on the surface (m, 3) along x and y, and the smaller one, (3,)."""
     size = np.full(3, LEAST_LINE)
@@ -48,7 +48,7 @@ def _extent(line):
     return size
 
 
-@compiled
+@woven
 def _around_tip(patch, size):
     """Return 24 points on the surface around the trailing tip of the adhesion area, (24, 3).
 
@@ -61,7 +61,7 @@ def _around_tip(patch, size):
     return out
 
 
-@compiled
+@woven
 def _seed_line(target, climbs, line, size, first):
     """Start climbs of both bodies on and beside the points `line` (m, 3); the first climb of each body stays.
 
@@ -80,15 +80,17 @@ def _seed_line(target, climbs, line, size, first):
         k = body * (2 + LINE_SEEDS)
         enough = LINE_FROM * climbs.f[k]
         tip = values[body, : len(around)].argmax()
-        climbs.u[k + 1], climbs.f[k + 1] = line[tip], values[body, tip]
         k += 1
+        assign(climbs.u[k], line[tip])
+        climbs.f[k] = values[body, tip]
         for best in best_seeds(line / size, values[body], LINE_SEEDS, LINE_APART):
             k += 1
             if values[body, best] > enough:
-                climbs.u[k], climbs.f[k] = line[best], values[body, best]
+                assign(climbs.u[k], line[best])
+                climbs.f[k] = values[body, best]
 
 
-@compiled
+@woven
 def climb_near(target, near, line, first, rules, smallest):
     """Climb from the peaks at hand and from the points where sliding begins, and return the climbs.
 
@@ -117,9 +119,10 @@ def climb_near(target, near, line, first, rules, smallest):
     least = np.full(2 * count, LINE_SMALLEST * size[2])
     for body in range(2):
         k = body * count
-        climbs.u[k] = near[body]
+        assign(climbs.u[k], near[body])
         if not len(line) or not len(_at_area(target.patch, near[body : body + 1])):
-            climbs.step[k], least[k] = NEAR_STEP * PROPORTIONS, smallest
+            assign(climbs.step[k], NEAR_STEP * PROPORTIONS)
+            least[k] = smallest
             along_turn(target.patch, near[body], climbs.along[k])
         climbs.f[k] = stress_at(target, body, near[body], first)
     if len(line):
@@ -139,7 +142,7 @@ def climb_near(target, near, line, first, rules, smallest):
     return climbs
 
 
-@compiled
+@woven
 def _exchange(target, climbs, rules, smallest):
     """Climb in each body from the summit of the other body, which its own climbs may have missed."""
     count = climbs.f.size // 2
@@ -151,5 +154,7 @@ def _exchange(target, climbs, rules, smallest):
         k, place = body * count + (best[body] == body * count), places[1 - body]
         value = stress_at(target, body, place, rules)
         if value > LINE_WORTH * climbs.f[best[body]]:
-            climbs.u[k], climbs.f[k], climbs.step[k] = place, value, 5.0 * smallest * PROPORTIONS
+            assign(climbs.u[k], place)
+            assign(climbs.step[k], 5.0 * smallest * PROPORTIONS)
+            climbs.f[k] = value
             polish(target, climbs, k, rules, smallest, 12)

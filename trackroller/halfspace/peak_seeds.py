@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.halfspace.ellipse_kernels import grades_of, grid_point
 from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import assign, compiled
 
 Rings = tuple[tuple[float, int], ...]
 
@@ -111,7 +111,7 @@ def ridge_points(patch, field):
     most = MOST_ON_RIDGE * max(1, nx // OF_GRID)
     if count > most:
         for k in range(most):
-            line[k] = line[int(k * ((count - 1) / (most - 1)))]
+            assign(line[k], line[int(k * ((count - 1) / (most - 1)))])
         count = most
     return line[:count]
 

@@ -49,6 +49,20 @@ fast: Any = njit(**_FAST, **_CACHED)
 inner: Any = njit(**_FAST, **_INNER)
 # for functions that become a part of each caller, with the options of that caller
 woven: Any = njit(inline="always")
+
+
+@woven
+def assign(out, values):
+    """Write an array into `out`, both contiguous and of the same size.
+
+    numba's own ``out[:] = values`` brings the text of an error into each caller, which takes a third of the time to
+    compile the solver.
+    """
+    source, target = values.reshape(-1), out.reshape(-1)
+    for k in range(source.size):
+        target[k] = source[k]
+
+
 # for functions that compiled code calls with numbers, and plain Python with arrays
 formula: Any = register_jitable(**_PLAIN, forceinline=True)
 fast_formula: Any = register_jitable(**_FAST, forceinline=True)

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.numerics.compiled import fast
+from trackroller.numerics.compiled import assign, fast
 
 
 class Spline(NamedTuple):
@@ -88,7 +88,7 @@ def _interpolate(fields, y, x, out):
     ny, nx = fields.shape[1:]
     spline, wide = np.empty((ny, nx)), np.empty((ny, out.shape[2]))
     for k in range(len(fields)):
-        spline[:] = fields[k]
+        assign(spline, fields[k])
         _to_coefficients(spline, y.bands)
         _to_coefficients(spline.T, x.bands)
         for i in range(ny):

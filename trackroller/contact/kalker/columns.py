@@ -15,7 +15,7 @@ from typing import NamedTuple
 import numpy as np
 
 from trackroller.contact.kalker.loops import ACROSS, ALONG, NORMAL_X, NORMAL_Y
-from trackroller.numerics.compiled import compiled, fast
+from trackroller.numerics.compiled import assign, compiled, fast
 from trackroller.numerics.lanes import LANES, multiply, subtract_multiple
 
 COLUMN, DIRECTION, FIRST, ROWS = range(4)  # of a system
@@ -167,7 +167,7 @@ def factorise(slips, derivative, rho, first, count, systems):
 def apply_inverse(systems, groups, field, out):
     """Apply the preconditioner to `field` and write `out`, both (ny, nx, 2); elements without system stay unchanged."""
     line, before = systems.line[2], systems.line[3]
-    out[:] = field
+    assign(out, field)
     for group in range(groups):
         which, flat = systems.which[group * LANES : (group + 1) * LANES], systems.factors[group].reshape(-1)
         n, x, y = which[:, ROWS].max(), systems.x[group], systems.y[group]
@@ -177,7 +177,7 @@ def apply_inverse(systems, groups, field, out):
             for i in range(which[lane, ROWS]):
                 at = i * LANES + lane
                 line[at] = x[at] * field[first + i, j, 0] + y[at] * field[first + i, j, 1]
-        before[: n * LANES] = line[: n * LANES]
+        assign(before[: n * LANES], line[: n * LANES])
         for m in range(n):
             below = (m * WIDTH + BAND + 1) * LANES
             subtract_multiple(line, (m + 1) * LANES, flat, below, line, m * LANES, min(BAND, n - m - 1))

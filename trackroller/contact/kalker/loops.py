@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from trackroller.numerics.compiled import compiled, fast
+from trackroller.numerics.compiled import assign, compiled, fast
 from trackroller.numerics.knots import polyline
 
 ALONG, ACROSS, NORMAL_X, NORMAL_Y = range(4)  # of the derivative that `jacobian` writes
@@ -22,7 +22,7 @@ def reals(field):
 @compiled
 def row_means(field, first, count, out):
     """Average each element (weight 1/2) with its neighbours in the rolling direction (1/4) within the patch."""
-    out[:] = field
+    assign(out, field)
     for j in range(count.size):
         low, high = first[j], first[j] + count[j] - 1
         for i in range(low, high + 1):

@@ -19,7 +19,7 @@ from trackroller.contact.influence import Influence, convolve
 from trackroller.contact.kalker.columns import column_ranges, systems_for
 from trackroller.contact.kalker.krylov import Columns, Derivative, Operator, Space, solve
 from trackroller.contact.kalker.loops import find_slits, hold, jacobian, law_of_slip, reals, residual, row_means
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import assign, compiled
 
 # If many elements between sticking ones are wrongly taken as sliding, Newton's method corrects only one of them in each
 # step, from the leading edge on, with short steps. After SHORT steps of at most half length, a leap sets all of them to
@@ -171,18 +171,19 @@ def _iterate(law, work, at, tolerance, limit):
             short = 0
             if new_norm < RISE * norm:
                 norm_before, left, largest, norm = norm, TRIAL, new_largest, new_norm
-                before[:], at[:] = at, new
+                assign(before, at)
+                assign(at, new)
             else:
                 largest, norm = _state(law, work, at[0], at[1])
             continue
         largest, norm, length = _search(law, work, at, norm, moves, new)
-        at[:] = new
+        assign(at, new)
         short = short + 1 if length <= 0.5 else 0
         if left > 0:
             improved = norm < 0.9 * norm_before
             left = 0 if improved else left - 1
             if left == 0 and not improved:
-                at[:] = before
+                assign(at, before)
                 largest, norm = _state(law, work, at[0], at[1])
                 short = -TRIAL
     return largest, iteration, products
@@ -224,10 +225,10 @@ def newton(problem, room, traction, tolerance, limit):
     )
     law = Law(problem.height, problem.scale, problem.knots, problem.factors, falls, rho)
     at = np.empty((2, *traction.shape), np.complex128)
-    at[0] = traction
-    at[1] = problem.rigid
+    assign(at[0], traction)
+    assign(at[1], problem.rigid)
     if np.any(traction != 0.0):
         convolve(traction, functions.p, functions.q, room.space.transforms, room.value)
-        at[1] += room.value
+        assign(at[1], at[1] + room.value)
     largest, steps, products = _iterate(law, work, at, tolerance, limit)
     return at, largest, steps, products

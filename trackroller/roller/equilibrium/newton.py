@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.numerics.compiled import compiled
+from trackroller.numerics.compiled import assign, compiled
 from trackroller.roller.equilibrium.roller import Roller
 
 SMALL = 0.01  # the error of the forces is estimated where rolling radius / size of the patch is below this ratio
@@ -242,11 +242,13 @@ def _solve3(a, b):
     for m in range(len(b)):
         for i in range(3):
             largest = max(abs(a[m, i, 0]), abs(a[m, i, 1]), abs(a[m, i, 2]))
-            s[i], c[i] = a[m, i] / largest, b[m, i] / largest
+            assign(s[i], a[m, i] / largest)
+            c[i] = b[m, i] / largest
         column = [max(abs(s[0, j]), abs(s[1, j]), abs(s[2, j])) for j in range(3)]
         determinant = np.nan
         for j in range(3):
-            s[:, j] /= column[j]
+            for i in range(3):
+                s[i, j] /= column[j]
         for j in range(3):
             u, v = s[:, (j + 1) % 3], s[:, (j + 2) % 3]
             k0, k1, k2 = u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]
