@@ -247,3 +247,27 @@ def test_the_error_of_slender_patches_is_told():
     once = dataclasses.replace(PRESETS["reference"], peak_goal=1e-3)  # its elements may double only once
     apart = np.abs(tr.solve(slender, ("peak_stress",), accuracy=once).peak_stress / ds.peak_stress - 1.0)
     assert (apart < ds.error_estimate).all() and (apart < 5e-3).all()  # 1 % if the search misses the tip
+
+
+def test_a_summit_behind_the_trailing_tip_is_found():
+    """A slender patch whose plain search leads to the tip has the same peaks on 80 elements as on 24."""
+    case = sample(150, 8601)[48]
+    finest = dataclasses.replace(PRESETS["reference"], elements=80, peak_goal=1e-3)
+    fine, coarse = (tr.solve(case, ("contact", "peak_stress"), accuracy=accuracy) for accuracy in (finest, 3e-3))
+    assert (fine.peak_y < 0.5 * fine.semi_axis_rolling).all()  # the tip lies at 0.76
+    assert (np.abs(fine.peak_stress / coarse.peak_stress - 1.0) < 5e-3).all()  # 2 % without points behind the tip
+
+
+def test_a_peak_in_a_large_area_is_compared_with_another(monkeypatch):
+    """Only one window of a large area has few enough elements; one of larger elements shows that its peak still moves."""
+    counts, plain = [], window_search._search_one
+
+    def recorded(windows, *given):
+        counts.append([])
+        plain((counts[-1].append(level[1]) or level for level in windows), *given)
+
+    monkeypatch.setattr(window_search, "_search_one", recorded)
+    ds = tr.solve(sample(150, 8601)[114], ("peak_stress",), accuracy=3e-3)
+    assert len(counts) == 2
+    assert all(levels[0] < window_search.MANY[1] < levels[1] for levels in counts)
+    assert ds.error_estimate.max() > 3e-3

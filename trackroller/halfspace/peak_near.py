@@ -26,6 +26,8 @@ AROUND = 0.15  # distance from the ends of the adhesion area up to which points 
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
+# Behind the tip it turns slowly, and another summit may lie there, above all in slender patches.
+BEHIND_ACROSS, BEHIND_ALONG = (-0.6, -0.3, 0.0, 0.3, 0.6), (-2.4, -1.2, -0.6, -0.3)
 
 
 @compiled
@@ -49,32 +51,34 @@ def _extent(line):
 
 
 @woven
-def _around_tip(patch, size):
-    """Return 24 points on the surface around the trailing tip of the adhesion area, (24, 3).
+def _around_tip(patch, size, across, along):
+    """Return points on the surface around the trailing tip of the adhesion area, (m, 3), where the field is densest.
 
-    The tip is where the field is densest. `size` are the extents of the line where sliding begins, see `_extent`.
+    Each of the distances `across` meets each of those `along`. They are multiples of `size`, the extents of the line
+    where sliding begins, see `_extent`.
     """
-    out = np.zeros((len(TIP_ACROSS) * len(TIP_ALONG), 3))
+    out = np.zeros((len(across) * len(along), 3))
     for k in range(len(out)):
-        out[k, 0] = patch.mid_x + TIP_ACROSS[k % len(TIP_ACROSS)] * size[0]
-        out[k, 1] = patch.mid_y + TIP_ALONG[k // len(TIP_ACROSS)] * size[1]
+        out[k, 0] = patch.mid_x + across[k % len(across)] * size[0]
+        out[k, 1] = patch.mid_y + along[k // len(across)] * size[1]
     return out
 
 
 @woven
 def _seed_line(target, climbs, line, size, first):
-    """Start climbs of both bodies on and beside the points `line` (m, 3); the first climb of each body stays.
+    """Start climbs of both bodies on, beside and behind the points `line` (m, 3); the first climb of each body stays.
 
     The second climb of each body starts at the trailing tip.
     """
-    around = _around_tip(target.patch, size)
+    around = _around_tip(target.patch, size, TIP_ACROSS, TIP_ALONG)
+    behind = _around_tip(target.patch, size, BEHIND_ACROSS, BEHIND_ALONG)
     if len(line) > LINE_POINTS:
         line = line[:: len(line) // LINE_POINTS + 1].copy()
     centre = np.zeros(3)
     for d in range(2):
         centre[d] = line[:, d].mean()
     out_of = line - centre
-    line = np.concatenate((around, line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of))
+    line = np.concatenate((around, line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of, behind))
     values = scan(target, line, first)
     for body in range(2):
         k = body * (2 + LINE_SEEDS)

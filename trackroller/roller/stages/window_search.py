@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
-from itertools import islice
+from itertools import chain, islice
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -20,7 +20,7 @@ from trackroller.roller.stages.scene import Results
 # the square root of the number of elements in the area. The three values of BOUND hold below MANY[0] elements, from
 # MANY[0] to MANY[1], and above. Areas of fewer than FEW elements are not searched. More than ENOUGH elements are used
 # only where the peak does not settle.
-LEVELS, BOUND, MANY, FEW, ENOUGH = 8, (0.25, 0.1, 0.075), (150, 1200), 50, 160
+LEVELS, BOUND, MANY, FEW, ENOUGH = 8, (0.25, 0.115, 0.08), (150, 1200), 50, 160
 # In slender patches this bound is multiplied by 1 + SLENDER (axis ratio - SLENDER_FROM).
 SLENDER, SLENDER_FROM = 0.12, 3.0
 # Where this bound is too large for the tolerance, the error in areas of at least MANY[0] elements follows from the
@@ -114,7 +114,9 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     longer = 1.0 + SLENDER * np.maximum(ratio - SLENDER_FROM, 0.0)
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
-        windows = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
+        windows: Iterator[Any] = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
+        if doublings[i] > 1:  # large areas have a single window, whose peak would be compared with no other
+            windows = chain(islice(model.windows(*given, doublings=int(doublings[i]) - 1), 1), windows)
         one, old = slice(i, i + 1), peak.take([i])
         _search_one(windows, search, i, peak, goal[i], outside[i], longer[i])
         for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
@@ -135,7 +137,7 @@ def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal
             continue
         finer = _found(shares, search, i, peak, goal)
         other, error = SEARCHED * finer.error + outside, np.full((1, 2), longer * _bound(resolved))
-        if (error + other).max() > goal and resolved >= MANY[0] and (before or skipped):
+        if resolved >= MANY[0] and (before or (skipped and (error + other).max() > goal)):
             change = np.abs(finer.stress / (before or _found(skipped, search, i, peak, goal)).stress - 1.0)
             settled = np.fmax(CHANGED[0] * change, CHANGED[1] * last)
             error, last = np.where(change > BEYOND * error, change, np.fmin(error, settled)), change
