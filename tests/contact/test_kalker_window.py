@@ -259,7 +259,7 @@ def test_a_summit_behind_the_trailing_tip_is_found():
 
 
 def test_a_peak_in_a_large_area_is_compared_with_another(monkeypatch):
-    """Only one window of a large area has few enough elements; one of larger elements shows that its peak still moves."""
+    """A large area has one window of few enough elements; one of larger elements shows that its peak still moves."""
     counts, plain = [], window_search._search_one
 
     def recorded(windows, *given):
