@@ -26,8 +26,8 @@ AROUND = 0.15  # distance from the ends of the adhesion area up to which points 
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
-# Behind the tip it turns slowly, and another summit may lie there, above all in slender patches.
-BEHIND_ACROSS, BEHIND_ALONG = (-0.6, -0.3, 0.0, 0.3, 0.6), (-2.4, -1.2, -0.6, -0.3)
+# Farther away it turns slowly, and another summit may lie there, above all in slender patches.
+AWAY_ACROSS, AWAY_ALONG = (-1.8, -0.5, 0.0, 0.5, 1.8), (-2.4, -1.2, -0.6, 1.2, 2.4)
 
 
 @compiled
@@ -66,19 +66,19 @@ def _around_tip(patch, size, across, along):
 
 @woven
 def _seed_line(target, climbs, line, size, first):
-    """Start climbs of both bodies on, beside and behind the points `line` (m, 3); the first climb of each body stays.
+    """Start climbs of both bodies on, beside and far from the points `line` (m, 3); the first climb of each body stays.
 
     The second climb of each body starts at the trailing tip.
     """
     around = _around_tip(target.patch, size, TIP_ACROSS, TIP_ALONG)
-    behind = _around_tip(target.patch, size, BEHIND_ACROSS, BEHIND_ALONG)
+    away = _around_tip(target.patch, size, AWAY_ACROSS, AWAY_ALONG)
     if len(line) > LINE_POINTS:
         line = line[:: len(line) // LINE_POINTS + 1].copy()
     centre = np.zeros(3)
     for d in range(2):
         centre[d] = line[:, d].mean()
     out_of = line - centre
-    line = np.concatenate((around, line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of, behind))
+    line = np.concatenate((around, line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of, away))
     values = scan(target, line, first)
     for body in range(2):
         k = body * (2 + LINE_SEEDS)
