@@ -26,7 +26,7 @@ AROUND = 0.15  # distance from the ends of the adhesion area up to which points 
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
-# Farther away it turns slowly, and another summit may lie there, above all in slender patches.
+# Far from the tip, the traction turns slowly. Above all in slender patches, the stress may have its summit there.
 AWAY_ACROSS, AWAY_ALONG = (-1.8, -0.5, 0.0, 0.5, 1.8), (-2.4, -1.2, -0.6, 1.2, 2.4)
 
 
@@ -52,10 +52,10 @@ def _extent(line):
 
 @woven
 def _around_tip(patch, size, across, along):
-    """Return points on the surface around the trailing tip of the adhesion area, (m, 3), where the field is densest.
+    """Return a grid of points on the surface around the trailing tip of the adhesion area, (m, 3).
 
-    Each of the distances `across` meets each of those `along`. They are multiples of `size`, the extents of the line
-    where sliding begins, see `_extent`.
+    `across` and `along` are the distances of its columns and rows from the tip along x and y, in units of `size`, the
+    extents of the line where sliding begins (`_extent`). The tip is where the points of the field are densest.
     """
     out = np.zeros((len(across) * len(along), 3))
     for k in range(len(out)):
@@ -148,7 +148,7 @@ def climb_near(target, near, line, first, rules, smallest):
 
 @woven
 def _exchange(target, climbs, rules, smallest):
-    """Climb in each body from the summit of the other body, which its own climbs may have missed."""
+    """Climb in each body from the place of the other body's highest stress, which its own climbs may have missed."""
     count = climbs.f.size // 2
     best = climbs.f[:count].argmax(), count + climbs.f[count:].argmax()
     places = climbs.u[best[0]].copy(), climbs.u[best[1]].copy()

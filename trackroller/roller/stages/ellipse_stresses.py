@@ -37,9 +37,9 @@ REFINED_ERROR, REFINED_AT = 1.5e-2, 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
-# Adhesion areas get windows if they have fewer than SMALL elements, or cover a smaller share of the patch than
-# SMALL_SHARE, whose second value holds for tolerances up to STRICT. Larger areas are resolved by doubling the elements.
-# In areas below the first share, even 160 elements along an axis may miss the needle, and give a peak 4 % too low.
+# An adhesion area is searched in windows if it has fewer than SMALL elements, or covers less of the patch than
+# SMALL_SHARE: the first value for tolerances above STRICT, the second for others. For larger areas, the elements of the
+# whole patch double. At the tip of an area below the first share, peaks on 160 elements an axis may be 4 % too low.
 SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is

@@ -16,16 +16,16 @@ from trackroller.halfspace.peak import Peak, find_peaks
 from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.stages.scene import Results
 
-# Largest number of levels. In 99 of 100 adhesion areas, the peak at the trailing tip errs by at most BOUND divided by
-# the square root of the number of elements in the area. The three values of BOUND hold below MANY[0] elements, from
-# MANY[0] to MANY[1], and above. Areas of fewer than FEW elements are not searched. More than ENOUGH elements are used
-# only where the peak does not settle.
+# A search uses at most LEVELS windows, each with finer elements than the last. In 99 of 100 adhesion areas, the error
+# of the peak at the trailing tip is at most BOUND over the square root of the number of elements in the area. BOUND
+# has one value for fewer than MANY[0] elements, one for MANY[0] to MANY[1], and one for more. The search starts in the
+# first window whose bound meets the tolerance; this window needs at least FEW elements in the area, and at most ENOUGH.
 LEVELS, BOUND, MANY, FEW, ENOUGH = 8, (0.25, 0.115, 0.08), (150, 1200), 50, 160
-# In slender patches this bound is multiplied by 1 + SLENDER (axis ratio - SLENDER_FROM).
+# For axis ratios above SLENDER_FROM, this bound is multiplied by 1 + SLENDER (axis ratio - SLENDER_FROM).
 SLENDER, SLENDER_FROM = 0.12, 3.0
-# Where this bound is too large for the tolerance, the error in areas of at least MANY[0] elements follows from the
-# changes of the peak with the last two levels: factors on the last change and on the one before. A change of more than
-# BEYOND times the bound is an error itself. SEARCHED weighs the error of the search.
+# With at least MANY[0] elements in the area, the peak is compared with that of the window before. Its error is the
+# larger of CHANGED times its last two changes, or the bound if this is smaller. If the last change is larger than
+# BEYOND times the bound, it is the error. SEARCHED times the error of the search is added.
 CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
 # Relative error of a peak from the tractions outside the windows: OUTSIDE, or, if this is larger, OUTSIDE_SLENDER times
 # the square of the axis ratio, on OUTSIDE_AT elements along an axis. In patches with an axis ratio above DOUBLED_ABOVE,
@@ -115,7 +115,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
         windows: Iterator[Any] = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
-        if doublings[i] > 1:  # large areas have a single window, whose peak would be compared with no other
+        if doublings[i] > 1:  # a large area may have a single window of these elements, and no other peak to compare
             windows = chain(islice(model.windows(*given, doublings=int(doublings[i]) - 1), 1), windows)
         one, old = slice(i, i + 1), peak.take([i])
         _search_one(windows, search, i, peak, goal[i], outside[i], longer[i])
