@@ -140,13 +140,14 @@ class ContactModel:
         return np.zeros(len(rows)), np.zeros(len(rows))
 
     def windows(
-        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, residual: float, doublings: int
     ) -> Iterator[Any]:
         """Return an iterator over the tractions of one patch on finer and finer elements around its adhesion area.
 
         Each item is a function and the number of elements in this area. The function takes how many points of the
         traction to give along each side of an element; it returns the traction and the grading of its points. The
-        other elements are those of the patch after `doublings`. A model without finer elements gives no item.
+        other elements are those of the patch after `doublings`. In the windows, the residual of the friction law is at
+        most `residual` times mu p_max. A model without finer elements gives no item.
         """
         return iter(())
 

@@ -121,7 +121,7 @@ def _search_rows(first, last, patches, rules, effort, room, out):
         fine = Target(row, patches.fields[i], nu, unit, effort.slender or effort.close, room)
         if effort.close:
             line = ridge_points(row, patches.fields[i])
-            climbs = climb_near(fine, patches.near[i], line, rules.climb, rules.ridge, effort.smallest)
+            climbs = climb_near(fine, patches.near[i], line, rules.scan, rules.climb, rules.ridge, effort.smallest)
         else:
             rough = Target(row, patches.rough[i], nu, unit, effort.slender, room)
             climbs = _climbed(fine, rough, patches.points[i], rules, effort)

@@ -65,7 +65,7 @@ def _around_tip(patch, size, across, along):
 
 
 @woven
-def _seed_line(target, climbs, line, size, first):
+def _seed_line(target, climbs, line, size, rough, first):
     """Start climbs of both bodies on, beside and far from the points `line` (m, 3); the first climb of each body stays.
 
     The second climb of each body starts at the trailing tip.
@@ -74,28 +74,25 @@ def _seed_line(target, climbs, line, size, first):
     away = _around_tip(target.patch, size, AWAY_ACROSS, AWAY_ALONG)
     if len(line) > LINE_POINTS:
         line = line[:: len(line) // LINE_POINTS + 1].copy()
-    centre = np.zeros(3)
-    for d in range(2):
-        centre[d] = line[:, d].mean()
-    out_of = line - centre
+    out_of = line - line.sum(0) / len(line)
     line = np.concatenate((around, line, line + OUTSIDE[0] * out_of, line + OUTSIDE[1] * out_of, away))
-    values = scan(target, line, first)
+    values = scan(target, line, rough)
     for body in range(2):
         k = body * (2 + LINE_SEEDS)
         enough = LINE_FROM * climbs.f[k]
         tip = values[body, : len(around)].argmax()
         k += 1
         assign(climbs.u[k], line[tip])
-        climbs.f[k] = values[body, tip]
+        climbs.f[k] = stress_at(target, body, line[tip], first)
         for best in best_seeds(line / size, values[body], LINE_SEEDS, LINE_APART):
             k += 1
             if values[body, best] > enough:
                 assign(climbs.u[k], line[best])
-                climbs.f[k] = values[body, best]
+                climbs.f[k] = stress_at(target, body, line[best], first)
 
 
 @woven
-def climb_near(target, near, line, first, rules, smallest):
+def climb_near(target, near, line, rough, first, rules, smallest):
     """Climb from the peaks at hand and from the points where sliding begins, and return the climbs.
 
     The steps of climbs from the line follow from its extents, so that an adhesion area far smaller than the patch is
@@ -109,8 +106,8 @@ def climb_near(target, near, line, first, rules, smallest):
         Normalised places of the peaks at hand.
     line : numpy.ndarray, shape (m, 3)
         Normalised points where sliding begins, on the surface.
-    first, rules : tuple of numpy.ndarray
-        Quadrature rules of the first sweeps and of the others.
+    rough, first, rules : tuple of numpy.ndarray
+        Quadrature rules that choose the starts, of the first sweeps and of the others.
     smallest : float
         Last step of the climbs from the peaks at hand.
     """
@@ -130,7 +127,7 @@ def climb_near(target, near, line, first, rules, smallest):
             along_turn(target.patch, near[body], climbs.along[k])
         climbs.f[k] = stress_at(target, body, near[body], first)
     if len(line):
-        _seed_line(target, climbs, line, size, first)
+        _seed_line(target, climbs, line, size, rough, first)
     left, start = climbs.f > 0.0, climbs.u.copy()
     for k in range(24):
         if k == LINE_SWEEPS:

@@ -71,7 +71,7 @@ class KalkerModel(ContactModel):
         elastic, elements = self.given.elastic.take(rows), self.elements * 2**doublings
         return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, elastic, elements)
 
-    def windows(self, ellipse, slip, friction, rows, doublings):
+    def windows(self, ellipse, slip, friction, rows, residual, doublings):
         if self.correction is None:
             return iter(())
         correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)
@@ -79,7 +79,7 @@ class KalkerModel(ContactModel):
             coarse = correction.on_finer(ellipse, slip, friction, rows, coarse)
         elastic = correction.elastic.take(rows)
         bound = friction * ellipse.max_pressure / elastic.shear_modulus
-        settings = replace(correction.settings, tolerance=correction.traction_tolerance)
+        settings = replace(correction.settings, tolerance=residual)
         return window.fields(ellipse, coarse, elastic.poisson_ratio[0], bound[0], settings)
 
     def power(self, ellipse, slip, friction, rows):

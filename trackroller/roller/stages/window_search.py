@@ -31,19 +31,19 @@ CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
 # the square of the axis ratio, on OUTSIDE_AT elements along an axis. In patches with an axis ratio above DOUBLED_ABOVE,
 # the search may miss the tip; NEEDLE (axis ratio - DOUBLED_ABOVE) is added.
 OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 6e-5, 48, 2e-3
-# Where a peak falls by more than this share of the tolerance, another summit may be higher: all places are searched.
-FALLS = 0.5
+# As shares of the tolerance: the largest residual of the friction law in windows over mu p_max, and the fall of a peak
+# above which all places are searched, because another summit may be higher.
+RESIDUAL, FALLS = 0.1, 0.5
 # Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
 # tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
 DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
-# Points of the traction along each side of an element at the trailing tip, and the tolerance below which the second
-# number holds. The traction changes direction there within a few elements. With 200 elements in the area, peaks are
-# 1 % too low with 2 points, and 0.1 % with 4.
-POINTS, DENSER_BELOW = (4, 8), 0.05
-# Quadrature points of the steps of a search, and those of its polish for tolerances below CLOSER_BELOW. With 16 points
-# at the summit, stresses in small adhesion areas err by up to 1.6 %. With 24 points in the polish, climbs may end 0.2 %
-# below the summit.
-IN_WINDOWS, CLOSER, CLOSER_BELOW = {"climb": 12, "summit": 64}, {"polish": 48}, 0.012
+# Points of the traction along each side of an element at the trailing tip, and quadrature points of the polish of a
+# search: for tolerances from DENSER_BELOW on, for smaller ones, and for those below CLOSER_BELOW. The traction changes
+# direction at the tip within a few elements. With 200 elements in the area, peaks are 1 % too low with 2 points, and
+# 0.1 % with 4. With 16 quadrature points, climbs may end 1 % below the summit, and 0.2 % with 24.
+POINTS, POLISH, DENSER_BELOW, CLOSER_BELOW = (3, 8, 8), (16, 24, 48), 0.05, 0.012
+# Quadrature points of the other steps of a search. With 16 at the summit, stresses in small areas err by up to 1.6 %.
+IN_WINDOWS = {"climb": 12, "summit": 64}
 
 
 def mirrored(fields: np.ndarray | None, rows: np.ndarray) -> np.ndarray | None:
@@ -113,7 +113,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     outside += NEEDLE * np.maximum(ratio - DOUBLED_ABOVE, 0.0)
     longer = 1.0 + SLENDER * np.maximum(ratio - SLENDER_FROM, 0.0)
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
-        given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]]
+        given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]], RESIDUAL * goal[i]
         windows: Iterator[Any] = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
         if doublings[i] > 1:  # a large area may have a single window of these elements, and no other peak to compare
             windows = chain(islice(model.windows(*given, doublings=int(doublings[i]) - 1), 1), windows)
@@ -153,10 +153,11 @@ def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal
 
 def _found(shares: Any, search: Search, i: int, peak: Peak, goal: float) -> Peak:
     """Return the peak of the patch number i of a search under the tractions that `shares` returns."""
-    one, (field, grades) = slice(i, i + 1), shares(POINTS[int(goal < DENSER_BELOW)])
+    one, closer = slice(i, i + 1), int(goal < DENSER_BELOW) + int(goal < CLOSER_BELOW)
+    field, grades = shares(POINTS[closer])
     field = mirrored(field.astype(FIELD), search.second[one])
     patch = _graded(search.patches[one], grades, bool(search.second[i]))
-    settings = replace(search.settings, **IN_WINDOWS, **(CLOSER if goal < CLOSER_BELOW else {}))
+    settings = replace(search.settings, polish=POLISH[closer], **IN_WINDOWS)
     given = patch, search.ratios[one], settings, field, field
     finer = find_peaks(*given, near=peak.take(one))
     if np.any(finer.stress < (1.0 - FALLS * goal) * peak.stress[one]):
