@@ -56,6 +56,17 @@ def test_forces_keep_their_tolerance():
     assert within == 1.0 and missed < 0.15
 
 
+def test_the_work_keeps_its_tolerance_where_nearly_all_sticks():
+    """Elements lose energy there: the work was 3.9 and 3.1 % too low, with a told error within 3 %."""
+    designs = random_designs(150, 8603)
+    cases = [designs[34], designs[117]]
+    best = tr.solve(cases, outputs=("forces", "friction_work"), accuracy={"forces": 1e-3})
+    ds = tr.solve(cases, outputs=("forces", "contact", "friction_work"), accuracy={"forces": 0.03})
+    work = ds.friction_energy_per_distance / best.friction_energy_per_distance - 1
+    assert ds.stick_area_fraction.min() > 0.9
+    assert np.all(np.abs(work) < 0.03) and not np.any(ds.validity & MISSED)
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("asked", "least"),

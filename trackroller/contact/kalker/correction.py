@@ -169,7 +169,7 @@ class Correction:
             pick = np.flatnonzero(near == started)
             if not pick.size:
                 continue
-            own, slot = rows[pick], _slots(rows[pick], side[pick])
+            own, slot = rows[pick], 2 * rows[pick] + side[pick]
             tolerance = converged_up_to("kalker", "hertz") if forces else self.traction_tolerance
             wanted = {"extrapolate": forces and not started, "between": forces, "tolerance": tolerance}
             settings = dataclasses.replace(self.settings, **wanted)
@@ -215,21 +215,24 @@ class Correction:
                     solve_again(np.flatnonzero(enough == number), SERVING[number])
             return value, force_error
         work = error_of_work(patch, slip, friction, *value.T[1:]) if self.settings.force_goal else 1.0
-        least = np.minimum(friction * patch.normal_force / work, other)
-        rough, finer = self._doubled(patch, slip, friction, rows, solution, least, value, force_error)
+        of_work = friction * patch.normal_force / work
+        rough, finer = self._doubled(patch, slip, friction, rows, solution, (of_work, other), value, force_error)
         light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
         if light.size and finer is not None and not self.settings.force_goal:
             start = on_elements(patch.take(rough[light]), finer.take(light), LIGHT_FACTOR * self.settings.elements)
             solve_again(rough[light], start.shape[-1], start)
         return value, force_error
 
-    def _doubled(self, patch: Any, slip: Slip, friction, rows, solution: PatchSolution, least, value, force_error):
-        """Solve patches on twice the elements, and again, while their error over `least` (m,) [N] is too large.
+    def _doubled(self, patch: Any, slip: Slip, friction, rows, solution: PatchSolution, limits, value, force_error):
+        """Solve patches on twice the elements, and again, while their error over one of `limits` [N] is too large.
 
-        Forces, error and works are overwritten. For a tolerance the forces fade from one number of elements to the
-        next, so that they have no step. Returns the patches of the first doubling, and their solutions.
+        `limits` (m,) are forces whose error doubles the friction work, and F_N of the other contact. Forces, error and
+        works are overwritten; for a tolerance they fade from one number of elements to the next. Returns the patches of
+        the first doubling, and their solutions.
         """
         goal, creep = self.settings.force_goal, Creepage.of_slip(slip, self.settings.profile_slip)
+        least = np.minimum(*limits)
+        force_error += np.where(goal > 0.0, np.abs(solution.energy_residual) * limits[0], 0.0)
         limit = least * (FADES[0] * goal or refined_above(self.settings.elements))
         first, twice = (pick := np.flatnonzero(force_error > limit)), None
         total = np.column_stack([value, solution.pressure_work, solution.energy_residual])
@@ -240,9 +243,10 @@ class Correction:
             self.count += pick.size
             new, change = extrapolation.doubled(part, creep.take(pick), mu, elastic, finer, coarse)
             finest = extrapolation.force_error(part, mu, finer.stick_fraction, change, finer.traction.shape[-1])
-            if goal:  # the change of the forces is an estimate, too
+            if goal:  # the change of the forces is an estimate, too; so is the energy residual, which would be 0
                 scale = force_scales(part, mu)
                 finest = np.fmin(finest, (np.abs(new - old)[:, :3] / scale * scale[:, :1]).max(axis=1))
+                finest += np.abs(new[:, 4]) * limits[0][pick]
             share *= finer.converged * (rise(error / (goal * least[pick]), FADES) if goal else 1.0)
             total[pick] += share[:, None] * (new - old)
             force_error[pick] += share * (finest - error)
@@ -261,7 +265,7 @@ class Correction:
         self, patch: Any, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
     ) -> PatchSolution:
         """Solve patches on twice the elements of the solutions `coarse`, arrays (m,), from the tractions at hand."""
-        slot, creep = _slots(rows, _side(slip)), Creepage.of_slip(slip, self.settings.profile_slip)
+        slot, creep = 2 * rows + _side(slip), Creepage.of_slip(slip, self.settings.profile_slip)
         elements = 2 * coarse.traction.shape[-1]
         store = self.finer[(elements // self.settings.elements).bit_length() - 2]
         known = store.known[slot]
@@ -279,7 +283,7 @@ class Correction:
 
     def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
         """Return the last solutions of patches, arrays (m,); patches without one are solved."""
-        slot = _slots(rows, _side(slip))
+        slot = 2 * rows + _side(slip)
         if not slot.size:
             ellipse = cast(Ellipse, patch)  # the correction is made for ellipses only
             return solve_patch(ellipse, Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings)
@@ -314,7 +318,3 @@ class Correction:
 
 def _side(slip: Slip) -> np.ndarray:
     return (slip.sine < 0).astype(int)
-
-
-def _slots(rows: np.ndarray, side: np.ndarray) -> np.ndarray:
-    return 2 * rows + side
