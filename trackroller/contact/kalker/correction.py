@@ -226,9 +226,9 @@ class Correction:
     def _doubled(self, patch: Any, slip: Slip, friction, rows, solution: PatchSolution, limits, value, force_error):
         """Solve patches on twice the elements, and again, while their error over one of `limits` [N] is too large.
 
-        `limits` (m,) are forces whose error doubles the friction work, and F_N of the other contact. Forces, error and
-        works are overwritten; for a tolerance they fade from one number of elements to the next. Returns the patches of
-        the first doubling, and their solutions.
+        `limits` (m,) are the errors of the forces that double the friction work, and F_N of the other contact. Forces,
+        error and works are overwritten; for a tolerance they fade from one number of elements to the next. Returns the
+        patches of the first doubling, and their solutions.
         """
         goal, creep = self.settings.force_goal, Creepage.of_slip(slip, self.settings.profile_slip)
         least = np.minimum(*limits)

@@ -119,7 +119,7 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
             windows = chain(islice(model.windows(*given, doublings=int(doublings[i]) - 1), 1), windows)
         one, old = slice(i, i + 1), peak.take([i])
         _search_one(windows, search, i, peak, goal[i], outside[i], longer[i])
-        old.error[:] = np.fmax(old.error, np.abs(peak.stress[one] / old.stress - 1.0))
+        old.error[:] = np.fmax(old.error, np.abs(peak.stress[one] / old.stress - 1.0))  # a share below 1 leaves a part
         for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
             value[one] = plain + share[i] * (value[one] - plain)
 
