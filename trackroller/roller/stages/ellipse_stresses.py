@@ -49,6 +49,9 @@ SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
 HIDES, RESOLVED, UNLIKE, DOUBTED = 12.0, 0.05, (0.05, 0.6, 0.3), 1.4
+# Below LITTLE_FRICTION, the peak is rarely at an adhesion area. If K/mu is above SHARP[0], it may be there down to the
+# friction SHARP[1]: this formula alone decides on windows then.
+SHARP = 0.25, 0.1
 # Where this formula says that the peak of a small area is too low by less than LEVEL, the peak errs by at most KNOWN in
 # 99 of 100 cases, even if it changes by more when the elements double. In patches with an axis ratio above LONGEST,
 # such peaks have larger errors.
@@ -203,7 +206,8 @@ class EllipseStresses(PatchStresses):
         hides = small * (HIDES * peak.error.max(axis=1) > goal)
         known = small * (1.0 - rise(excess[0] / LEVEL, FADES)) * (1.0 - rise(slenderness(patch) / LONGEST, FADES))
         most = KNOWN / np.maximum(known, 1e-9)  # no limit where the error is not known
-        return hides * np.where(goal <= STRICT, 1.0, share), hides * np.clip(excess[0], 0.0, goal), most
+        every = (goal <= STRICT) & (friction > LITTLE_FRICTION)
+        return hides * np.where(every, 1.0, share), hides * np.clip(excess[0], 0.0, goal), most
 
     def _small(self, flat: np.ndarray, goal: np.ndarray) -> np.ndarray:
         """Return 1 where the adhesion area at the spin pole is small, for the patches `flat`, (m,).
@@ -211,11 +215,13 @@ class EllipseStresses(PatchStresses):
         It falls to 0 where the area is no longer small. `goal` (m,) are the tolerances of the peaks.
         """
         patch, slip, friction, rows = self.results.of(flat)
-        sticks: Any = self.results.scene.model.stick(patch, slip, friction, rows)
+        model = self.results.scene.model
+        sticks: Any = model.stick(patch, slip, friction, rows)
+        unlike = np.abs(model.given.elastic.coupling[rows]) > SHARP[0] * friction
         pole = np.abs(self.results.slip.pole_lateral[flat]) < patch.semi_axis_lateral
         share = np.where(goal > STRICT, *SMALL_SHARE)
         few = np.maximum(SMALL / (0.25 * np.pi * self.options.settings.elements**2), share)
-        return (1.0 - rise(sticks / few, FADES)) * pole * (friction > LITTLE_FRICTION)
+        return (1.0 - rise(sticks / few, FADES)) * pole * (friction > np.where(unlike, SHARP[1], LITTLE_FRICTION))
 
     def _search_doubled(self, search: Search, peak: Peak, goal, doubt, small) -> None:
         """Search patches again under tractions on twice the elements, and again while their error is above `goal` (m,).
