@@ -50,7 +50,7 @@ SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
 HIDES, RESOLVED, UNLIKE, DOUBTED = 12.0, 0.05, (0.05, 0.6, 0.3), 1.4
 # Below LITTLE_FRICTION, the peak is rarely at an adhesion area. If K/mu is above SHARP[0], it may be there down to the
-# friction SHARP[1]: this formula alone decides on windows then.
+# friction SHARP[1]. For tolerances below RESOLVED, this formula alone decides on windows then.
 SHARP = 0.25, 0.1
 # Where this formula says that the peak of a small area is too low by less than LEVEL, the peak errs by at most KNOWN in
 # 99 of 100 cases, even if it changes by more when the elements double. In patches with an axis ratio above LONGEST,
@@ -217,11 +217,11 @@ class EllipseStresses(PatchStresses):
         patch, slip, friction, rows = self.results.of(flat)
         model = self.results.scene.model
         sticks: Any = model.stick(patch, slip, friction, rows)
-        unlike = np.abs(model.given.elastic.coupling[rows]) > SHARP[0] * friction
+        sharp = (np.abs(model.given.elastic.coupling[rows]) > SHARP[0] * friction) & (goal < RESOLVED)
         pole = np.abs(self.results.slip.pole_lateral[flat]) < patch.semi_axis_lateral
         share = np.where(goal > STRICT, *SMALL_SHARE)
         few = np.maximum(SMALL / (0.25 * np.pi * self.options.settings.elements**2), share)
-        return (1.0 - rise(sticks / few, FADES)) * pole * (friction > np.where(unlike, SHARP[1], LITTLE_FRICTION))
+        return (1.0 - rise(sticks / few, FADES)) * pole * (friction > np.where(sharp, SHARP[1], LITTLE_FRICTION))
 
     def _search_doubled(self, search: Search, peak: Peak, goal, doubt, small) -> None:
         """Search patches again under tractions on twice the elements, and again while their error is above `goal` (m,).
