@@ -37,11 +37,12 @@ RESIDUAL, FALLS = 0.1, 0.5
 # Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
 # tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
 DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
-# Points of the traction along each side of an element at the trailing tip, and quadrature points of the polish of a
-# search: for tolerances from DENSER_BELOW on, for smaller ones, and for those below CLOSER_BELOW. The traction changes
-# direction at the tip within a few elements. With 200 elements in the area, peaks are 1 % too low with 2 points, and
-# 0.1 % with 4. With 16 quadrature points, climbs may end 1 % below the summit, and 0.2 % with 24.
-POINTS, POLISH, DENSER_BELOW, CLOSER_BELOW = (3, 8, 8), (16, 24, 48), 0.05, 0.012
+# POINTS are the points of the traction along each side of an element at the trailing tip, POLISH the quadrature points
+# in the last climbs of a search. Both have one value for tolerances below FINER_BELOW[0], one below FINER_BELOW[1], and
+# one for larger tolerances. The traction changes its direction at the tip within a few elements: in an area of 200
+# elements, peaks are 1 % too low with 2 points along a side, and 0.1 % too low with 4. With 16 quadrature points, a
+# climb may end 1 % below the summit; with 24, it may end 0.2 % below it.
+POINTS, POLISH, FINER_BELOW = (8, 8, 3), (48, 24, 16), (0.012, 0.05)
 # Quadrature points of the other steps of a search. With 16 at the summit, stresses in small areas err by up to 1.6 %.
 IN_WINDOWS = {"climb": 12, "summit": 64}
 
@@ -154,11 +155,11 @@ def _search_one(windows: Iterator[Any], search: Search, i: int, peak: Peak, goal
 
 def _found(shares: Any, search: Search, i: int, peak: Peak, goal: float) -> Peak:
     """Return the peak of the patch number i of a search under the tractions that `shares` returns."""
-    one, closer = slice(i, i + 1), int(goal < DENSER_BELOW) + int(goal < CLOSER_BELOW)
-    field, grades = shares(POINTS[closer])
+    one, loose = slice(i, i + 1), np.searchsorted(FINER_BELOW, goal, "right")
+    field, grades = shares(POINTS[loose])
     field = mirrored(field.astype(FIELD), search.second[one])
     patch = _graded(search.patches[one], grades, bool(search.second[i]))
-    settings = replace(search.settings, polish=POLISH[closer], **IN_WINDOWS)
+    settings = replace(search.settings, polish=POLISH[loose], **IN_WINDOWS)
     given = patch, search.ratios[one], settings, field, field
     finer = find_peaks(*given, near=peak.take(one))
     if np.any(finer.stress < (1.0 - FALLS * goal) * peak.stress[one]):
