@@ -26,7 +26,8 @@ AROUND = 0.15  # distance from the ends of the adhesion area up to which points 
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
-# Far from the tip, the traction turns slowly. Above all in slender patches, the stress may have its summit there.
+# Points further away from the tip, over the extent of the line: the highest stress may lie there, above all in slender
+# patches.
 AWAY_ACROSS, AWAY_ALONG = (-1.8, -0.5, 0.0, 0.5, 1.8), (-2.4, -1.2, -0.6, 1.2, 2.4)
 
 
@@ -107,7 +108,7 @@ def climb_near(target, near, line, rough, first, rules, smallest):
     line : numpy.ndarray, shape (m, 3)
         Normalised points where sliding begins, on the surface.
     rough, first, rules : tuple of numpy.ndarray
-        Quadrature rules that choose the starts, of the first sweeps and of the others.
+        Quadrature rules: to choose the starts, for the first sweeps, and for the later ones.
     smallest : float
         Last step of the climbs from the peaks at hand.
     """

@@ -226,9 +226,9 @@ class Correction:
     def _doubled(self, patch: Any, slip: Slip, friction, rows, solution: PatchSolution, limits, value, force_error):
         """Solve patches on twice the elements, and again, while their error over one of `limits` [N] is too large.
 
-        `limits` (m,) are the errors of the forces that double the friction work, and F_N of the other contact. Forces,
-        error and works are overwritten; for a tolerance they fade from one number of elements to the next. Returns the
-        patches of the first doubling, and their solutions.
+        An error of the forces as large as `limits[0]` (m,) is a relative error of 1 of the friction work, and one as
+        large as `limits[1]` is that of F_N of the other contact. Forces, error and works are overwritten; for a
+        tolerance they fade between numbers of elements. Returns the first patches solved again, and their solutions.
         """
         goal, creep = self.settings.force_goal, Creepage.of_slip(slip, self.settings.profile_slip)
         least = np.minimum(*limits)
@@ -243,7 +243,7 @@ class Correction:
             self.count += pick.size
             new, change = extrapolation.doubled(part, creep.take(pick), mu, elastic, finer, coarse)
             finest = extrapolation.force_error(part, mu, finer.stick_fraction, change, finer.traction.shape[-1])
-            if goal:  # the change of the forces is an estimate, too; so is the energy residual, which would be 0
+            if goal:  # at most the change of the forces, plus the energy residual, which is 0 without errors
                 scale = force_scales(part, mu)
                 finest = np.fmin(finest, (np.abs(new - old)[:, :3] / scale * scale[:, :1]).max(axis=1))
                 finest += np.abs(new[:, 4]) * limits[0][pick]

@@ -205,7 +205,7 @@ def _in_half_sides(grid: Grid, place: tuple[float, float]) -> list[float]:
 
 
 def _tip(grid: Grid, area: Spans) -> list[float]:
-    """Return x and y of the trailing tip of the adhesion area `area`, over half the sides of the patch."""
+    """Return the trailing tip of the adhesion area: x over half the width of the patch, y over half its length."""
     (start, end), (row, _) = area
     column = start + int(np.argmin(np.hypot(*grid.z[0, :, row, start:end])))
     return _in_half_sides(grid, (column + 0.5, row + 0.5))

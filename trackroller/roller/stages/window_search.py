@@ -21,18 +21,19 @@ from trackroller.roller.stages.scene import Results
 # has one value for fewer than MANY[0] elements, one for MANY[0] to MANY[1], and one for more. The search starts in the
 # first window whose bound meets the tolerance; this window needs at least FEW elements in the area, and at most ENOUGH.
 LEVELS, BOUND, MANY, FEW, ENOUGH = 8, (0.25, 0.115, 0.08), (150, 1200), 50, 160
-# For axis ratios above SLENDER_FROM, this bound is multiplied by 1 + SLENDER (axis ratio - SLENDER_FROM).
+# In patches with an axis ratio above SLENDER_FROM, the bound is 1 + SLENDER (axis ratio - SLENDER_FROM) times as large.
 SLENDER, SLENDER_FROM = 0.12, 3.0
-# With at least MANY[0] elements in the area, the peak is compared with that of the window before. Its error is the
-# larger of CHANGED times its last two changes, or the bound if this is smaller. If the last change is larger than
-# BEYOND times the bound, it is the error. SEARCHED times the error of the search is added.
+# With at least MANY[0] elements in the area, the peak is compared with that of the window before. Its error is then the
+# larger of CHANGED[0] times the last change and CHANGED[1] times the change before it, but at most the bound. Where the
+# last change is larger than BEYOND times the bound, this change is the error. SEARCHED times the error of the search is
+# added.
 CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
 # Relative error of a peak from the tractions outside the windows: OUTSIDE, or, if this is larger, OUTSIDE_SLENDER times
 # the square of the axis ratio, on OUTSIDE_AT elements along an axis. In patches with an axis ratio above DOUBLED_ABOVE,
 # the search may miss the tip; NEEDLE (axis ratio - DOUBLED_ABOVE) is added.
 OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 6e-5, 48, 2e-3
-# As shares of the tolerance: the largest residual of the friction law in windows over mu p_max, and the fall of a peak
-# above which all places are searched, because another summit may be higher.
+# In windows, the residual of the friction law over mu p_max is at most RESIDUAL times the tolerance. If a window lowers
+# the peak by more than FALLS times the tolerance, all places are searched, because another summit may be higher.
 RESIDUAL, FALLS = 0.1, 0.5
 # Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
 # tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
@@ -116,11 +117,12 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]], RESIDUAL * goal[i]
         windows: Iterator[Any] = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
-        if doublings[i] > 1:  # a large area may have a single window of these elements, and no other peak to compare
+        if doublings[i] > 1:  # a large area may have one window only; a coarser window gives a peak to compare
             windows = chain(islice(model.windows(*given, doublings=int(doublings[i]) - 1), 1), windows)
         one, old = slice(i, i + 1), peak.take([i])
         _search_one(windows, search, i, peak, goal[i], outside[i], longer[i])
-        old.error[:] = np.fmax(old.error, np.abs(peak.stress[one] / old.stress - 1.0))  # a share below 1 leaves a part
+        # with a share below 1, a part of the change stays in the peak as an error
+        old.error[:] = np.fmax(old.error, np.abs(peak.stress[one] / old.stress - 1.0))
         for value, plain in ((peak.stress, old.stress), (peak.error, old.error)):
             value[one] = plain + share[i] * (value[one] - plain)
 
