@@ -211,14 +211,18 @@ def _turn(climbs, k, start):
     x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
     length = math.sqrt(x * x + y * y)
     if length > 1e-5:
-        climbs.along[k, 0], climbs.along[k, 1] = x / length, y / length
+        x, y = x / length, y / length
+        if abs(x * climbs.along[k, 0] + y * climbs.along[k, 1]) < 0.7:  # steps stay with their directions
+            climbs.step[k, 0], climbs.step[k, 1] = climbs.step[k, 1], climbs.step[k, 0]
+        climbs.along[k, 0], climbs.along[k, 1] = x, y
 
 
 @compiled
 def sweep(target, climbs, k, rules, smallest, ridge):
     """Search along radius, circumference and depth in turn; return whether climb k still moves.
 
-    With `ridge` a further step repeats the whole move of this sweep, which follows ridges oblique to the axes.
+    With `ridge` a further step repeats the whole move of this sweep, which follows ridges oblique to the axes. In
+    slender patches the step is doubled, up to twice, as long as the stress rises.
     """
     before, start, axes = climbs.f[k], climbs.u[k].copy(), np.empty((3, 3))
     _axes(target, climbs, k, axes)
@@ -226,7 +230,13 @@ def sweep(target, climbs, k, rules, smallest, ridge):
     for d in range(3):
         moved = max(moved, _along(target, climbs, k, axes[d], d, rules))
     if ridge and ((climbs.u[k] - start) ** 2).sum() > 1e-8:
-        try_place(target, climbs, k, 2.0 * climbs.u[k] - start, rules)
+        move = climbs.u[k] - start
+        for _ in range(3 if target.slender else 1):
+            height = climbs.f[k]
+            try_place(target, climbs, k, climbs.u[k] + move, rules)
+            if not climbs.f[k] > height:
+                break
+            move *= 2.0
     if target.slender:
         _turn(climbs, k, start)
     climbs.gained[k] = climbs.f[k] - before

@@ -28,7 +28,7 @@ LEAST_LINE = 1e-3  # extent of a line of few points
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
 # Points further away from the tip, over the extent of the line: the highest stress may lie there, above all in slender
 # patches.
-AWAY_ACROSS, AWAY_ALONG = (-1.8, -0.5, 0.0, 0.5, 1.8), (-2.4, -1.2, -0.6, 1.2, 2.4)
+AWAY_ACROSS, AWAY_ALONG = (-1.8, -1.1, -0.5, 0.0, 0.5, 1.1, 1.8), (-2.4, -1.2, -0.6, 0.7, 1.2, 2.4)
 
 
 @compiled
@@ -133,10 +133,15 @@ def climb_near(target, near, line, rough, first, rules, smallest):
     for k in range(24):
         if k == LINE_SWEEPS:
             left = standing(climbs, LINE_WORTH, LINE_GAP * size[2], 3)
-            for climb in np.flatnonzero(left):
-                climbs.f[climb] = stress_at(target, climb // count, climbs.u[climb], rules)
-                # by the rule of the first sweeps, a climb may have left its start for a lower stress
+            # by the rule of the first sweeps, a climb may have left its start for a lower stress, and a ridge beside
+            # the area may be higher than the peak at hand and the tip
+            lost = ~left & (np.arange(2 * count) % count < 2)
+            for climb in np.concatenate((np.flatnonzero(left), np.flatnonzero(lost))):
+                body = climb // count
+                best = climbs.f[body * count : (body + 1) * count].max()
+                climbs.f[climb] = stress_at(target, body, climbs.u[climb], rules)
                 try_place(target, climbs, climb, start[climb], rules)
+                left[climb] = left[climb] or climbs.f[climb] > best
         for climb in np.flatnonzero(left):
             moves = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least[climb], k > 0)
             left[climb] = moves and (k < SETTLED[0] or climbs.gained[climb] > SETTLED[1] * climbs.f[climb])
