@@ -9,7 +9,7 @@ import pytest
 
 from validation.house import LONGEST_FUNCTION, MOST_LINES, survey
 
-LINES_OF_CODE = 27_640  # most lines of code in the package, without FOR_LIMITS
+LINES_OF_CODE = 27_685  # most lines of code in the package, without FOR_LIMITS
 FOR_LIMITS = 1_835  # lines of the limits in the room `damage`, and of what declares and serves them
 # formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
 LONG_FUNCTIONS = {

@@ -53,8 +53,8 @@ def test_windows_find_the_area_of_a_far_finer_patch():
 
 
 def test_the_area_converges_with_the_windows():
-    *_, rough, coarse, _, fine, finer = areas(28, 7)
-    assert abs(fine / finer - 1.0) < 0.05 < 0.4 < abs(rough / finer - 1.0)
+    *_, rough, coarse, _, _, fine, finer = areas(28, 8)
+    assert abs(fine / finer - 1.0) < 0.015 < 0.4 < abs(rough / finer - 1.0)
     assert abs(coarse / finer - 1.0) < 0.1
 
 
@@ -72,7 +72,7 @@ def test_a_window_of_a_resolved_area_keeps_the_tractions():
     height = np.sqrt(np.maximum(1.0 - x**2 - y[:, None] ** 2, 0.0))
     apart = np.hypot(*(field - same)[0]) * height
     row, column = (np.searchsorted(place, np.linspace(-0.97, 0.97, 150)) for place in (y, x))
-    assert np.percentile(apart[row[:, None], column], 99) < 0.01 and apart.max() < 0.2
+    assert np.percentile(apart[row[:, None], column], 99) < 0.006 and apart.max() < 0.3
 
 
 def points(grade, count):
@@ -241,6 +241,60 @@ def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
         assert (found.stress[0] > 0.995 * scan(target, points, rules).max(axis=1)).all()
 
 
+@pytest.mark.slow
+def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
+    """Errors of peaks at the tips of eight adhesion areas, against a window of more than 1,200 elements in the area."""
+    levels = []
+
+    def every(windows, search, i, peak, *_):
+        levels.append([])
+        for shares, elements in windows:
+            if elements > 20:
+                peak.put(slice(i, i + 1), window_search._found(shares, search, i, peak, 4e-3))
+                levels[-1].append((elements, peak.stress[i].copy()))
+            if elements > 1200:
+                break
+
+    monkeypatch.setattr(window_search, "_search_one", every)
+    designs = [sample(60, 4102)[i] for i in (7, 32, 41, 47)] + [sample(60, 4103)[i] for i in (15, 24, 34, 37)]
+    tr.solve(designs, ("peak_stress",), accuracy=4e-3)
+    errors = np.array([(n, *(stress / own[-1][1] - 1.0)) for own in levels for n, stress in own[:-1]])
+
+    def mean(least, most):
+        some = errors[(errors[:, 0] >= least) & (errors[:, 0] < most)]
+        assert len(some) > 10
+        return np.exp(np.log(some[:, 0]).mean()), np.sqrt((some[:, 1:] ** 2).mean())
+
+    (few, rough), (many, fine) = mean(20, 60), mean(250, 800)
+    assert 2.0 * np.log(rough / fine) / np.log(many / few) > 2.0
+    assert fine < 2.5e-3
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("tolerance", "step"), [(0.06, 0.25), (0.03, 0.25), (0.01, 0.4)])
+def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step):
+    """Second differences of peaks along three lines of 160 neighbours, over the tolerance; they were up to 1."""
+    given = {"motor_force": 0.0, "radial_force": -600.0, "axial_force": 0.0}
+    lines = [
+        [tr.Case(contact_angle=70.0, friction_coefficient=mu, **given) for mu in np.linspace(0.25, 0.45, 160)],
+        [tr.Case(contact_angle=angle, friction_coefficient=0.35, **given) for angle in np.linspace(55.0, 75.0, 160)],
+        [
+            tr.Case(roller_profile_radius=radius, contact_angle=55.0, friction_coefficient=0.3, motor_force=0.0)
+            for radius in np.linspace(-9.0, -6.3, 160)
+        ],
+    ]
+    for cases in lines:
+        peaks = tr.solve(cases, ("peak_stress",), accuracy=tolerance).peak_stress.values.reshape(len(cases), -1)
+        assert np.abs(np.diff(np.log(peaks), 2, axis=0)).max() < step * tolerance
+
+
+def test_a_ridge_that_few_quadrature_points_raise_does_not_hide_the_tip():
+    """By the rule of the first climbs, a ridge beside the area is 1.5 % above the tip; in truth it is 1.4 % below."""
+    case = random_designs(150, 8902)[20]
+    coarse, fine = (tr.solve(case, ("peak_stress",), accuracy=own).peak_stress for own in (0.01, 4e-3))
+    assert (np.abs(coarse / fine - 1.0) < 5e-3).all()
+
+
 def test_windows_begin_without_a_step():
     """What windows add to a peak changes by less than a fifth of the tolerance from one friction to the next."""
     tolerance, frictions = 0.06, np.linspace(0.25, 0.3, 40)
@@ -276,7 +330,7 @@ def test_a_summit_away_from_the_trailing_tip_is_found(seed, number):
 
 
 def test_a_peak_in_a_large_area_is_compared_with_another(monkeypatch):
-    """A large area has one window of few enough elements; one of larger elements shows that its peak still moves."""
+    """A large area has one window of few enough elements; it is compared with one of elements twice as large."""
     counts, plain = [], window_search._search_one
 
     def recorded(windows, *given):
@@ -284,7 +338,6 @@ def test_a_peak_in_a_large_area_is_compared_with_another(monkeypatch):
         plain((counts[-1].append(level[1]) or level for level in windows), *given)
 
     monkeypatch.setattr(window_search, "_search_one", recorded)
-    ds = tr.solve(sample(150, 8601)[114], ("peak_stress",), accuracy=3e-3)
+    tr.solve(sample(150, 8601)[114], ("peak_stress",), accuracy=3e-3)
     assert len(counts) == 2
     assert all(levels[0] < window_search.MANY[1] < levels[1] for levels in counts)
-    assert ds.error_estimate.max() > 3e-3

@@ -128,7 +128,7 @@ def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndar
 
 def shares_of(z: np.ndarray, across: int, along: int) -> np.ndarray:
     """Return the traction over mu p from z (n, 2, ny, nx), with `across` and `along` points a side of each element."""
-    return _bounded(interpolated(z, across, along))
+    return bounded(interpolated(z, across, along))
 
 
 def _of_four(field: np.ndarray) -> np.ndarray:
@@ -147,19 +147,46 @@ def shares_at(z: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
 
     `x` and `y` are their places along both axes in elements; the centre of the first element is at 0.
     """
-    return _bounded(by_splines(z, spline_at(z.shape[-2], y), spline_at(z.shape[-1], x)))
+    return bounded(by_splines(z, spline_at(z.shape[-2], y), spline_at(z.shape[-1], x)))
 
 
-def _bounded(fine: np.ndarray) -> np.ndarray:
+def bounded(fine: np.ndarray) -> np.ndarray:
     """Shorten z (n, 2, ny, nx) to the traction over its bound, in place."""
     for field in fine:
         _shorten(field)
     return fine
 
 
+@compiled
+def missed_by_centres(z, fine):
+    """Return the mean traction over mu p in each element less that of its centre, x + iy, (ny, nx).
+
+    `z` (2, ny, nx) is given at the centres, and `fine` between them, at the same number of points in each element.
+    Where all of an element sticks, z is the traction, and nothing is missed.
+    """
+    _, ny, nx = z.shape
+    along, across = fine.shape[1] // ny, fine.shape[2] // nx
+    out = np.empty((ny, nx), np.complex128)
+    for i in range(ny):
+        for j in range(nx):
+            mean = -_cut(z[0, i, j], z[1, i, j])
+            for k in range(i * along, (i + 1) * along):
+                for m in range(j * across, (j + 1) * across):
+                    mean += _cut(fine[0, k, m], fine[1, k, m]) / (along * across)
+            out[i, j] = mean
+    return out
+
+
+@compiled
+def _cut(x, y):
+    """Return by how much the law of friction changes a vector z, x + iy: it shortens z to at most length 1."""
+    square = x * x + y * y
+    return complex(x, y) * ((1.0 / np.sqrt(square) if square > 1.0 else 1.0) - 1.0)
+
+
 def _by_law(fine: np.ndarray, fields: Fields, parts: float) -> np.ndarray:
     """Turn z on `parts` times the elements into the traction over mu p at rest, in place."""
-    return np.multiply(_bounded(fine), fields.finer_factor(parts), out=fine)
+    return np.multiply(bounded(fine), fields.finer_factor(parts), out=fine)
 
 
 @compiled
