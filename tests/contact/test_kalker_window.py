@@ -53,8 +53,8 @@ def test_windows_find_the_area_of_a_far_finer_patch():
 
 
 def test_the_area_converges_with_the_windows():
-    *_, rough, coarse, _, _, fine, finer = areas(28, 8)
-    assert abs(fine / finer - 1.0) < 0.015 < 0.4 < abs(rough / finer - 1.0)
+    *_, rough, _, _, coarse, fine, finer = areas(28, 8)
+    assert abs(fine / finer - 1.0) < 0.03 < 0.4 < abs(rough / finer - 1.0)
     assert abs(coarse / finer - 1.0) < 0.1
 
 
@@ -262,12 +262,12 @@ def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
 
     def mean(least, most):
         some = errors[(errors[:, 0] >= least) & (errors[:, 0] < most)]
-        assert len(some) > 10
+        assert len(some) > 6
         return np.exp(np.log(some[:, 0]).mean()), np.sqrt((some[:, 1:] ** 2).mean())
 
-    (few, rough), (many, fine) = mean(20, 60), mean(250, 800)
+    (few, rough), (many, fine) = mean(60, 200), mean(300, 800)
     assert 2.0 * np.log(rough / fine) / np.log(many / few) > 2.0
-    assert fine < 2.5e-3
+    assert fine < 1.5e-3
 
 
 @pytest.mark.slow

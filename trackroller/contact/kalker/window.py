@@ -29,10 +29,10 @@ UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with 
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 60_000  # elements of a window
 # The mean traction of an element differs from that of the law of friction at its centre. A window is solved with these
-# differences in the window before, taken from BETWEEN points along each side of an element. Where its own adhesion area
-# has AGAIN elements and the residual of the law has to be below PRECISE, it is solved again with its own differences:
-# peaks then converge with the square of the elements' size. Larger areas are known well enough from the window before.
-BETWEEN, AGAIN, PRECISE = 4, (40, 1000), 4e-3
+# differences, taken from BETWEEN points along each side of an element. Those of the window before serve until the
+# residual of the law is below ROUGH, and to the end where it need not be below PRECISE. With its own differences, peaks
+# converge with the square of the elements' size.
+BETWEEN, ROUGH, PRECISE = 4, 0.03, 4e-3
 # A traction is given at points that are densest at the trailing tip of the adhesion area. The caller chooses how many
 # of them an element has along each side there. Far from the tip, the step from point to point is SPACING over this
 # number, times the distance from the tip. Along each axis, the number of points is a multiple of MULTIPLE.
@@ -199,18 +199,16 @@ def _by_means(finer: Influence, rigid: np.ndarray, height, weights, z: np.ndarra
     """
     room, traction, own = room_for(*height.shape, settings.krylov), _traction(z, height), finer.own
     missed = np.zeros_like(traction)
-    for _ in range(2):
+    limits = (settings.tolerance,) if settings.tolerance > PRECISE else (ROUGH, settings.tolerance)
+    for limit in limits:
         # the traction less `missed` meets the law at the centres, at the slip less own * missed
         before, missed = missed, subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN))
         missed *= height * weights
         law = Problem(finer, rigid + finer.product(missed) - own * missed, height, 1.0, np.zeros(1), np.ones(1))
-        start = traction + before - missed
-        at, residual, *_ = newton(law, room, start, settings.tolerance, settings.steps)
+        at, residual, *_ = newton(law, room, traction + before - missed, limit, settings.steps)
         traction, slip = at[0] + missed, at[1] + own * missed
         smooth = traction / np.where(height > 0.0, height, 1.0) - slip / (own * np.maximum(height, subgrid.RIM))
         z = np.stack([smooth.real, smooth.imag])[None]
-        if settings.tolerance > PRECISE or not AGAIN[0] <= (np.abs(smooth) < 1.0).sum() < AGAIN[1]:
-            break
     return traction, slip, z, bool(residual <= settings.tolerance)
 
 
