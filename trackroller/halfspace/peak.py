@@ -147,7 +147,7 @@ def _climbed(fine, rough, points, rules, effort):
         rule = rules.scan if k == 0 and effort.gridded else rules.climb
         stand = standing(climbs, max(1.0 - GAPS[k] * most, 1e-9), 0.15 if k > 0 else 0.0, most)
         for climb in np.flatnonzero(stand):
-            sweep(rough, climbs, climb, rule, 0.06, k > 1)
+            sweep(rough, climbs, climb, rule, 0.06, int(k > 1))
     set_steps(climbs, max(3.0 * effort.smallest, 0.01))
     for climb in np.flatnonzero(standing(climbs, 0.97, 0.1, effort.finalists)):
         rule = rules.ridge if climbs.u[climb, 2] == 0.0 else rules.polish

@@ -206,13 +206,16 @@ def _along(target, climbs, k, axis, d, rules):
 
 
 @woven
-def _turn(climbs, k, start):
-    """Turn the first axis of climb k into the direction of its move from `start` (3,) (Rosenbrock)."""
+def _turn(climbs, k, start, keep):
+    """Turn the first axis of climb k into the direction of its move from `start` (3,) (Rosenbrock).
+
+    With `keep`, each axis takes the step of the former axis that is closer to it.
+    """
     x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
     length = math.sqrt(x * x + y * y)
     if length > 1e-5:
         x, y = x / length, y / length
-        if abs(x * climbs.along[k, 0] + y * climbs.along[k, 1]) < 0.7:  # steps stay with their directions
+        if keep and abs(x * climbs.along[k, 0] + y * climbs.along[k, 1]) < 0.7:
             climbs.step[k, 0], climbs.step[k, 1] = climbs.step[k, 1], climbs.step[k, 0]
         climbs.along[k, 0], climbs.along[k, 1] = x, y
 
@@ -221,24 +224,24 @@ def _turn(climbs, k, start):
 def sweep(target, climbs, k, rules, smallest, ridge):
     """Search along radius, circumference and depth in turn; return whether climb k still moves.
 
-    With `ridge` a further step repeats the whole move of this sweep, which follows ridges oblique to the axes. In
-    slender patches the step is doubled, up to twice, as long as the stress rises.
+    Up to `ridge` further steps repeat the whole move of this sweep, each of twice the length, while the stress rises:
+    they follow ridges oblique to the axes. With more than one, steps stay with their directions when the axes turn.
     """
     before, start, axes = climbs.f[k], climbs.u[k].copy(), np.empty((3, 3))
     _axes(target, climbs, k, axes)
     moved = 0.0
     for d in range(3):
         moved = max(moved, _along(target, climbs, k, axes[d], d, rules))
-    if ridge and ((climbs.u[k] - start) ** 2).sum() > 1e-8:
-        move = climbs.u[k] - start
-        for _ in range(3 if target.slender else 1):
+    move = climbs.u[k] - start
+    if (move**2).sum() > 1e-8:
+        for _ in range(ridge):
             height = climbs.f[k]
             try_place(target, climbs, k, climbs.u[k] + move, rules)
             if not climbs.f[k] > height:
                 break
             move *= 2.0
     if target.slender:
-        _turn(climbs, k, start)
+        _turn(climbs, k, start, ridge > 1)
     climbs.gained[k] = climbs.f[k] - before
     widest = climbs.step[k].max()
     still = climbs.gained[k] < 1e-6 * climbs.f[k] and moved < 1e-9 and widest < 4.0 * smallest
@@ -257,7 +260,7 @@ def no_climbs(count, step):
 def polish(target, climbs, k, rules, smallest, sweeps):
     """Let climb k rise, up to `sweeps` times, until it no longer moves; `smallest` is the last step."""
     for number in range(sweeps):
-        if not sweep(target, climbs, k, rules, smallest, number > 0):
+        if not sweep(target, climbs, k, rules, smallest, int(number > 0)):
             break
 
 

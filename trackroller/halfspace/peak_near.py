@@ -19,6 +19,7 @@ LINE_FROM = 0.93  # least stress at their starts, over that at the peak at hand
 # After LINE_SWEEPS sweeps, a climb is given up whose stress is below LINE_WORTH of the highest, or which is closer to a
 # higher climb than LINE_GAP times the smaller extent of the line.
 LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
+RIDGE = 3  # steps of a sweep along a ridge
 # After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.
 SETTLED = 4, 2e-4
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
@@ -143,7 +144,7 @@ def climb_near(target, near, line, rough, first, rules, smallest):
                 try_place(target, climbs, climb, start[climb], rules)
                 left[climb] = left[climb] or climbs.f[climb] > best
         for climb in np.flatnonzero(left):
-            moves = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least[climb], k > 0)
+            moves = sweep(target, climbs, climb, first if k < LINE_SWEEPS else rules, least[climb], RIDGE * (k > 0))
             left[climb] = moves and (k < SETTLED[0] or climbs.gained[climb] > SETTLED[1] * climbs.f[climb])
     _exchange(target, climbs, rules, LINE_SMALLEST * size[2])
     return climbs
