@@ -32,13 +32,19 @@ def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
 
 
 @compiled
+def _factor(x, y):
+    """Return the factor that shortens a vector to at most length 1."""
+    square = x * x + y * y
+    return 1.0 / np.sqrt(square) if square > 1.0 else 1.0
+
+
+@compiled
 def _shorten(z):
     """Shorten the vectors of a field (2, ny, nx) to at most length 1, in place."""
     for i in range(z.shape[1]):
         for j in range(z.shape[2]):
-            square = z[0, i, j] ** 2 + z[1, i, j] ** 2
-            if square > 1.0:
-                factor = 1.0 / np.sqrt(square)
+            factor = _factor(z[0, i, j], z[1, i, j])
+            if factor != 1.0:
                 z[0, i, j] *= factor
                 z[1, i, j] *= factor
 
@@ -159,29 +165,29 @@ def bounded(fine: np.ndarray) -> np.ndarray:
 
 @compiled
 def missed_by_centres(z, fine):
-    """Return the mean traction over mu p in each element less that of its centre, x + iy, (ny, nx).
+    """Return what the law of friction takes from z at the centre of each element less its mean over the element.
 
-    `z` (2, ny, nx) is given at the centres, and `fine` between them, at the same number of points in each element.
-    Where all of an element sticks, z is the traction, and nothing is missed.
+    This is the mean traction over mu p less that at the centre, x + iy, (ny, nx), if the mean of z is z at the centre;
+    it is 0 where all of an element sticks. `z` (2, ny, nx) is given at the centres, `fine` at equally many points along
+    the sides of each element.
     """
     _, ny, nx = z.shape
     along, across = fine.shape[1] // ny, fine.shape[2] // nx
     out = np.empty((ny, nx), np.complex128)
     for i in range(ny):
         for j in range(nx):
-            mean = -_cut(z[0, i, j], z[1, i, j])
+            mean = 0j
             for k in range(i * along, (i + 1) * along):
                 for m in range(j * across, (j + 1) * across):
-                    mean += _cut(fine[0, k, m], fine[1, k, m]) / (along * across)
-            out[i, j] = mean
+                    mean -= _taken(fine[0, k, m], fine[1, k, m])
+            out[i, j] = mean / (along * across) + _taken(z[0, i, j], z[1, i, j])
     return out
 
 
 @compiled
-def _cut(x, y):
-    """Return by how much the law of friction changes a vector z, x + iy: it shortens z to at most length 1."""
-    square = x * x + y * y
-    return complex(x, y) * ((1.0 / np.sqrt(square) if square > 1.0 else 1.0) - 1.0)
+def _taken(x, y):
+    """Return what the law of friction takes from a vector z, x + iy, when it shortens z to at most length 1."""
+    return complex(x, y) * (1.0 - _factor(x, y))
 
 
 def _by_law(fine: np.ndarray, fields: Fields, parts: float) -> np.ndarray:

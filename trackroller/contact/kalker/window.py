@@ -180,32 +180,26 @@ def _solved(
     z = interpolated(grid.z, kx, ky)[:, :, j0 * ky : j1 * ky, i0 * kx : i1 * kx]
     height, weights = _heights(first, z.shape[2:], of), _weights(spans, grid, parts)
     finer = influence(hx / kx, hy / ky, poisson_ratio, height.shape[0], height.shape[1], sharpened=True)
-    slip = interpolated(np.stack([known.real, known.imag]), kx, ky)
-    rigid = slip[0] + 1j * slip[1] - finer.product(_traction(z, height) * (1.0 - weights))
-    traction, slip, z, converged = _by_means(finer, rigid, height, weights, z, settings)
+    slip, share = interpolated(np.stack([known.real, known.imag]), kx, ky), subgrid.bounded(z.copy())[0]
+    traction = (share[0] + 1j * share[1]) * height
+    rigid = slip[0] + 1j * slip[1] - finer.product(traction * (1.0 - weights))
+    traction, slip, z, converged = _by_means(finer, rigid, height, weights, traction, z, settings)
     return Grid(traction, slip, z, first, of, True), converged
 
 
-def _traction(z: np.ndarray, height: np.ndarray) -> np.ndarray:
-    """Return the traction over mu p_max at the centres of elements, x + iy, from z (1, 2, ny, nx)."""
-    share = subgrid.bounded(z.copy())[0]
-    return (share[0] + 1j * share[1]) * height
+def _by_means(finer: Influence, rigid: np.ndarray, height, weights, traction, z: np.ndarray, settings):
+    """Solve a window for the mean tractions of its elements; see `BETWEEN`.
 
-
-def _by_means(finer: Influence, rigid: np.ndarray, height, weights, z: np.ndarray, settings):
-    """Solve a window for the mean tractions of its elements, starting from z (1, 2, ny, nx); see `BETWEEN`.
-
-    Returns traction, slip, z and whether the last solution has converged.
+    `traction` (ny, nx) and `z` (1, 2, ny, nx) are those of the coarser elements around. Returns traction, slip, z and
+    whether the last solution has converged.
     """
-    room, traction, own = room_for(*height.shape, settings.krylov), _traction(z, height), finer.own
-    missed = np.zeros_like(traction)
+    room, own = room_for(*height.shape, settings.krylov), finer.own
     limits = (settings.tolerance,) if settings.tolerance > PRECISE else (ROUGH, settings.tolerance)
     for limit in limits:
         # the traction less `missed` meets the law at the centres, at the slip less own * missed
-        before, missed = missed, subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN))
-        missed *= height * weights
+        missed = subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN)) * height * weights
         law = Problem(finer, rigid + finer.product(missed) - own * missed, height, 1.0, np.zeros(1), np.ones(1))
-        at, residual, *_ = newton(law, room, traction + before - missed, limit, settings.steps)
+        at, residual, *_ = newton(law, room, traction - missed, limit, settings.steps)
         traction, slip = at[0] + missed, at[1] + own * missed
         smooth = traction / np.where(height > 0.0, height, 1.0) - slip / (own * np.maximum(height, subgrid.RIM))
         z = np.stack([smooth.real, smooth.imag])[None]
