@@ -243,7 +243,7 @@ def test_a_search_in_windows_finds_the_trailing_tip(angle, monkeypatch):
 
 @pytest.mark.slow
 def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
-    """Errors of peaks at the tips of eight adhesion areas, against a window of more than 1,200 elements in the area."""
+    """Eight designs with the peak at the tip; the truth is the window with more than 1,200 elements in the area."""
     levels = []
 
     def every(windows, search, i, peak, *_):
@@ -273,7 +273,7 @@ def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize(("tolerance", "step"), [(0.06, 0.25), (0.03, 0.25), (0.01, 0.4)])
 def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step):
-    """Second differences of peaks along three lines of 160 neighbours, over the tolerance; they were up to 1."""
+    """Along lines of 160 neighbouring cases, second differences of the peak are below `step` times the tolerance."""
     given = {"motor_force": 0.0, "radial_force": -600.0, "axial_force": 0.0}
     lines = [
         [tr.Case(contact_angle=70.0, friction_coefficient=mu, **given) for mu in np.linspace(0.25, 0.45, 160)],
@@ -289,7 +289,7 @@ def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step):
 
 
 def test_a_ridge_that_few_quadrature_points_raise_does_not_hide_the_tip():
-    """By the rule of the first climbs, a ridge beside the area is 1.5 % above the tip; in truth it is 1.4 % below."""
+    """Stress on a ridge beside the area: 1.5 % above the tip with few quadrature points, 1.4 % below it with many."""
     case = random_designs(150, 8902)[20]
     coarse, fine = (tr.solve(case, ("peak_stress",), accuracy=own).peak_stress for own in (0.01, 4e-3))
     assert (np.abs(coarse / fine - 1.0) < 5e-3).all()
@@ -322,7 +322,7 @@ def test_the_error_of_slender_patches_is_told():
 
 @pytest.mark.parametrize(("seed", "number"), [(8601, 48), (8801, 78)])
 def test_a_summit_away_from_the_trailing_tip_is_found(seed, number):
-    """The highest stress lies two lengths of the adhesion area away from it; 24 and 80 elements give the same peak."""
+    """The peak lies two lengths of the adhesion area away from this area. It is found on 24 and on 80 elements."""
     case = sample(150, seed)[number]
     finest = dataclasses.replace(PRESETS["reference"], elements=80, peak_goal=1e-3)
     fine, coarse = (tr.solve(case, ("peak_stress",), accuracy=accuracy) for accuracy in (finest, 3e-3))
@@ -330,7 +330,7 @@ def test_a_summit_away_from_the_trailing_tip_is_found(seed, number):
 
 
 def test_a_peak_in_a_large_area_is_compared_with_another(monkeypatch):
-    """A large area has one window of few enough elements; it is compared with one of elements twice as large."""
+    """A large adhesion area has one window only; a window of elements twice as large is searched before it."""
     counts, plain = [], window_search._search_one
 
     def recorded(windows, *given):

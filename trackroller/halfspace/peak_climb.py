@@ -209,7 +209,7 @@ def _along(target, climbs, k, axis, d, rules):
 def _turn(climbs, k, start, keep):
     """Turn the first axis of climb k into the direction of its move from `start` (3,) (Rosenbrock).
 
-    With `keep`, each axis takes the step of the former axis that is closer to it.
+    With `keep`, each axis takes over the step of the old axis to which it is nearer.
     """
     x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
     length = math.sqrt(x * x + y * y)
@@ -224,8 +224,9 @@ def _turn(climbs, k, start, keep):
 def sweep(target, climbs, k, rules, smallest, ridge):
     """Search along radius, circumference and depth in turn; return whether climb k still moves.
 
-    Up to `ridge` further steps repeat the whole move of this sweep, each of twice the length, while the stress rises:
-    they follow ridges oblique to the axes. With more than one, steps stay with their directions when the axes turn.
+    The whole move of the sweep is then repeated up to `ridge` times while the stress rises, each time over twice the
+    last length. This follows ridges oblique to the axes. If `ridge` is above 1, the axes also keep their steps, see
+    `_turn`.
     """
     before, start, axes = climbs.f[k], climbs.u[k].copy(), np.empty((3, 3))
     _axes(target, climbs, k, axes)

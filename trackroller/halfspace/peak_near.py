@@ -19,7 +19,7 @@ LINE_FROM = 0.93  # least stress at their starts, over that at the peak at hand
 # After LINE_SWEEPS sweeps, a climb is given up whose stress is below LINE_WORTH of the highest, or which is closer to a
 # higher climb than LINE_GAP times the smaller extent of the line.
 LINE_SWEEPS, LINE_WORTH, LINE_GAP = 2, 0.96, 0.1
-RIDGE = 3  # steps of a sweep along a ridge
+RIDGE = 3  # a sweep repeats its whole move up to this many times, see `sweep`
 # After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.
 SETTLED = 4, 2e-4
 OUTSIDE = 0.03, 0.08  # distances of more points outside the line, over its extent: a cusp may lie beside it
@@ -27,8 +27,8 @@ AROUND = 0.15  # distance from the ends of the adhesion area up to which points 
 LEAST_LINE = 1e-3  # extent of a line of few points
 # The traction turns about the trailing tip of an adhesion area: points around the tip, over the extent of the line.
 TIP_ACROSS, TIP_ALONG = (-0.12, -0.04, 0.04, 0.12), (-0.06, -0.03, -0.01, 0.02, 0.06, 0.12)
-# Points further away from the tip, over the extent of the line: the highest stress may lie there, above all in slender
-# patches.
+# More points around the tip, on the ridges beside the adhesion area and far from it, over the extent of the line: the
+# highest stress may lie there, above all in slender patches.
 AWAY_ACROSS, AWAY_ALONG = (-1.8, -1.1, -0.5, 0.0, 0.5, 1.1, 1.8), (-2.4, -1.2, -0.6, 0.7, 1.2, 2.4)
 
 
@@ -134,8 +134,8 @@ def climb_near(target, near, line, rough, first, rules, smallest):
     for k in range(24):
         if k == LINE_SWEEPS:
             left = standing(climbs, LINE_WORTH, LINE_GAP * size[2], 3)
-            # by the rule of the first sweeps, a climb may have left its start for a lower stress, and a ridge beside
-            # the area may be higher than the peak at hand and the tip
+            # The rule of the first sweeps has few points. By the finer rule, a climb may be lower than its start, and
+            # the peak at hand or the tip, if given up, may be higher than the climbs that were kept.
             lost = ~left & (np.arange(2 * count) % count < 2)
             for climb in np.concatenate((np.flatnonzero(left), np.flatnonzero(lost))):
                 body = climb // count

@@ -28,10 +28,11 @@ CLOSE = 4  # elements between the area and the edge below which a window is made
 UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with |z| below this times the smallest
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 60_000  # elements of a window
-# The mean traction of an element differs from that of the law of friction at its centre. A window is solved with these
-# differences, taken from BETWEEN points along each side of an element. Those of the window before serve until the
-# residual of the law is below ROUGH, and to the end where it need not be below PRECISE. With its own differences, peaks
-# converge with the square of the elements' size.
+# Where the adhesion area ends, the mean traction of an element differs from the traction at its centre. A window is
+# solved twice, each time with these differences, which are computed from BETWEEN points along each side of an element.
+# The first solution takes the differences of the coarser elements, and stops at a residual of ROUGH. The second takes
+# those of the first; the error of a peak then falls with the square of the size of the elements. Where a residual above
+# PRECISE is allowed, the first solution is the only one.
 BETWEEN, ROUGH, PRECISE = 4, 0.03, 4e-3
 # A traction is given at points that are densest at the trailing tip of the adhesion area. The caller chooses how many
 # of them an element has along each side there. Far from the tip, the step from point to point is SPACING over this
@@ -190,13 +191,14 @@ def _solved(
 def _by_means(finer: Influence, rigid: np.ndarray, height, weights, traction, z: np.ndarray, settings):
     """Solve a window for the mean tractions of its elements; see `BETWEEN`.
 
-    `traction` (ny, nx) and `z` (1, 2, ny, nx) are those of the coarser elements around. Returns traction, slip, z and
-    whether the last solution has converged.
+    `traction` (ny, nx) and `z` (1, 2, ny, nx) are interpolated from the coarser elements. Returns traction, slip, z
+    and whether the last solution has converged.
     """
     room, own = room_for(*height.shape, settings.krylov), finer.own
     limits = (settings.tolerance,) if settings.tolerance > PRECISE else (ROUGH, settings.tolerance)
     for limit in limits:
-        # the traction less `missed` meets the law at the centres, at the slip less own * missed
+        # Newton's method meets the law at the centres: there it finds the traction less `missed`, and the slip less
+        # own * missed.
         missed = subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN)) * height * weights
         law = Problem(finer, rigid + finer.product(missed) - own * missed, height, 1.0, np.zeros(1), np.ones(1))
         at, residual, *_ = newton(law, room, traction - missed, limit, settings.steps)

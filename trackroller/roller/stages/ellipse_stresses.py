@@ -37,10 +37,10 @@ REFINED_ERROR, REFINED_AT = 1.5e-2, 28
 CHANGE_WEIGHT = 1.6  # weight of the change by elements where it alone decides
 REFINED_SHARE = 0.5  # share of the error that the contact model adds to a peak, below which finer elements gain little
 FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
-# An adhesion area is searched in windows if it has fewer than SMALL elements, or covers less of the patch than
-# SMALL_SHARE: the first value for tolerances above STRICT, the second for others. For larger areas, the whole patch is
-# solved on twice the elements along each axis. If the area covers less than the first value, the peak at its tip may
-# be 4 % too low even on 160 elements along each axis.
+# An adhesion area is searched in windows if it has fewer than SMALL elements, or if its share of the patch is below
+# SMALL_SHARE[0] for tolerances above STRICT, and below SMALL_SHARE[1] for smaller tolerances. If the area is larger,
+# the whole patch is solved on elements of half the size instead. This would not do for small areas: with a share below
+# SMALL_SHARE[0], peaks at the tip were up to 4 % too low on 160 x 160 elements.
 SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
@@ -50,9 +50,9 @@ SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
 # also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
 HIDES, RESOLVED, UNLIKE, DOUBTED = 12.0, 0.05, (0.05, 0.6, 0.3), 1.4
-# Up to a friction of LITTLE_FRICTION, the peak is rarely at an adhesion area, and there are no windows. Bodies whose
-# K/mu is above SHARP[0] may have it there down to a friction of SHARP[1]: for tolerances below RESOLVED, they have
-# windows where this formula or the estimated error asks for them.
+# If the friction coefficient is at most LITTLE_FRICTION, the peak is rarely at the adhesion area, and windows are not
+# used. One exception: if K/mu is above SHARP[0] and the friction coefficient above SHARP[1], the peak may be there. For
+# tolerances below RESOLVED, windows are then used where the formula or the estimated error of the peak asks for them.
 SHARP = 0.25, 0.1
 # Where this formula says that the peak of a small area is too low by less than LEVEL, the peak errs by at most KNOWN in
 # 99 of 100 cases, even if it changes by more when the elements double. In patches with an axis ratio above LONGEST,

@@ -38,11 +38,11 @@ RESIDUAL, FALLS = 0.1, 0.5
 # Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
 # tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
 DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
-# POINTS are the points of the traction along each side of an element at the trailing tip, POLISH the quadrature points
-# in the last climbs of a search. Both have one value for tolerances below FINER_BELOW[0], one below FINER_BELOW[1], and
-# one for larger tolerances. The traction changes its direction at the tip within a few elements: in an area of 200
-# elements, peaks are 1 % too low with 2 points along a side, and 0.1 % too low with 4. With 16 quadrature points, a
-# climb may end 1 % below the summit; with 24, it may end 0.2 % below it.
+# POINTS: at how many points along each side of an element the traction is given, at the trailing tip. The traction
+# turns there within a few elements: in an area of 200 elements, peaks are 1 % too low with 2 points, and 0.1 % with 4.
+# POLISH: quadrature points of the last climbs of a search. With 16, a climb may end 1 % below the summit; with 24, it
+# may end 0.2 % below it. The first value of each serves tolerances below FINER_BELOW[0], the second those from there to
+# FINER_BELOW[1], and the third larger ones.
 POINTS, POLISH, FINER_BELOW = (8, 8, 3), (48, 24, 16), (0.012, 0.05)
 # Quadrature points of the other steps of a search. With 16 at the summit, stresses in small areas err by up to 1.6 %.
 IN_WINDOWS = {"climb": 12, "summit": 64}
@@ -117,7 +117,9 @@ def search_windows(results: Results, search: Search, peak: Peak, goal, share) ->
     for i in np.flatnonzero((share > 0.0) & (results.slides_along[search.flat] == 0)).tolist():
         given = patch.take([i]), slip.take([i]), friction[[i]], rows[[i]], RESIDUAL * goal[i]
         windows: Iterator[Any] = islice(model.windows(*given, doublings=int(doublings[i])), LEVELS)
-        if doublings[i] > 1:  # a large area may have one window only; a coarser window gives a peak to compare
+        if doublings[i] > 1:
+            # A large area may have only one window: the next would have too many elements. Its peak is compared with
+            # that of a window in twice as large elements.
             windows = chain(islice(model.windows(*given, doublings=int(doublings[i]) - 1), 1), windows)
         one, old = slice(i, i + 1), peak.take([i])
         _search_one(windows, search, i, peak, goal[i], outside[i], longer[i])
