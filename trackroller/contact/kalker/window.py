@@ -15,6 +15,7 @@ from typing import NamedTuple
 
 import numpy as np
 from scipy.fft import next_fast_len
+from scipy.ndimage import label
 
 from trackroller.contact.common import Ellipse
 from trackroller.contact.influence import Influence, influence
@@ -26,6 +27,9 @@ from trackroller.numerics.splines import interpolated
 MARGIN, WIDER = 6, 0.25  # elements between the adhesion area and the edge of a window, and more over the area's size
 CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
 UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with |z| below this times the smallest
+# Far behind the spin pole, a spot under little pressure may stick too. Parts of the adhesion area do not count whose
+# sum of squared pressures is below SPECK times the largest.
+SPECK = 0.1
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 60_000  # elements of a window
 # Where the adhesion area ends, the mean traction of an element differs from the traction at its centre. A window is
@@ -96,14 +100,17 @@ def _heights(first: tuple[int, int], shape: tuple[int, ...], of: tuple[int, int]
 
 
 def _area(grid: Grid) -> Spans:
-    """Return the elements of the adhesion area, or those next to adhesion."""
-    loaded = _heights(grid.first, grid.traction.shape, grid.of) > 0.0
+    """Return the elements of the adhesion area, without its small parts, or those next to adhesion."""
+    height = _heights(grid.first, grid.traction.shape, grid.of)
+    loaded = height > 0.0
     for axis, (start, of) in enumerate(zip(grid.first[::-1], grid.of[::-1], strict=True)):  # not at the window's edge
         places = np.arange(loaded.shape[axis])
         near = ((start > 0) & (places < MARGIN)) | ((start + places.size < of) & (places >= places.size - MARGIN))
         loaded &= ~(near[:, None] if axis == 0 else near)
     length = np.where(loaded, np.hypot(grid.z[0, 0], grid.z[0, 1]), np.inf)
-    rows, columns = np.nonzero(length <= max(1.0, UNSEEN * length.min()))
+    numbers, _ = label(length <= max(1.0, UNSEEN * length.min()), np.ones((3, 3)))
+    weights = np.bincount(numbers.ravel(), ((numbers > 0) * height * height).ravel())
+    rows, columns = np.nonzero(weights[numbers] >= SPECK * weights.max())
     return (int(columns.min()), int(columns.max()) + 1), (int(rows.min()), int(rows.max()) + 1)
 
 
@@ -191,8 +198,7 @@ def _solved(
 def _by_means(finer: Influence, rigid: np.ndarray, height, weights, traction, z: np.ndarray, settings):
     """Solve a window for the mean tractions of its elements; see `BETWEEN`.
 
-    `traction` (ny, nx) and `z` (1, 2, ny, nx) are interpolated from the coarser elements. Returns traction, slip, z
-    and whether the last solution has converged.
+    `traction` (ny, nx) and `z` (1, 2, ny, nx) are those of the coarser elements. Returns traction, slip, z, converged.
     """
     room, own = room_for(*height.shape, settings.krylov), finer.own
     limits = (settings.tolerance,) if settings.tolerance > PRECISE else (ROUGH, settings.tolerance)

@@ -290,10 +290,8 @@ class EllipseStresses(PatchStresses):
     def _field_of(self, flat: int) -> np.ndarray:
         """Return the traction over its bound on the grid on which the peak was found, (2, ny, nx)."""
         results, number = self.results, np.array([flat])
-        finer, doublings = (
-            results.scene.model.finer_shares,
-            int(results.refined[results.scene.mirror.source(number)][0]),
-        )
+        finer = results.scene.model.finer_shares
+        doublings = int(results.refined[results.scene.mirror.source(number)][0])
         fields, *_ = self._shares(number, partial(finer, doublings=doublings)) if doublings else self.fields(number)
         return NO_FIELD if fields is None else fields[0]
 
