@@ -36,7 +36,7 @@ MOST = 60_000  # elements of a window
 # solved twice, each time with these differences, which are computed from BETWEEN points along each side of an element.
 # The first solution takes the differences of the coarser elements, and stops at a residual of ROUGH. The second takes
 # those of the first; the error of a peak then falls with the square of the size of the elements. Where a residual above
-# PRECISE is allowed, the first solution is the only one.
+# PRECISE is allowed, a window is solved once, without these differences.
 BETWEEN, ROUGH, PRECISE = 4, 0.03, 4e-3
 # A traction is given at points that are densest at the trailing tip of the adhesion area. The caller chooses how many
 # of them an element has along each side there. Far from the tip, the step from point to point is SPACING over this
@@ -196,16 +196,17 @@ def _solved(
 
 
 def _by_means(finer: Influence, rigid: np.ndarray, height, weights, traction, z: np.ndarray, settings):
-    """Solve a window for the mean tractions of its elements; see `BETWEEN`.
+    """Solve a window for the mean tractions of its elements, see `BETWEEN`, or once at the centres, see `PRECISE`.
 
     `traction` (ny, nx) and `z` (1, 2, ny, nx) are those of the coarser elements. Returns traction, slip, z, converged.
     """
-    room, own = room_for(*height.shape, settings.krylov), finer.own
-    limits = (settings.tolerance,) if settings.tolerance > PRECISE else (ROUGH, settings.tolerance)
-    for limit in limits:
+    room, own, missed = room_for(*height.shape, settings.krylov), finer.own, np.zeros(height.shape)
+    precise = settings.tolerance <= PRECISE
+    for limit in (ROUGH, settings.tolerance) if precise else (settings.tolerance,):
         # Newton's method meets the law at the centres: there it finds the traction less `missed`, and the slip less
         # own * missed.
-        missed = subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN)) * height * weights
+        if precise:
+            missed = subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN)) * height * weights
         law = Problem(finer, rigid + finer.product(missed) - own * missed, height, 1.0, np.zeros(1), np.ones(1))
         at, residual, *_ = newton(law, room, traction - missed, limit, settings.steps)
         traction, slip = at[0] + missed, at[1] + own * missed
