@@ -44,12 +44,12 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
 # miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
-# as large as the tolerance. No area has windows where the estimated error of its peak is smaller than the tolerance by
-# the factor HIDES. Up to STRICT, all other small areas have them. Elements of half the size serve instead of windows
-# where DOUBTED times the error that they leave is smaller than the tolerance. They do so for bodies of similar moduli,
-# whose K/mu is below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they
-# also do so where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
-HIDES, RESOLVED, UNLIKE, DOUBTED = 12.0, 0.05, (0.05, 0.6, 0.3), 1.4
+# as large as the tolerance, and up to STRICT all small areas have them. The estimated error of the peak at hand says
+# nothing here: this peak may lie below the surface. Elements of half the size serve instead of windows where DOUBTED
+# times the error that they leave is smaller than the tolerance. They do so for bodies of similar moduli, whose K/mu is
+# below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they also do so
+# where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
+RESOLVED, UNLIKE, DOUBTED = 0.05, (0.05, 0.6, 0.3), 1.4
 # If the friction coefficient is at most LITTLE_FRICTION, the peak is rarely at the adhesion area, and windows are not
 # used. One exception: if K/mu is above SHARP[0] and the friction coefficient above SHARP[1], the peak may be there. For
 # tolerances below RESOLVED, windows are then used where the formula or the estimated error of the peak asks for them.
@@ -194,7 +194,7 @@ class EllipseStresses(PatchStresses):
     def _hidden(self, peak: Peak, flat: np.ndarray, goal: np.ndarray, small: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the share of windows in the peaks of patches `flat`, and their least and largest errors, (m,) each.
 
-        See `HIDES` and `KNOWN`. `small` (m,) is that of `_small`; the least error is at most the tolerance `goal` (m,).
+        See `UNLIKE` and `KNOWN`. `small` (m,) is that of `_small`; least errors are at most the tolerance `goal` (m,).
         """
         (patch, slip, friction, rows), model = self.results.of(flat), self.results.scene.model
         least, excess = peak.stress.min(axis=1), []
@@ -205,11 +205,10 @@ class EllipseStresses(PatchStresses):
         strong = (coupling > UNLIKE[1] * friction) & (coupling < UNLIKE[2]) & (goal >= RESOLVED)
         doubles = strong | (coupling <= UNLIKE[0] * friction)
         share = rise(np.where(doubles, DOUBTED * excess[1], excess[0]) / goal, FADES)
-        hides = small * (HIDES * peak.error.max(axis=1) > goal)
         known = small * (1.0 - rise(excess[0] / LEVEL, FADES)) * (1.0 - rise(slenderness(patch) / LONGEST, FADES))
         most = KNOWN / np.maximum(known, 1e-9)  # no limit where the error is not known
         every = (goal <= STRICT) & (friction > LITTLE_FRICTION)
-        return hides * np.where(every, 1.0, share), hides * np.clip(excess[0], 0.0, goal), most
+        return small * np.where(every, 1.0, share), small * np.clip(excess[0], 0.0, goal), most
 
     def _small(self, flat: np.ndarray, goal: np.ndarray) -> np.ndarray:
         """Return 1 where the adhesion area at the spin pole is small, for the patches `flat`, (m,).
