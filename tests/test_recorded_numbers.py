@@ -12,9 +12,11 @@ from recorded_numbers import compute, groups, load, names, studies
 from trackroller.parameters import CONTACT_MODELS, OPTIONS
 
 # Sums in another order (threads, processors, releases of NumPy and Numba) differ by 1e-15, and the iterations of the
-# solver pass on up to 1e5 times that. Lives and estimated errors magnify it: on another processor they were seen to
-# differ by 5e-9. A change of a formula, a node or a draw differs by far more than 1e-8.
-TOLERANCE = 1e-8
+# solver pass on up to 1e5 times that. A change of a formula, a node or a draw changes numbers by far more than 1e-9.
+TOLERANCE = 1e-9
+# A life is a power of the peak stress, and an estimated error is the difference of nearly equal stresses: on two
+# processors they differed by up to 5e-9.
+MAGNIFIED = 1e-8
 RESIDUAL = 1e-8  # a residual is what rounding leaves of a balance, which differs with the processor
 SECTIONS = 2e-4  # sections pass through the peak, whose place depends on rounding in the search
 SINGLE = 1e-5  # stresses on planes below a patch are sums in single precision
@@ -38,6 +40,8 @@ def assert_same(name: str, now: dict[str, np.ndarray], before: dict[str, np.ndar
         else:
             scale = np.max(np.abs(values), where=np.isfinite(values), initial=0.0)
             tolerance = SINGLE if name.startswith("limits") else TOLERANCE
+            if "life" in key or key.endswith("error_estimate"):
+                tolerance = max(tolerance, MAGNIFIED)
             rounding = RESIDUAL if key.endswith("residual") else max(1e-12 * scale, 1e-15)
             if key.endswith(("_xz", "_yz")):
                 rounding = SECTIONS * scale
@@ -64,7 +68,7 @@ def test_the_recorded_cases_cover_what_can_be_chosen():
 
 @pytest.mark.parametrize("change", ["value", "nan", "word", "missing"])
 def test_a_difference_is_found(change):
-    """A force that is altered by 3e-8, a lost number, another regime and a lost variable fail."""
+    """A force that is altered by 1e-8, a lost number, another regime and a lost variable fail."""
     before = {
         "case/normal_force": np.array([200.0, 300.0]),
         "case/regime": np.array(["rolling", "full_slip"]),
@@ -76,6 +80,6 @@ def test_a_difference_is_found(change):
     elif change == "word":
         now["case/regime"][0] = "failed"
     else:
-        now["case/normal_force"][1] *= np.nan if change == "nan" else 1 + 3e-8
+        now["case/normal_force"][1] *= np.nan if change == "nan" else 1 + 1e-8
     with pytest.raises(AssertionError):
         assert_same("case", now, before)

@@ -271,12 +271,12 @@ def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("tolerance", "step"), [(0.06, 0.25), (0.03, 0.3), (0.01, 0.45)])
+@pytest.mark.parametrize(("tolerance", "step"), [(0.06, 0.25), (0.03, 0.25), (0.01, 0.4)])
 def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step):
-    """Along lines of 160 neighbouring cases, second differences of the peak are below `step` times the tolerance.
+    """From case to case, the relative change of the peak itself changes by less than `step` times the tolerance.
 
-    Where another summit becomes the highest, the peak itself has a kink: at 0.01 it makes the largest difference. The
-    others vary by a fifth with the processor.
+    Each line has 160 cases, in equal steps of one parameter. Where another summit becomes the highest, the peak has a
+    kink, which no finer solution removes; this makes the largest difference at 0.01.
     """
     given = {"motor_force": 0.0, "radial_force": -600.0, "axial_force": 0.0}
     lines = [

@@ -207,9 +207,9 @@ def _along(target, climbs, k, axis, d, rules):
 
 @woven
 def _turn(climbs, k, start, keep):
-    """Turn the first axis of climb k into the direction of its move from `start` (3,) (Rosenbrock).
+    """Make the direction of the last move of climb k its first axis (Rosenbrock). The move began at `start` (3,).
 
-    With `keep`, each axis takes over the step of the old axis to which it is nearer.
+    With `keep`, both axes exchange their steps if the new first axis is closer to the old second one.
     """
     x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
     length = math.sqrt(x * x + y * y)

@@ -24,6 +24,11 @@ POINTS = 2**15  # between elements that are held at once: these stay in the fast
 RIM = 0.2  # smallest divisor of slips over the largest traction bound
 
 
+def smooth(traction: np.ndarray, slip: np.ndarray, bound: np.ndarray, height: np.ndarray, own) -> np.ndarray:
+    """Return z of elements with tractions, slips, traction bounds, pressures over the largest, and own slips."""
+    return traction / np.where(bound > 0.0, bound, 1.0) - slip / (own * np.maximum(height, RIM))
+
+
 def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
     """Return fields z (n, 2, m, m) with the values of the nearest loaded element outside the patches."""
     if height.ndim == 2:
@@ -83,10 +88,8 @@ class Fields(NamedTuple):
 
     def before_law(self) -> np.ndarray:
         """Return z = tau/(mu p) - k s of the elements (n, 2, m, m), outside the patches that of the nearest inside."""
-        bound = self.heights * self.factor[:, None]
-        z = self.traction / np.where(bound > 0.0, bound, 1.0)
-        z -= self.slip / (self.own_slip[:, None, None, None] * np.maximum(self.heights, RIM))
-        return _filled(z, self.height)
+        bound, own = self.heights * self.factor[:, None], self.own_slip[:, None, None, None]
+        return _filled(smooth(self.traction, self.slip, bound, self.heights, own), self.height)
 
     def pieces(self, parts: float) -> Iterator[tuple[slice, Fields]]:
         """Return pieces of the patches that have about POINTS points with `parts` times the elements."""

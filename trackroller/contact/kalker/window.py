@@ -32,11 +32,10 @@ UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with 
 SPECK = 0.1
 FADE, EDGE = 4.0, (1.0, 2.0)  # elements over which the known slip fades; where the solved tractions begin to count
 MOST = 60_000  # elements of a window
-# Where the adhesion area ends, the mean traction of an element differs from the traction at its centre. A window is
-# solved twice, each time with these differences, which are computed from BETWEEN points along each side of an element.
-# The first solution takes the differences of the coarser elements, and stops at a residual of ROUGH. The second takes
-# those of the first; the error of a peak then falls with the square of the size of the elements. Where a residual above
-# PRECISE is allowed, a window is solved once, without these differences.
+# At the edge of the adhesion area, the mean traction of an element is not the traction at its centre. BETWEEN points
+# along each side of the element give the difference. If the largest allowed residual is at most PRECISE, a window is
+# solved twice: to a residual of ROUGH with the differences of the coarser elements, then with those of this solution.
+# The error of a peak then falls with the square of the element size. Otherwise a window is solved once, without them.
 BETWEEN, ROUGH, PRECISE = 4, 0.03, 4e-3
 # A traction is given at points that are densest at the trailing tip of the adhesion area. The caller chooses how many
 # of them an element has along each side there. Far from the tip, the step from point to point is SPACING over this
@@ -100,7 +99,7 @@ def _heights(first: tuple[int, int], shape: tuple[int, ...], of: tuple[int, int]
 
 
 def _area(grid: Grid) -> Spans:
-    """Return the elements of the adhesion area, without its small parts, or those next to adhesion."""
+    """Return the box around the adhesion area without its small parts, or around the elements closest to sticking."""
     height = _heights(grid.first, grid.traction.shape, grid.of)
     loaded = height > 0.0
     for axis, (start, of) in enumerate(zip(grid.first[::-1], grid.of[::-1], strict=True)):  # not at the window's edge
@@ -196,21 +195,20 @@ def _solved(
 
 
 def _by_means(finer: Influence, rigid: np.ndarray, height, weights, traction, z: np.ndarray, settings):
-    """Solve a window for the mean tractions of its elements, see `BETWEEN`, or once at the centres, see `PRECISE`.
+    """Solve a window for the mean tractions of its elements, or for those at the centres, see `PRECISE`.
 
     `traction` (ny, nx) and `z` (1, 2, ny, nx) are those of the coarser elements. Returns traction, slip, z, converged.
     """
-    room, own, missed = room_for(*height.shape, settings.krylov), finer.own, np.zeros(height.shape)
+    room, own, missed, driver = room_for(*height.shape, settings.krylov), finer.own, np.zeros(height.shape), rigid
     precise = settings.tolerance <= PRECISE
     for limit in (ROUGH, settings.tolerance) if precise else (settings.tolerance,):
-        # Newton's method meets the law at the centres: there it finds the traction less `missed`, and the slip less
-        # own * missed.
-        if precise:
+        if precise:  # Newton's method solves for the mean traction less `missed`, and for the slip less own * missed
             missed = subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN)) * height * weights
-        law = Problem(finer, rigid + finer.product(missed) - own * missed, height, 1.0, np.zeros(1), np.ones(1))
+            driver = rigid + finer.product(missed) - own * missed
+        law = Problem(finer, driver, height, 1.0, np.zeros(1), np.ones(1))
         at, residual, *_ = newton(law, room, traction - missed, limit, settings.steps)
         traction, slip = at[0] + missed, at[1] + own * missed
-        smooth = traction / np.where(height > 0.0, height, 1.0) - slip / (own * np.maximum(height, subgrid.RIM))
+        smooth = subgrid.smooth(traction, slip, height, height, own)
         z = np.stack([smooth.real, smooth.imag])[None]
     return traction, slip, z, bool(residual <= settings.tolerance)
 

@@ -42,13 +42,15 @@ FINER_SEARCH: dict[str, Any] = {"scan": 8, "polish": 24, "step": 0.004}
 # the whole patch is solved on elements of half the size instead. This would not do for small areas: with a share below
 # SMALL_SHARE[0], peaks at the tip were up to 4 % too low on 160 x 160 elements.
 SMALL, SMALL_SHARE = 30, (0.05, 0.1)
-# A small area may hide a peak at the spin pole. A formula gives the stress there and the part of it that elements
-# miss: the peak may err by the smaller of this part and of the excess over the peak. Windows serve where this error is
-# as large as the tolerance, and up to STRICT all small areas have them. The estimated error of the peak at hand says
-# nothing here: this peak may lie below the surface. Elements of half the size serve instead of windows where DOUBTED
-# times the error that they leave is smaller than the tolerance. They do so for bodies of similar moduli, whose K/mu is
-# below UNLIKE[0]; adhesion areas of other bodies have sharper tips. For tolerances from RESOLVED on, they also do so
-# where K/mu is above UNLIKE[1] and K below UNLIKE[2]: there the formula often gives too high a stress.
+# The highest stress may lie at the spin pole, where the elements do not resolve a small adhesion area. A formula gives
+# the stress at the pole and the part of it that the elements miss. The peak at hand is then too low by at most the
+# smaller of two numbers: this part, and the stress by the formula less the peak. If this error reaches the tolerance,
+# the area is searched in windows. For tolerances up to STRICT, all small areas are. The error that the search estimates
+# is no reason to leave windows out: its peak may lie below the surface, and does not show the stress at the pole.
+# Two kinds of patches are solved on elements of half the size instead, if DOUBTED times the error that these elements
+# leave is smaller than the tolerance. The first are those of bodies with similar moduli, K/mu of at most UNLIKE[0];
+# other bodies have adhesion areas with sharper tips. The second, only for tolerances of at least RESOLVED, are those
+# with K/mu above UNLIKE[1] and K below UNLIKE[2]: the formula often gives too high a stress for them.
 RESOLVED, UNLIKE, DOUBTED = 0.05, (0.05, 0.6, 0.3), 1.4
 # In slender patches the stress by the formula is too low by up to 17 %, mostly by less than LOW[0]. This share is added
 # there. It grows from 0 at the axis ratio LOW[1] to all of it at LOW[2].
@@ -218,8 +220,7 @@ class EllipseStresses(PatchStresses):
 
         It falls to 0 where the area is no longer small. `goal` (m,) are the tolerances of the peaks.
         """
-        patch, slip, friction, rows = self.results.of(flat)
-        model = self.results.scene.model
+        (patch, slip, friction, rows), model = self.results.of(flat), self.results.scene.model
         sticks: Any = model.stick(patch, slip, friction, rows)
         sharp = (np.abs(model.given.elastic.coupling[rows]) > SHARP[0] * friction) & (goal < RESOLVED)
         pole = np.abs(self.results.slip.pole_lateral[flat]) < patch.semi_axis_lateral

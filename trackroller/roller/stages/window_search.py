@@ -38,11 +38,11 @@ RESIDUAL, FALLS = 0.1, 0.5
 # Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
 # tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
 DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
-# POINTS: at how many points along each side of an element the traction is given, at the trailing tip. The traction
-# turns there within a few elements: in an area of 200 elements, peaks are 1 % too low with 2 points, and 0.1 % with 4.
-# POLISH: quadrature points of the last climbs of a search. With 16, a climb may end 1 % below the summit; with 24, it
-# may end 0.2 % below it. The first value of each serves tolerances below FINER_BELOW[0], the second those from there to
-# FINER_BELOW[1], and the third larger ones.
+# POINTS: number of points along each side of an element at which the traction is given near the trailing tip, where it
+# turns within a few elements. In an area of 200 elements, 2 points make the peak 1 % too low, and 4 points 0.1 %.
+# POLISH: number of quadrature points for the stresses in the last climbs of a search. With 16, a climb may end where
+# the stress is 1 % below the highest, and with 24 where it is 0.2 % below. Both have three values: for tolerances below
+# FINER_BELOW[0], for those from FINER_BELOW[0] to below FINER_BELOW[1], and for larger ones.
 POINTS, POLISH, FINER_BELOW = (8, 8, 3), (48, 24, 16), (0.012, 0.05)
 # Quadrature points of the other steps of a search. With 16 at the summit, stresses in small areas err by up to 1.6 %.
 IN_WINDOWS = {"climb": 12, "summit": 64}
