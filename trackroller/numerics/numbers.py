@@ -1,4 +1,4 @@
-"""Read numbers that a user wrote, and compare the values of a column."""
+"""Read numbers that a user wrote, round them, and compare the values of a column."""
 
 from __future__ import annotations
 
@@ -173,3 +173,15 @@ def rounded_up(value: float) -> float:
     """Return a number > 0 rounded up to two figures."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")
+
+
+def rounded(values: np.ndarray) -> np.ndarray:
+    """Return values rounded to 40 binary digits, about 12 decimal ones, without the rounding errors of their sources.
+
+    Examples
+    --------
+    >>> bool(rounded(0.1 + 0.2) == rounded(0.3))
+    True
+    """
+    mantissa, exponent = np.frexp(values)
+    return np.ldexp(np.round(mantissa * 2.0**40), exponent - 40)

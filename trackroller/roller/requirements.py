@@ -13,6 +13,7 @@ import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions
 from trackroller.contact.drawn_profiles import treats_sides_alike
+from trackroller.numerics.numbers import rounded
 from trackroller.parameters import MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.roller.case import CaseTable
 
@@ -82,8 +83,8 @@ def distinct_rows(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Scale patches with one traction direction, or without friction, to the semi-axis a = 1.
 
-    Their stresses over p_max depend on b/a, mu and the direction only. The ratio b/a is rounded to 13 digits, so that
-    patches under different loads become equal. The other patches stay unchanged.
+    Their stresses over p_max depend on b/a, mu and the direction only. The ratio b/a is rounded, so that patches under
+    different loads become equal. The other patches stay unchanged.
 
     Parameters
     ----------
@@ -100,12 +101,10 @@ def normalised_patches(patches: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     plain = (patches["friction"] == 0.0) | (patches["fixed"] != 0.0)
     length = np.where(plain, patches["a"], 1.0)
     out = patches.copy()
-    ratio = patches["b"] / patches["a"]
-    step = 10.0 ** (np.floor(np.log10(ratio)) - 12.0)
     unit = np.zeros(1, patches.dtype)  # the slip, on which the stresses do not depend
     unit["a"], unit["sine"], unit["cosine"], unit["radius"] = 1.0, 0.5, np.sqrt(0.75), 1e3
     out[plain] = unit
-    out["b"][plain] = (np.rint(ratio / step) * step)[plain]
+    out["b"][plain] = rounded(patches["b"] / patches["a"])[plain]
     for name in ("friction", "fixed"):
         out[name][plain] = patches[name][plain]
     return out, length
@@ -135,15 +134,10 @@ class Mirror:
             twin = self.symmetric[rows[half:]]
             asked = np.concatenate([np.ones(half, bool), ~twin])
             resultants = law(ellipse.take(asked), slip.take(asked), friction[asked], rows[asked], fine)
-            sides = []
-            for values, sign in zip(
-                (resultants.lateral_force, resultants.driving_force, resultants.spin_moment), (-1, 1, -1), strict=True
-            ):
-                full = np.empty(len(rows))
-                full[asked] = values
-                full[half:][twin] = sign * full[:half][twin]
-                sides.append(full)
-            return Resultants(*sides)
+            full = np.empty((len(rows), 3))
+            full[asked] = resultants.columns
+            full[half:][twin] = full[:half][twin] * (-1.0, 1.0, -1.0)
+            return Resultants(*full.T)
 
         return one_sided
 

@@ -202,10 +202,7 @@ def _check_cases(table: CaseTable, options: Options) -> None:
 
 
 def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
-    if len(table) <= size:
-        yield table
-        return
-    for i in range(0, len(table), size):
+    for i in range(0, max(len(table), 1), size):
         yield table.take(np.arange(i, min(i + size, len(table))))
 
 
@@ -246,9 +243,8 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
     """
     bare = requirements.is_frictionless(table) & options.shortcuts
     across = finer_across(table, options)
-    keys = list(
-        zip(bare.tolist(), *(getattr(table, name) for name in MECHANICAL_MAPPINGS), across.tolist(), strict=True)
-    )
+    columns = bare, *(getattr(table, name) for name in MECHANICAL_MAPPINGS), across
+    keys = list(zip(*(column.tolist() for column in columns), strict=True))
     rows: dict[tuple, list[int]] = {}
     for i, key in enumerate(keys):
         rows.setdefault(key, []).append(i)
@@ -282,6 +278,7 @@ def block_of(results: Results, options: Options) -> Block:
     if "subsurface" in wanted:
         stages_stress.subsurface(results, options)
     stages.settle(results)
+    results.values |= {name: results.in_mm(name) for name in results.values}
     stages_case.patch_limits(results, options)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)

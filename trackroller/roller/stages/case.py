@@ -83,7 +83,9 @@ def patch_limits(results: Results, options: Options) -> None:
     def fields() -> Tractions:
         t = surface_tractions(results)
         names = [field.name for field in dataclasses.fields(Tractions) if field.name != "mirrored"]
-        return Tractions(**{name: results.full(getattr(t, name)) for name in names}, mirrored=scene.mirror.symmetric)
+        own = {name: results.full(getattr(t, name)) for name in names}
+        own |= {name: own[name] * scene.unit[:, None, None] for name in ("x", "y")}
+        return Tractions(**own, mirrored=scene.mirror.symmetric)
 
     solved = dataclasses.replace(solved_of(scene.table, results.values, options), tractions=fields)
     for limit in own:

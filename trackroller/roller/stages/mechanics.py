@@ -16,6 +16,7 @@ from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.normal.patches import Boxes
 from trackroller.contact.slip import pole_rolling, turning_of
 from trackroller.contact.wedge import determinant, own_change
+from trackroller.numerics.numbers import rounded
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import contact_geometry, lever_arms
@@ -36,6 +37,10 @@ FINITE = {"normal_force", "lateral_force", "driving_force", "spin_moment", "max_
 def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | None = None) -> Scene:
     """Compute curvatures, Hertz shape, contact model and loads of a block.
 
+    Rollers on Hertzian patches are solved with r_A as the unit of length, and what enters the solution is rounded. So
+    rollers that differ in size alone have the same stresses, bit for bit. Unrounded, their inputs would differ in the
+    last digits, which changes a peak stress by up to 1e-3.
+
     Parameters
     ----------
     table : n cases that share their friction law
@@ -43,21 +48,24 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     across, near : factor on the elements across solved patches and boxes to start from, see `models.model_of`
     """
     alpha, r_a, k_x, k_y = contact_geometry(vars(table))
+    unit = r_a if options.normal == "hertz" else np.ones(len(table))  # drawn profiles are in mm
+    r_a, k_x, k_y = r_a / unit, rounded(k_x * unit), rounded(k_y * unit)
+    guide, curve = rounded(table.guide_profile_radius / unit), rounded(table.guide_curve_radius / unit)
     hertz = shape(k_x, k_y, contact_modulus(*bodies(table)), options.hertz)
     turning = None
     if "curve" in options.slip_terms:
-        turning = turning_of(table.guide_curve_radius, table.guide_profile_radius, np.cos(alpha))
+        turning = turning_of(curve, guide, np.cos(alpha))
         # a contact beyond the axis of a concave guide cannot turn with it: its shape is NaN, and the row fails
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(table.friction_law[0] if len(table) else None)
     model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
     loads = eq.Loads(
-        table.radial_force,
-        table.axial_force,
-        table.motor_force,
+        rounded(table.radial_force / unit**2),
+        rounded(table.axial_force / unit**2),
+        rounded(table.motor_force / unit**2),
         table.friction_coefficient,
         alpha,
-        table.guide_profile_radius,
+        guide,
         r_a,
         hertz,
         model.difference_step,
@@ -68,7 +76,7 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     bare = options.shortcuts and bool(is_frictionless(table).all())
     twins = is_mirror_symmetric(table) if options.shortcuts else np.zeros(len(table), bool)
     turned = np.array([inclined(str(text)) for text in table.guide_profile]).reshape(-1, 2) * [1.0, -1.0]
-    return Scene(table, loads, model, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
+    return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
 
 
 def forces(results: Results) -> None:
@@ -86,7 +94,8 @@ def forces(results: Results) -> None:
     v["driving_force"] = f.driving_force
     v["spin_moment"] = np.where(slides, offset * f.driving_force, f.spin_moment)
     v["rolling_radius_shift"], v["slip"] = b.shift, b.shift / loads.rolling_radius
-    h_n, h_t = lever_arms(results.scene.table.axis_distance, loads.guide_profile_radius, loads.contact_angle)
+    height = results.scene.table.axis_distance / results.scene.unit
+    h_n, h_t = lever_arms(height, loads.guide_profile_radius, loads.contact_angle)
     m, a, t, n = f.spin_moment, f.driving_force, f.lateral_force, b.normal_force
     # eqs (10), (11), (12)
     v["drilling_torque"] = (m[:, 0] - m[:, 1]) * loads.sine

@@ -15,10 +15,12 @@ from trackroller.contact.protocol import ContactModel, Patch
 from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
-from trackroller.roller.dataset import validity_bit
+from trackroller.roller.dataset import VARIABLES, validity_bit
 from trackroller.roller.requirements import Mirror
 
 JAMMING = validity_bit("jamming")
+_LENGTHS = {"mm": 1, "mm2": 2, "N": 2, "J m-1": 2, "N mm": 3}  # N = MPa mm2, J m-1 = N
+POWER = {v.name: _LENGTHS[v.units] for v in VARIABLES.values() if v.units in _LENGTHS}  # of the unit of length
 
 
 @dataclass(frozen=True)
@@ -28,6 +30,8 @@ class Scene:
     Attributes
     ----------
     table, loads, model : the cases, the input of the equilibrium, and the contact model
+    unit : unit of length in which each roller is solved, (n,) [mm]. In the loads, the patches and all results of the
+        stages, mm stands for this unit and N for MPa unit^2, until `Results.in_mm`
     mirror : marks rollers whose two contacts are mirror images
     frictionless : True if all cases have zero friction, so that no tractions are computed
     n : number of cases
@@ -38,6 +42,7 @@ class Scene:
     table: CaseTable
     loads: eq.Loads
     model: ContactModel
+    unit: np.ndarray
     mirror: Mirror
     frictionless: bool
     n: int
@@ -101,7 +106,6 @@ class Results:
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
         """Make patches and slips from the normal forces and rolling radius shifts of the equilibrium."""
         both = np.tile(np.arange(scene.n), 2)
-        normal = balance.normal_force.T.reshape(-1)
         ellipse, slip = scene.contacts(balance)
         friction = scene.loads.friction * np.where(balance.regime == eq.FULL_SLIP, scene.loads.at_high_speed, 1.0)
         patch = scene.model.settled(ellipse, slip, friction[both], both)
@@ -116,7 +120,7 @@ class Results:
             patch,
             slip,
             friction[both],
-            np.isfinite(normal),
+            np.isfinite(balance.normal_force.T.reshape(-1)),
             np.where(balance.jamming, JAMMING, 0).astype(np.int32),
             np.zeros(scene.n, bool),
             refined=np.zeros(2 * scene.n, int),
@@ -138,6 +142,11 @@ class Results:
         """Return the direction of the traction along y_C in full slip, and 0 in rolling, (2 n,)."""
         along = np.where(self.regime == eq.FULL_SLIP, -np.sign(self.scene.loads.motor_force), 0.0)
         return np.concatenate([along, along])
+
+    def in_mm(self, name: str) -> np.ndarray:
+        """Return the result `name` in N and mm, (n, ...)."""
+        values, power = self.values[name], POWER.get(name, 0)
+        return values * self.scene.unit.reshape(-1, *(1,) * (values.ndim - 1)) ** power if power else values
 
     def tell(self, over: np.ndarray) -> None:
         """Take estimated errors over their tolerance, (n, ...), into the largest one of each case."""

@@ -25,18 +25,12 @@ def stop(results: Results, options: Options) -> None:
     """Mark the cases for which the condition of `stop_if` already holds; the following stages leave them out."""
     if options.stop_if is None:
         return
-    table, v = results.scene.table, results.values
-    bounded = []
-    for comparison in parse_condition(options.stop_if):
-        if comparison.name == PEAK:
-            bounded.append(comparison)
-            continue
-        value = results.regime.astype(float) if comparison.name == "regime" else v[comparison.name]
-        results.stopped |= holds(comparison, value, table)
-    if bounded:
-        lower = peak_bound(results, options)
-        for comparison in bounded:
-            results.stopped |= holds(comparison, lower, table)
+    for comparison in sorted(parse_condition(options.stop_if), key=lambda part: part.name == PEAK):
+        if comparison.name == PEAK:  # the last ones, because its bound takes longest
+            value = peak_bound(results, options)
+        else:
+            value = results.regime.astype(float) if comparison.name == "regime" else results.in_mm(comparison.name)
+        results.stopped |= holds(comparison, value, results.scene.table)
 
 
 def peak_bound(results: Results, options: Options) -> np.ndarray:
