@@ -271,12 +271,13 @@ def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(("tolerance", "step"), [(0.06, 0.25), (0.03, 0.25), (0.01, 0.4)])
-def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step):
-    """From case to case, the relative change of the peak itself changes by less than `step` times the tolerance.
+@pytest.mark.parametrize(("tolerance", "step", "turn"), [(0.06, 0.2, 0.25), (0.03, 0.2, 0.25), (0.01, 0.25, 0.4)])
+def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step, turn):
+    """The relative change of the peak from case to case differs little from that of its neighbours.
 
-    Each line has 160 cases, in equal steps of one parameter. Where another summit becomes the highest, the peak has a
-    kink, which no finer solution removes; this makes the largest difference at 0.01.
+    It differs by less than `step` times the tolerance from the median of seven changes, and by less than `turn` times
+    the tolerance from the next one. Each line has 160 cases, in equal steps of one parameter. Where another summit
+    becomes the highest, the peak has a kink, which no finer solution removes; this makes the largest turn at 0.01.
     """
     given = {"motor_force": 0.0, "radial_force": -600.0, "axial_force": 0.0}
     lines = [
@@ -289,7 +290,10 @@ def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step):
     ]
     for cases in lines:
         peaks = tr.solve(cases, ("peak_stress",), accuracy=tolerance).peak_stress.values.reshape(len(cases), -1)
-        assert np.abs(np.diff(np.log(peaks), 2, axis=0)).max() < step * tolerance
+        change = np.diff(np.log(peaks), axis=0)
+        usual = np.median(np.lib.stride_tricks.sliding_window_view(change, 7, axis=0), axis=-1)
+        assert np.abs(change[3:-3] - usual).max() < step * tolerance
+        assert np.abs(np.diff(change, axis=0)).max() < turn * tolerance
 
 
 def test_a_ridge_that_few_quadrature_points_raise_does_not_hide_the_tip():

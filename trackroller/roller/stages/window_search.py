@@ -34,7 +34,7 @@ CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
 OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 6e-5, 48, 2e-3
 # In windows, the residual of the friction law over mu p_max is at most RESIDUAL times the tolerance. If a window lowers
 # the peak by more than FALLS times the tolerance, all places are searched, because another summit may be higher.
-RESIDUAL, FALLS = 0.1, 0.5
+RESIDUAL, FALLS = 0.1, 0.2
 # Before the windows, the elements of the patch double once for tolerances below DOUBLED_BELOW, and once more for
 # tolerances up to STRICT or axis ratios above DOUBLED_ABOVE.
 DOUBLED_BELOW, STRICT, DOUBLED_ABOVE = 0.03, 5e-3, 8.0
