@@ -278,7 +278,7 @@ def block_of(results: Results, options: Options) -> Block:
     if "subsurface" in wanted:
         stages_stress.subsurface(results, options)
     stages.settle(results)
-    results.values |= {name: results.in_mm(name) for name in results.values}
+    results.values |= {name: results.in_mm(name) for name in results.values}  # as the limits take them
     stages_case.patch_limits(results, options)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
