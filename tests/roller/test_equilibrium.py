@@ -8,6 +8,7 @@ from reference_cases import case_of, published_cases, solve_sliding
 
 import trackroller as tr
 from validation.benchmarks.samples import random_designs
+from validation.extremes import scenes
 
 FORCES = ("forces", "contact", "friction_work")
 EXACT = [c for c in published_cases() if c.get("exact")]
@@ -158,8 +159,10 @@ def test_rollers_of_another_size_have_the_same_stresses(options, size):
     Rounding errors of the inputs must not pass through the searches and iterations.
     """
     power = {"mm": 1, "mm2": 2, "N": 2, "J m-1": 2, "W": 2, "N mm": 3}
-    designs = [vars(case) for case in (tr.Case(), *random_designs(3, 312))]
-    small, large = solve_alike([{k: v for k, v in d.items() if k != "not_given"} for d in designs], size, options)
+    designs = [case.as_dict() for case in (tr.Case(), *random_designs(3, 312))]
+    powers = dict.fromkeys(scenes.LENGTHS, 1) | dict.fromkeys(scenes.FORCES, 2)
+    scaled = [d | {name: d[name] * size**exponent for name, exponent in powers.items()} for d in designs]
+    small, large = (tr.solve(cases, **options) for cases in (designs, scaled))
     assert set(small.regime.values) == {0}
     for name in small.data_vars.keys() - {"residual", "energy_residual"}:
         unit = small[name].attrs.get("units")
@@ -167,15 +170,6 @@ def test_rollers_of_another_size_have_the_same_stresses(options, size):
             continue
         factor = size ** power.get(unit, 0)
         np.testing.assert_allclose(large[name], small[name] * factor, rtol=1e-9, err_msg=name)
-
-
-def solve_alike(designs, size, options):
-    """Solve designs, and the same with lengths times `size` and forces times its square."""
-    lengths = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius")
-    forces = ("radial_force", "axial_force", "motor_force")
-    powers = dict.fromkeys(lengths, 1) | dict.fromkeys(forces, 2)
-    scaled = [d | {name: d[name] * size**power for name, power in powers.items()} for d in designs]
-    return tr.solve(designs, **options), tr.solve(scaled, **options)
 
 
 def test_conditions_are_compared_in_newtons_and_millimetres():

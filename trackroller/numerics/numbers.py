@@ -176,7 +176,9 @@ def rounded_up(value: float) -> float:
 
 
 def rounded(values: np.ndarray) -> np.ndarray:
-    """Return values rounded to 40 binary digits, about 12 decimal ones, without the rounding errors of their sources.
+    """Return values rounded to 40 binary digits, about 12 decimal ones.
+
+    Nearly all values become equal that differ by rounding errors only.
 
     Examples
     --------

@@ -24,8 +24,8 @@ from trackroller.contact.kalker.newton import Problem, newton, room_for
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution
 from trackroller.numerics.splines import interpolated
 
-# Elements between the adhesion area and the edge of a window, those of the first window, and more over the area's size.
-# With 6 in the first window, one element more around it changed a peak by 0.3 %.
+# Between the adhesion area and the edge of a window lie MARGIN elements, in the first window FIRST_MARGIN, and WIDER
+# times the size of the area. With 6 elements in the first window, one more element changed a peak by 0.3 %.
 MARGIN, FIRST_MARGIN, WIDER = 6, 7, 0.25
 CLOSE = 4  # elements between the area and the edge below which a window is made larger: half of MARGIN, and one
 UNSEEN = 1.25  # where no element sticks, the area may lie at all elements with |z| below this times the smallest
@@ -101,7 +101,7 @@ def _heights(first: tuple[int, int], shape: tuple[int, ...], of: tuple[int, int]
 
 
 def _area(grid: Grid) -> Spans:
-    """Return the box around the adhesion area without its small parts, or around the elements closest to sticking."""
+    """Return the box around the large parts that stick or, if no element sticks, around those closest to sticking."""
     height = _heights(grid.first, grid.traction.shape, grid.of)
     loaded = height > 0.0
     for axis, (start, of) in enumerate(zip(grid.first[::-1], grid.of[::-1], strict=True)):  # not at the window's edge
@@ -204,7 +204,7 @@ def _by_means(finer: Influence, rigid: np.ndarray, height, weights, traction, z:
     room, own, missed, driver = room_for(*height.shape, settings.krylov), finer.own, np.zeros(height.shape), rigid
     precise = settings.tolerance <= PRECISE
     for limit in (ROUGH, settings.tolerance) if precise else (settings.tolerance,):
-        if precise:  # Newton's method solves for the mean traction less `missed`, and for the slip less own * missed
+        if precise:  # Newton's method finds the mean traction minus `missed`, and the slip minus own * missed
             missed = subgrid.missed_by_centres(z[0], interpolated(z[0], BETWEEN, BETWEEN)) * height * weights
             driver = rigid + finer.product(missed) - own * missed
         law = Problem(finer, driver, height, 1.0, np.zeros(1), np.ones(1))

@@ -45,16 +45,17 @@ SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # The highest stress may lie at the spin pole, where the elements do not resolve a small adhesion area. A formula gives
 # the stress at the pole and the part of it that the elements miss. The peak at hand is then too low by at most the
 # smaller of two numbers: this part, and the stress by the formula less the peak. If this error reaches the tolerance,
-# the area is searched in windows. For tolerances up to STRICT, all small areas are. The error that the search estimates
-# is no reason to leave windows out: its peak may lie below the surface, and does not show the stress at the pole.
-# Two kinds of patches are solved on elements of half the size instead, if DOUBTED times the error that these elements
-# leave is smaller than the tolerance. The first are those of bodies with similar moduli, K/mu of at most UNLIKE[0];
-# other bodies have adhesion areas with sharper tips. The second, only for tolerances of at least RESOLVED, are those
-# with K/mu above UNLIKE[1] and K below UNLIKE[2]: the formula often gives too high a stress for them.
+# the area is searched in windows. For tolerances up to STRICT, windows are used for every small area. They are used
+# even if the search tells a small error: its peak may lie below the surface, and say nothing of the stress at the pole.
+# Some patches need no windows if elements of half the size leave an error that is smaller than the tolerance even when
+# multiplied by DOUBTED; they are solved on these elements. One kind are patches of bodies with similar moduli, with
+# K/mu of at most UNLIKE[0]; the adhesion areas of other bodies have sharper tips. The other kind are patches with K/mu
+# above UNLIKE[1] and K below UNLIKE[2], for tolerances of at least RESOLVED: there the formula often gives too high a
+# stress.
 RESOLVED, UNLIKE, DOUBTED = 0.05, (0.05, 0.6, 0.3), 1.4
-# In slender patches the stress by the formula is too low by up to 17 %, mostly by less than LOW[0]. This share is added
-# there. It grows from 0 at the axis ratio LOW[1] to all of it at LOW[2].
-LOW = 0.1, 3.0, 8.0
+# In slender patches the formula gives too low a stress: mostly by less than LOW, at worst by 17 %. Its stress is
+# therefore raised there. The share grows from 0 at the axis ratio LOW_FROM[0] to LOW at LOW_FROM[1].
+LOW, LOW_FROM = 0.1, (3.0, 8.0)
 # If the friction coefficient is at most LITTLE_FRICTION, the peak is rarely at the adhesion area, and windows are not
 # used. One exception: if K/mu is above SHARP[0] and the friction coefficient above SHARP[1], the peak may be there. For
 # tolerances below RESOLVED, windows are then used where the formula or the estimated error of the peak asks for them.
@@ -202,7 +203,7 @@ class EllipseStresses(PatchStresses):
         See `UNLIKE` and `KNOWN`. `small` (m,) is that of `_small`; least errors are at most the tolerance `goal` (m,).
         """
         (patch, slip, friction, rows), model = self.results.of(flat), self.results.scene.model
-        least, excess, higher = peak.stress.min(axis=1), [], 1.0 + LOW[0] * rise(slenderness(patch), LOW[1:])
+        least, excess, higher = peak.stress.min(axis=1), [], 1.0 + LOW * rise(slenderness(patch), LOW_FROM)
         for doublings in (0, 1):
             stress, missed = model.pole_stress(patch, slip, friction, rows, doublings)
             excess.append(np.minimum(higher * stress - least, missed) / least)
