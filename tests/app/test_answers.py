@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import threading
-import time
 from itertools import pairwise
 
 import fake_solver
@@ -173,9 +172,9 @@ def test_altered_results_are_named_in_the_list_and_their_pages_refused(tmp_path,
 
 
 def test_only_the_newest_request_of_a_page_is_worked_on():
-    lane, go, done = Lane("test"), threading.Event(), []
-    first = lane.submit("page 1", go.wait)
-    time.sleep(0.05)  # the lane works on the first one now
+    lane, begun, go, done = Lane("test"), threading.Event(), threading.Event(), []
+    first = lane.submit("page 1", lambda: begun.set() or go.wait())
+    assert begun.wait(5)
     old = [lane.submit("page 1", lambda i=i: done.append(i)) for i in range(5)]
     other = lane.submit("page 2", lambda: done.append("other"))
     go.set()
