@@ -30,10 +30,11 @@ FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whos
 LIKELY_EXPONENT = 10.0  # of an S-N curve, for the search of the peak where the life has a tolerance
 PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
 SEARCH_SHARE = 0.4  # the same for a tolerance met case by case, where the estimated error contains that of the search
-BY_CASE_ELEMENTS = {5.5e-2: 16, 1.5e-2: 20, 0.0: 24}  # across a patch at first, by the smallest tolerance they serve
+# Elements across a patch at first, and how often they may double, by the smallest tolerance that they serve.
+BY_CASE = {5.5e-2: (16, 2), 1.5e-2: (20, 2), 5e-3: (24, 2), 0.0: (24, 3)}
 WHOLE_ELEMENTS = (56, 112)  # across all patches of a case whose elements cannot double patch by patch
 FORCE_SAFETY = 1.6  # factor on the estimated error of forces; the error of 1 in 100 designs is larger
-SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 112 elements keep in all but a few per cent of designs
+SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 192 elements keep in all but a few per cent of designs
 
 
 @dataclass(frozen=True)
@@ -174,10 +175,10 @@ class Tolerance:
         peak, searches = min(self.peak, self.life / LIKELY_EXPONENT), ladders()["peak"]
         search = _cheapest(searches, SEARCH_SHARE * peak, ("peak_stress",)) or _finest(searches, ("peak_stress",))
         forces = _finest(ladders()["forces"], FORCE_QUANTITIES)
-        elements = elements or next(n for limit, n in BY_CASE_ELEMENTS.items() if min(self.forces, peak) >= limit)
+        first, doublings = next(own for limit, own in BY_CASE.items() if min(self.forces, peak) >= limit)
         return replace(
-            _composed(f"tolerance, {elements} elements", min(self.forces, peak), forces, search, elements),
-            doublings=2,
+            _composed("by case", min(self.forces, peak), forces, search, elements or first),
+            doublings=doublings,
             force_goal=self.forces / FORCE_SAFETY,
             peak_goal=self.peak,
             life_goal=self.life,
@@ -210,11 +211,10 @@ def accuracy_settings(
 
     Notes
     -----
-    For `kalker` see `Tolerance`. For other models the tolerance limits the
-    error of discretisation, not that of the model, in 99 % of the measured cases. It is
-    relative to F_N for F_N, to mu F_N for F_T and F_A, to mu F_N sqrt(a b) for M_R, and to the value itself for
-    friction work and peak stress. The relative error of the life is that of the peak times the exponent k of the S-N
-    curve.
+    For `kalker` see `Tolerance`. For other models the tolerance limits the error of discretisation, not that of the
+    model, in 99 % of the measured cases. It is relative to F_N for F_N, to mu F_N for F_T and F_A, to mu F_N sqrt(a b)
+    for M_R, and to the value itself for friction work and peak stress. The relative error of the life is that of the
+    peak times the exponent k of the S-N curve.
     """
     if isinstance(accuracy, Accuracy):
         return accuracy

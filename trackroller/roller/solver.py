@@ -44,8 +44,10 @@ importlib.import_module("dask.array")  # xarray loads it with its first data set
 cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 
-BLOCK = 2048  # cases worked on at once: bounds the memory whatever the size of the batch
-WINDOW = 16 * BLOCK  # number of cases within which cases with equal mechanics are solved once
+# Cases worked on at once where no patch may double its elements: bounds the memory whatever the size of the batch. Each
+# doubling makes a solution four times as large, and the block a quarter.
+BLOCK = 8192
+WINDOW = 4 * BLOCK  # number of cases within which cases with equal mechanics are solved once
 
 
 def solve(
@@ -213,7 +215,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         table, mirrored = handed(table)
 
     def solve_all(cases: CaseTable) -> Block:
-        return join([meet(part, options, _solve_block) for part in _cut(cases, BLOCK)])
+        return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK >> 2 * options.settings.doublings)])
 
     distinct, number = table, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
