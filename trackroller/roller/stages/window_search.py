@@ -31,7 +31,7 @@ CHANGED, BEYOND, SEARCHED = (2.0, 1.0), 3.0, 0.15
 # Relative error of a peak from the tractions outside the windows: OUTSIDE, or, if this is larger, OUTSIDE_SLENDER times
 # the square of the axis ratio, on OUTSIDE_AT elements along an axis. In patches with an axis ratio above DOUBLED_ABOVE,
 # the search may miss the tip; NEEDLE (axis ratio - DOUBLED_ABOVE) is added.
-OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 6e-5, 48, 2e-3
+OUTSIDE, OUTSIDE_SLENDER, OUTSIDE_AT, NEEDLE = 1e-3, 2e-5, 48, 5e-4
 # In windows, the residual of the friction law over mu p_max is at most RESIDUAL times the tolerance. If a window lowers
 # the peak by more than FALLS times the tolerance, all places are searched, because another summit may be higher.
 RESIDUAL, FALLS = 0.1, 0.2
