@@ -163,7 +163,7 @@ def test_an_interrupt_waits_while_a_compiled_module_is_imported(monkeypatch):
             time.sleep(0.1)
         except KeyboardInterrupt:
             raise ImportError("initialization failed") from None
-        made.append(create(spec))  # here, as the interrupt may come as soon as the module is made
+        made.append(create(spec))  # the interrupt may come before the caller has the module
         return made[0]
 
     monkeypatch.setattr(_imp, "create_dynamic", interrupted)
