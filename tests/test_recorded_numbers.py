@@ -11,11 +11,12 @@ from recorded_numbers import compute, groups, load, names, studies
 
 from trackroller.parameters import CONTACT_MODELS, OPTIONS
 
-# Sums in another order (threads, processors, releases of NumPy and Numba) differ by 1e-15. The iterations of the solver
-# multiply such a difference by up to 1e5. A new formula, quadrature node or draw changes numbers by far more than 1e-9.
+# With other threads, processors or releases of NumPy and Numba, sums are formed in another order and differ by 1e-15 of
+# their value. The iterations of the solver can amplify this to 1e-10. If a formula, a quadrature node or a random draw
+# of the program changes, numbers change by far more than 1e-9.
 TOLERANCE = 1e-9
-# A life is a power of the peak stress, and an estimated error is the difference of nearly equal stresses. Lives and
-# estimated errors computed on two processors differed by up to 5e-9.
+# Between two processors, lives and estimated errors differed by up to 5e-9. Both amplify rounding errors: a life is a
+# high power of the peak stress, and an estimated error is the difference of two nearly equal stresses.
 MAGNIFIED = 1e-8
 RESIDUAL = 1e-8  # a residual is what rounding leaves of a balance, which differs with the processor
 SECTIONS = 2e-4  # sections pass through the peak, whose place depends on rounding in the search

@@ -273,11 +273,12 @@ def test_peaks_converge_with_the_square_of_the_size_of_elements(monkeypatch):
 @pytest.mark.slow
 @pytest.mark.parametrize(("tolerance", "step", "turn"), [(0.06, 0.2, 0.25), (0.03, 0.2, 0.25), (0.01, 0.25, 0.4)])
 def test_peaks_in_windows_change_smoothly_from_case_to_case(tolerance, step, turn):
-    """The relative change of the peak from case to case differs little from that of its neighbours.
+    """Along a line of cases, the peak stress neither jumps nor turns sharply.
 
-    It differs by less than `step` times the tolerance from the median of seven changes, and by less than `turn` times
-    the tolerance from the next one. Each line has 160 cases, in equal steps of one parameter. Where another summit
-    becomes the highest, the peak has a kink, which no finer solution removes; this makes the largest turn at 0.01.
+    Each line has 160 cases, in equal steps of one parameter. The relative change of the peak from one case to the next
+    differs by less than `step` times the tolerance from the median of the seven changes around it, and by less than
+    `turn` times the tolerance from the change after it. Where another summit becomes the highest, the peak itself has a
+    kink, whatever the elements. Such a kink is the sharpest turn at 0.01.
     """
     given = {"motor_force": 0.0, "radial_force": -600.0, "axial_force": 0.0}
     lines = [

@@ -83,7 +83,7 @@ def test_many_designs_keep_their_tolerances(asked, least):
 
 
 def test_slender_patches_keep_their_tolerance_without_a_flag():
-    """With axis ratios of 16 to 23: errors up to 1.2 % were told as 4 to 8 %."""
+    """The axis ratios are 16 to 23, and the peaks err by up to 1.2 %. Estimated errors of 4 to 8 % would be flagged."""
     designs = sample(500, 9201)
     cases = [designs[number] for number in (112, 155, 321, 408)]
     finer = dataclasses.replace(PRESETS["reference"], peak_goal=1e-3)

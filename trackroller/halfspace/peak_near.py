@@ -16,9 +16,9 @@ NEAR_STEP = 0.04  # first step of climbs from peaks at hand
 # over the extent of the line, the distance of their starts, the first step and the last.
 LINE_SEEDS, LINE_POINTS, LINE_APART, LINE_STEP, LINE_SMALLEST = 4, 60, 0.1, 0.08, 0.01
 LINE_FROM = 0.93  # least stress at their starts, over that at the peak at hand
-# After LINE_SWEEPS sweeps, a climb is given up whose stress is below LINE_WORTH of the highest, or which is closer to a
-# higher climb than LINE_GAP times the smaller extent of the line. Of the others, the LINE_STAND highest in each body
-# go on. With 3 of them, summits were missed that were 0.2 to 0.7 % higher.
+# After LINE_SWEEPS sweeps, at most LINE_STAND climbs in each body go on, the highest ones. A climb ends there if its
+# stress is below LINE_WORTH of the highest, or if a higher climb is closer than LINE_GAP times the smaller extent of
+# the line. If LINE_STAND was 3, some peaks were 0.2 to 0.7 % too low.
 LINE_SWEEPS, LINE_STAND, LINE_WORTH, LINE_GAP = 2, 4, 0.96, 0.1
 RIDGE = 3  # a sweep repeats its whole move up to this many times, see `sweep`
 # After the first number of sweeps, a climb ends when a sweep raises its stress by less than the second number, a share.

@@ -30,11 +30,11 @@ FORCE_SHARE = 0.1  # share of the tolerance for the forces of full sliding, whos
 LIKELY_EXPONENT = 10.0  # of an S-N curve, for the search of the peak where the life has a tolerance
 PEAK_SHARE = 0.2  # share of the tolerance for the search of the peak, beside that for the elements
 SEARCH_SHARE = 0.4  # the same for a tolerance met case by case, where the estimated error contains that of the search
-# Elements across a patch at first, and how often they may double, by the smallest tolerance that they serve.
+# For tolerances from each key up: the number of elements across a patch at first, and how often it may double.
 BY_CASE = {5.5e-2: (16, 2), 1.5e-2: (20, 2), 5e-3: (24, 2), 0.0: (24, 3)}
 WHOLE_ELEMENTS = (56, 112)  # across all patches of a case whose elements cannot double patch by patch
 FORCE_SAFETY = 1.6  # factor on the estimated error of forces; the error of 1 in 100 designs is larger
-SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # tolerances that 192 elements keep in all but a few per cent of designs
+SMALLEST = {"forces": 1e-3, "peak": 3e-3}  # allowed tolerances; most designs keep them, on at most 192 elements
 
 
 @dataclass(frozen=True)

@@ -44,10 +44,10 @@ importlib.import_module("dask.array")  # xarray loads it with its first data set
 cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 
-# Cases worked on at once where no patch may double its elements: bounds the memory whatever the size of the batch. Each
-# doubling makes a solution four times as large, and the block a quarter.
+# Number of cases that are solved at once if the elements of a patch may not double. Each doubling that is allowed makes
+# the solution of a patch four times as large, and the number of cases four times as small, which bounds the memory.
 BLOCK = 8192
-WINDOW = 4 * BLOCK  # number of cases within which cases with equal mechanics are solved once
+WINDOW = 4 * BLOCK  # among this many consecutive cases, those with equal mechanics are solved once
 
 
 def solve(
@@ -280,7 +280,7 @@ def block_of(results: Results, options: Options) -> Block:
     if "subsurface" in wanted:
         stages_stress.subsurface(results, options)
     stages.settle(results)
-    results.values |= {name: results.in_mm(name) for name in results.values}  # as the limits take them
+    results.values |= {name: results.in_mm(name) for name in results.values}  # the limits take N and mm
     stages_case.patch_limits(results, options)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)

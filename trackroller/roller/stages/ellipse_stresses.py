@@ -47,14 +47,14 @@ SMALL, SMALL_SHARE = 30, (0.05, 0.1)
 # smaller of two numbers: this part, and the stress by the formula less the peak. If this error reaches the tolerance,
 # the area is searched in windows. For tolerances up to STRICT, windows are used for every small area. They are used
 # even if the search tells a small error: its peak may lie below the surface, and say nothing of the stress at the pole.
-# Some patches need no windows if elements of half the size leave an error that is smaller than the tolerance even when
-# multiplied by DOUBTED; they are solved on these elements. One kind are patches of bodies with similar moduli, with
-# K/mu of at most UNLIKE[0]; the adhesion areas of other bodies have sharper tips. The other kind are patches with K/mu
-# above UNLIKE[1] and K below UNLIKE[2], for tolerances of at least RESOLVED: there the formula often gives too high a
-# stress.
+# Two kinds of patches are solved on elements of half the size instead of in windows, if the error that these elements
+# leave is smaller than the tolerance even after multiplication by DOUBTED. The first kind has bodies with similar
+# moduli, K/mu of at most UNLIKE[0]; the adhesion areas of other bodies have sharper tips. The second kind has K/mu
+# above UNLIKE[1] and K below UNLIKE[2], and counts for tolerances of at least RESOLVED only. The formula often
+# overestimates the stress of the second kind.
 RESOLVED, UNLIKE, DOUBTED = 0.05, (0.05, 0.6, 0.3), 1.4
-# In slender patches the formula gives too low a stress: mostly by less than LOW, at worst by 17 %. Its stress is
-# therefore raised there. The share grows from 0 at the axis ratio LOW_FROM[0] to LOW at LOW_FROM[1].
+# In slender patches the formula underestimates the stress, mostly by less than LOW, at worst by 17 %. Its stress is
+# therefore raised by a share that grows from 0 at the axis ratio LOW_FROM[0] to LOW at LOW_FROM[1].
 LOW, LOW_FROM = 0.1, (3.0, 8.0)
 # If the friction coefficient is at most LITTLE_FRICTION, the peak is rarely at the adhesion area, and windows are not
 # used. One exception: if K/mu is above SHARP[0] and the friction coefficient above SHARP[1], the peak may be there. For
