@@ -21,7 +21,7 @@ COMPILE := uv pip compile --python-version 3.11 --universal --generate-hashes --
 lock:
 	$(COMPILE) --all-extras pyproject.toml requirements.in -o requirements.lock
 	$(COMPILE) requirements-ci.in -c requirements.lock -o requirements-ci.lock
-	$(BIN)/python -m validation.licences --write
+	$(BIN)/python docs/licences.py --write
 
 $(STAMP): requirements.lock pyproject.toml
 	@echo "Setting up $(VENV): this happens once and takes some minutes."
@@ -32,7 +32,7 @@ $(STAMP): requirements.lock pyproject.toml
 	$(BIN)/python -c "import trackroller as tr; tr.solve(tr.Case(), outputs=('friction_work', 'life', 'tractions', 'subsurface'))"
 	touch $@
 
-# what the site and CI need beyond it
+# what the site, its tests and CI need beyond it
 env-ci: $(CI_STAMP)
 
 $(CI_STAMP): $(STAMP) requirements-ci.lock
@@ -48,7 +48,7 @@ validate: $(STAMP)
 	$(BIN)/snakemake -s validation/Snakefile --quiet rules host --cores $(CORES)
 
 # -ra lists what was skipped and why; CI runs the slow tests and those in a browser as well
-test: $(STAMP)
+test: $(CI_STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal
 
 # without the studies of accuracy and the whole processes, which make test runs
@@ -62,8 +62,6 @@ lint: $(STAMP)
 	$(BIN)/snakefmt --check $(SNAKEFILES)
 	$(BIN)/snakemake --lint
 	$(BIN)/snakemake -s validation/Snakefile --lint
-	$(BIN)/python -m validation.docstrings
-	$(BIN)/python -m validation.house
 
 # the site in site/: generated pages must be up to date, and no link may be dead
 docs: $(CI_STAMP)

@@ -1,50 +1,152 @@
-"""The rules of the code are kept: rooms in one order, so no circles, small files, small functions.
+"""The structure of the package: rooms in one order, no import circles, and unique names of files.
 
-ruff holds the number of arguments and imports inside functions.
+Each room of the package is a folder or a file at its top. A room imports from the rooms before it only, and no files
+import each other in a circle, inside a room either. ruff limits complexity, the number of arguments and late imports.
 """
 
 from __future__ import annotations
 
+import ast
+import graphlib
+from dataclasses import dataclass, field
+from pathlib import Path
+
 import pytest
 
-from validation.house import LONGEST_FUNCTION, MOST_LINES, survey
+ROOT = Path(__file__).parents[1]
+PACKAGE = "trackroller"
+# the top of the package holds public names and may import all rooms
+ORDER = (
+    "errors",
+    "files",
+    "yaml_file",
+    "numerics",
+    "parameters",
+    "materials",
+    "halfspace",
+    "contact",
+    "damage",
+    "roller",
+    "study",
+    "analysis",
+    "report",
+    "solved",
+    "app",
+    "cli",
+    "__init__",
+)
+# circles that are still there; each is turned by the step of the redesign that moves its files
+CIRCLES = (
+    {"trackroller.roller.expected_errors", "trackroller.roller.options"},
+    {
+        "trackroller.study.design.build",
+        "trackroller.study.design.draws",
+        "trackroller.study.design.grown_lhs",
+        "trackroller.study.design.growth",
+        "trackroller.study.design.sampling",
+        "trackroller.study.design.stored",
+        "trackroller.study.file.study",
+    },
+)
 
-LINES_OF_CODE = 27_685  # most lines of code in the package, without FOR_LIMITS
-FOR_LIMITS = 1_835  # lines of the limits in the room `damage`, and of what declares and serves them
-# formulas that a compiled kernel evaluates at one go; cutting them up would pass dozens of numbers around
-LONG_FUNCTIONS = {
-    "trackroller/halfspace/kernels.py:point_kernel": "six stresses below a point load",
-    "trackroller/halfspace/kernels.py:bilinear_corner": "closed form of the corner of a bilinear cell",
-}
+
+@dataclass
+class House:
+    """The imports of a package.
+
+    Attributes
+    ----------
+    upward : list of str
+        Imports from a later room, those for type checking and those inside functions included.
+    imports : dict
+        The modules of the package that each module imports.
+    """
+
+    upward: list[str] = field(default_factory=list)
+    imports: dict[str, set[str]] = field(default_factory=dict)
+
+    def circle(self, without: tuple[set[str], ...] = ()) -> list[str]:
+        """Return the modules of one import circle, an empty list if there is none.
+
+        Parameters
+        ----------
+        without : tuple of set of str
+            Imports between two modules of one of these sets do not count.
+        """
+        graph = {
+            module: {other for other in found if not any({module, other} <= known for known in without)}
+            for module, found in self.imports.items()
+        }
+        try:
+            graphlib.TopologicalSorter(graph).prepare()
+        except graphlib.CycleError as error:
+            return list(error.args[1])
+        return []
+
+
+def room_of(module: str) -> str:
+    """Return the room of a module such as "trackroller.contact.hertz"; the top of the package is "__init__"."""
+    parts = module.split(".")
+    return parts[1] if len(parts) > 1 else "__init__"
+
+
+def module_of(path: Path, root: Path) -> str:
+    """Return the dotted name of a file."""
+    parts = path.relative_to(root).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imported(tree: ast.AST, module: str, is_package: bool, known: set[str]) -> list[tuple[str, int]]:
+    """Return the modules of the package that a file imports, each with its line; `__version__` is no module."""
+    found: list[tuple[str, int]] = []
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            found += [(alias.name, node.lineno) for alias in node.names if alias.name in known]
+        elif isinstance(node, ast.ImportFrom):
+            above = module.split(".")[: len(module.split(".")) - node.level + is_package] if node.level else []
+            origin = ".".join([*above, *filter(None, [node.module])])
+            for alias in (a for a in node.names if not a.name.startswith("__")):
+                whole = f"{origin}.{alias.name}"
+                found += [(name, node.lineno) for name in (whole, origin) if name in known][:1]
+    return found
+
+
+def survey(root: Path) -> House:
+    """Read the imports of the package below a folder."""
+    house = House()
+    paths = {module_of(path, root): path for path in sorted((root / PACKAGE).rglob("*.py"))}
+    for module, path in paths.items():
+        tree = ast.parse(path.read_text(encoding="utf-8"))
+        place = ORDER.index(room_of(module))
+        found = imported(tree, module, path.name == "__init__.py", set(paths))
+        house.imports[module] = {other for other, _ in found} - {module}
+        name = path.relative_to(root).as_posix()
+        later = [(other, line) for other, line in found if ORDER.index(room_of(other)) > place]
+        house.upward += [f"{name}:{line} imports {other}" for other, line in later]
+    return house
 
 
 @pytest.fixture(scope="module")
 def house():
-    return survey()
-
-
-def test_the_top_of_the_package_has_few_entries(house):
-    assert len(house.entries) <= 18, house.entries
+    return survey(ROOT)
 
 
 def test_no_room_imports_a_later_room(house):
     assert house.upward == []
 
 
-def test_files_are_short(house):
-    assert not house.long_files(), f"over {MOST_LINES} lines: {house.long_files()}"
+def test_no_files_import_each_other_in_a_circle(house):
+    assert house.circle(without=CIRCLES) == []
 
 
-def test_functions_are_short(house):
-    long = house.long_functions()
-    assert set(long) <= set(LONG_FUNCTIONS), f"over {LONGEST_FUNCTION} lines of code: {long}"
+@pytest.mark.parametrize("known", CIRCLES, ids=lambda known: min(known))
+def test_a_circle_that_is_excused_is_still_there(house, known):
+    """An excuse for a circle that is gone would let it come back."""
+    inside = {module: found & known for module, found in house.imports.items() if module in known}
+    assert House(imports=inside).circle()
 
 
-def test_the_package_keeps_its_budget(house):
-    assert sum(house.code.values()) <= LINES_OF_CODE + FOR_LIMITS
-
-
-def test_the_counter_finds_what_it_counts(tmp_path):
+def test_the_survey_finds_what_it_looks_for(tmp_path):
     """A made-up package breaks each rule once."""
     lower, upper = tmp_path / "trackroller" / "contact", tmp_path / "trackroller" / "roller"
     for room in (lower, upper):
@@ -52,13 +154,10 @@ def test_the_counter_finds_what_it_counts(tmp_path):
         (room / "__init__.py").write_text('"""A room."""\n')
     (tmp_path / "trackroller" / "__init__.py").write_text("")
     (upper / "case.py").write_text("from ..contact import hertz\n")
-    (lower / "hertz.py").write_text(
-        '"""Two lines\n\nof words."""\n\n# a comment\ndef f(a, b):\n    """Say."""\n'
-        "    from trackroller.roller.case import Case\n" + 60 * "    a = b\n" + 300 * "\n"
-    )
+    (upper / "options.py").write_text("from trackroller.roller import case\n")
+    (lower / "hertz.py").write_text("def f(a):\n    from trackroller.roller.case import Case\n")
     house = survey(tmp_path)
-    assert house.entries == ["__init__.py", "contact", "roller"]
-    assert house.upward == ["trackroller/contact/hertz.py:8 imports trackroller.roller.case"]
-    assert house.code["trackroller/contact/hertz.py"] == 62
-    assert list(house.long_files()) == ["trackroller/contact/hertz.py"]
-    assert house.long_functions() == {"trackroller/contact/hertz.py:f": 62}
+    assert house.upward == ["trackroller/contact/hertz.py:2 imports trackroller.roller.case"]
+    circle = {"trackroller.contact.hertz", "trackroller.roller.case"}
+    assert set(house.circle()) == circle
+    assert house.circle(without=(circle,)) == []

@@ -12,7 +12,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.columns import codes
-from trackroller.analysis.lives import FIRST_LIMIT, body_lives, first_failing
+from trackroller.analysis.lives import FIRST_LIMIT, body_lives
 from trackroller.analysis.robustness import b10, material_deviations
 from trackroller.analysis.table import StudyView
 from trackroller.parameters import FIRST_TO_FAIL
@@ -165,7 +165,7 @@ class Designs:
         for name, rows in (("rolls", view.rolling), ("valid", self.usable)):
             table[name] = self._count(rows)
         table = table.assign(**self._spread())
-        first = first_failing(view, self.goal[0])
+        first = view.first_failing(self.goal[0])
         for code, word in enumerate(FIRST_TO_FAIL):
             table[f"first_{word}"] = self._count(self.usable & (first == code))
         for body, name in body_lives(self.goal[0]).items():
@@ -252,7 +252,7 @@ class Designs:
         view = self.view
         lives = np.where(self.usable, view.column(self.goal[0]), 0.0)
         own = material_deviations(view.results) if view.results and self.goal != FIRST_LIMIT else {}
-        guide = first_failing(view, self.goal[0]) == FIRST_TO_FAIL.index("guide")
+        guide = view.first_failing(self.goal[0]) == FIRST_TO_FAIL.index("guide")
         scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
         cases = [self.cases_of(i) for i in range(len(self.size))]
         ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T

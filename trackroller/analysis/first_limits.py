@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.analysis.designs import Designs
-from trackroller.analysis.lives import FIRST_LIMIT, first_failing
+from trackroller.analysis.lives import FIRST_LIMIT
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import until_reached
@@ -20,7 +20,7 @@ AMONG = 20  # designs whose order is compared, the best by either life
 
 def first_limit(view: StudyView) -> np.ndarray:
     """Return the name of the limit that ends the pair first in every case, shape (n,); '' where it is not known."""
-    guide = first_failing(view, FIRST_LIMIT[0]) == FIRST_TO_FAIL.index("guide")
+    guide = view.first_failing(FIRST_LIMIT[0]) == FIRST_TO_FAIL.index("guide")
     numbers = [np.nan_to_num(view.column(f"limiting_mechanism_{body}", np.nan), nan=-1).astype(int) for body in BODIES]
     names = np.array([*(name if name in LIMITS else "" for name in view.limits), ""], dtype=object)
     return np.asarray(names[np.where(guide, numbers[1], numbers[0])])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -13,8 +14,9 @@ import xarray as xr
 
 from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import Column, meeting, quantity_of
-from trackroller.analysis.lives import FIRST_LIMIT, LIVES, beyond_data
-from trackroller.parameters import BODIES, EXACTNESS, PARAMETERS
+from trackroller.analysis.lives import FIRST_LIMIT, LIVES, body_lives, past_data
+from trackroller.damage.pair import first_failure
+from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS
 from trackroller.study.design.levels import NAMED
 from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
@@ -297,6 +299,17 @@ class StudyView:
         """Return the cases inside the model that meet the constraints of the study, shape (n,)."""
         return self.inside if self.met is None else self.inside & self.met
 
+    def first_failing(self, goal: str) -> np.ndarray:
+        """Return the number in `FIRST_TO_FAIL` of the body that fails first in every case, shape (n,).
+
+        Parameters
+        ----------
+        goal : a life of the pair: by the S-N curve, or to the first limit
+        """
+        if goal != FIRST_LIMIT[0]:
+            return self.column("first_to_fail", FIRST_TO_FAIL.index("unknown"))
+        return first_failure(*(self.column(name) for name in body_lives(goal).values()))[1]
+
     def beyond_data(self, column: str) -> np.ndarray:
         """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another quantity.
 
@@ -307,7 +320,23 @@ class StudyView:
         ----------
         column : a life, such as `pair_life_hours` or `life_cycles_guide`
         """
-        return beyond_data(self, column)
+        if "life" not in column or "wear" in column:
+            return np.zeros(len(self.table), dtype=bool)
+        if not any(body in column for body in BODIES):
+            guide = self.first_failing(column) == FIRST_TO_FAIL.index("guide")
+            own = body_lives(column)
+            return np.where(guide, *(self.beyond_data(own[body]) for body in ("guide", "roller")))
+        body = "guide" if "guide" in column else "roller"
+        if "first_limit" in column:
+            fatigue = self.column(f"limiting_mechanism_{body}") == self.limits.index("fatigue")
+            rate = self.column(f"life_cycles_{body}") / self.column(f"{body}_life_hours")  # overrollings an hour
+            by_fatigue = fatigue & self.beyond_data(f"{body}_life_hours")
+            return np.asarray(by_fatigue | past_data(self.column(column) * rate))
+        names = pd.Series(self.material(body))
+        stored = json.loads(str(self.attrs.get("materials", "{}")))
+        knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
+        endless = np.isposinf(self.column(f"{body}_life_hours"))
+        return past_data(self.column(f"life_cycles_{body}"), names.map(knees).to_numpy(dtype=float)) | endless
 
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""

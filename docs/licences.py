@@ -1,4 +1,4 @@
-"""List the licences of every package that the lock files pin: `python -m validation.licences [--write]`.
+"""List the licences of every package that the lock files pin: `python docs/licences.py [--write]`.
 
 The list comes from the metadata of the installed packages. Without `--write` the program compares the packages of the
 lock files with the licences in `LICENCES.md` and ends with 1 if they differ.
