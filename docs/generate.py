@@ -1,4 +1,4 @@
-"""Write docs/parameters.md, the declarations of the limits, the pages of docs/validation, and the table of the README.
+"""Write docs/parameters.md, the pages of docs/validation, and the table of the README.
 
 `python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
 """
@@ -6,15 +6,12 @@
 from __future__ import annotations
 
 import math
-import os
 import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
 
 from trackroller import parameters as p
-from trackroller.damage import declared
-from trackroller.parameters.declared import FILE as DECLARED
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import COMMENTS, VARIABLES
@@ -154,7 +151,6 @@ def pages() -> dict[Path, str]:
     table = render_written("readme.md").partition("\n")[2]  # without the remark on its first line
     written[readme] = f"{before}{START}{table}{END}{rest.partition(END)[2]}"
     return {
-        DECLARED: declared(),
         FOLDER / "parameters.md": render(),
         **written,
     }
@@ -171,8 +167,6 @@ def main(check: bool) -> int:
             print(f"{page} is not up to date", file=sys.stderr)
         else:
             page.write_text(pages()[page], encoding="utf-8")
-    if not check and DECLARED in stale:  # the other pages show what it declares, which is read at the start
-        os.execv(sys.executable, [sys.executable, *sys.argv])
     return 1 if check and stale else 0
 
 

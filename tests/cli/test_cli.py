@@ -176,7 +176,7 @@ def wait_until(there, seconds=60):
     ("words", "code", "heavy"),
     [
         (["--version"], 0, {"numpy"}),
-        (["--help"], 0, {"numpy"}),
+        (["--help"], 0, {"numba", "scipy"}),
         (["solve", "--set", "frction=0.1"], 2, {"numba", "scipy"}),
         (["solve", "--set", "accuracy=fine"], 2, {"dask"}),
     ],

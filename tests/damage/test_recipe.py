@@ -36,10 +36,7 @@ def test_a_limit_of_one_file_reaches_the_data_set(tmp_path):
     listed = entry.read_text(encoding="utf-8")
     listed = listed.replace("    bearing,\n", "    bearing,\n    lining,\n").replace("_FILES = (", "_FILES = (lining, ")
     entry.write_text(listed, encoding="utf-8")
-    declare = "from trackroller.damage import declared; "
-    declare += "from trackroller.parameters.declared import FILE; FILE.write_text(declared())"
-    for program in (declare, PROGRAM):
-        done = subprocess.run([sys.executable, "-c", program], cwd=tmp_path, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
+    done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
     roller, guide, pressure = json.loads(done.stdout.replace("NaN", "null"))
     assert roller == pytest.approx([p / 500.0 for p in pressure], rel=1e-14) and guide == [None, None]

@@ -6,7 +6,7 @@ import subprocess
 import sys
 
 PROGRAM = """
-from trackroller.parameters.numbers import PARAMETERS, Parameter
+from trackroller.parameters import PARAMETERS, Parameter
 
 PARAMETERS["gauge"] = Parameter("gauge", "g", "mm", 7.5, "an example", lower=1.0)
 import trackroller as tr

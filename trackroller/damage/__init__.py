@@ -17,13 +17,33 @@ from trackroller.damage import (
     verdict,
     wear,
 )
-from trackroller.damage.limit import TRACTIONS, Limit, declarations
+from trackroller.damage.limit import TRACTIONS, Limit
 from trackroller.errors import InputError, check_names
-from trackroller.parameters import own_limits
 
 _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
-LIMITS |= {path.stem: own.load(path) for path in own_limits.digests()}
+
+
+def add_own() -> None:
+    """Add the limits of the files in config/limits to `LIMITS`, where the user allows code.
+
+    Raises
+    ------
+    InputError
+        If a file declares no limit, or a name that another limit has taken.
+    """
+    for name, limit in own.own_limits().items():
+        for kind in ("name", "group", "parameters", "materials", "mappings"):
+            clash = _names(limit, kind) & {taken for known in LIMITS.values() for taken in _names(known, kind)}
+            if clash:
+                words = f"new {kind}: another limit has these"
+                raise InputError("limits", ", ".join(sorted(clash)), words, "Choose another name.")
+        LIMITS[name] = limit
+
+
+def _names(limit: Limit, kind: str) -> set[str]:
+    declared = getattr(limit, kind)
+    return {declared} if isinstance(declared, str) else {one.name for one in declared}
 
 
 def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
@@ -40,7 +60,7 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
     """
     known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
     for name in names:
-        if name not in known and (how := own_limits.hint(name)):
+        if name not in known and (how := own.hint(name)):
             raise InputError(field, name, "limits that are loaded", how)
     check_names(field, names, (*known, "all"))
     wanted = known if "all" in names else names
@@ -68,8 +88,3 @@ def of_patches(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ..
 def of_mechanics(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
     """Return the limits to compute of which cases with equal mechanics share a part."""
     return tuple(limit for limit in computed(outputs, life_criterion) if limit.shared is not None)
-
-
-def declared() -> str:
-    """Return what the limits declare to `parameters`, as JSON."""
-    return declarations(LIMITS.values(), {verdict.GROUP: verdict.MEANING}, (verdict.POSITION,))

@@ -17,7 +17,7 @@ import numpy as np
 
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
-from trackroller.parameters import Parameter
+from trackroller.numerics.parameter import Parameter
 
 STEP, REACH = 0.3, 1e4  # step of the logarithm of the diffusion length, and its end over the sides of the grid
 SPREAD = 5.0  # diffusion lengths beyond which no heat arrives

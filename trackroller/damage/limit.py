@@ -8,10 +8,9 @@ A life in hours is overrollings over `SolvedRollers.overrollings_per_hour`. A ca
 
 from __future__ import annotations
 
-import json
 import math
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import asdict, dataclass, field
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -19,9 +18,8 @@ from numpy.typing import ArrayLike
 
 from trackroller.damage.histories import Tractions
 from trackroller.damage.mapping import MappingField
-from trackroller.materials.material import UNNAMED
-from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS, Parameter
-from trackroller.parameters.variables import Variable
+from trackroller.numerics.parameter import Parameter
+from trackroller.numerics.variable import BODIES, Variable
 
 SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
 Results = dict[str, np.ndarray]
@@ -49,6 +47,10 @@ def _no_tractions() -> Tractions:
     raise LookupError("a limit without the need 'tractions' asks for them")
 
 
+def _no_gap(case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
+    raise LookupError("the profiles of these rollers are not known")
+
+
 @dataclass(frozen=True)
 class SolvedRollers:
     """Solved rollers as a limit receives them; every array has the case as first axis.
@@ -68,6 +70,9 @@ class SolvedRollers:
         Options of the solution by name, such as `life_rule` and `failure_probability`.
     tractions : callable
         Function that returns the tractions of the patches; limits that need "tractions" may call it.
+    unworn_gap : callable
+        Function of the number of a case, the place of a contact (0 or 1), and lateral places outward (m,) [mm], which
+        returns the gap of the unworn, undeformed profiles there, (m,) [mm].
     """
 
     cases: Mapping[str, np.ndarray]
@@ -76,6 +81,7 @@ class SolvedRollers:
     rolling_radius: np.ndarray
     options: Mapping[str, Any] = field(default_factory=dict)
     tractions: Callable[[], Tractions] = _no_tractions
+    unworn_gap: Callable[[int, int, np.ndarray], np.ndarray] = _no_gap
 
     @property
     def overrollings_per_hour(self) -> np.ndarray:
@@ -202,69 +208,3 @@ def optional(
     return Parameter(
         name, symbol, unit, math.nan, meaning, lower, upper, not closed, open_upper, allow_missing=True, label=meaning
     )
-
-
-def declarations(limits: Iterable[Limit], groups: Mapping[str, str], parameters: Iterable[Parameter] = ()) -> str:
-    """Return groups, fields of a case and values of a material as the JSON that `parameters` reads.
-
-    Parameters
-    ----------
-    limits : iterable of Limit
-        The limits.
-    groups : mapping of str to str
-        Meanings of further groups of outputs.
-    parameters : iterable of Parameter
-        Fields of a case that belong to all limits.
-    """
-    limits = tuple(limits)
-    declared = {
-        "groups": {limit.group: limit.meaning for limit in limits if limit.meaning} | dict(groups),
-        "mappings": {own.name: own.meaning for limit in limits for own in limit.mappings},
-        "parameters": [
-            asdict(parameter) for own in (*(limit.parameters for limit in limits), parameters) for parameter in own
-        ],
-        "materials": [asdict(value) for limit in limits for value in limit.materials],
-    }
-    return json.dumps(declared, indent=1) + "\n"
-
-
-def _how_to_give(name: str) -> str:
-    """Say how a field of a case is entered: its meaning with its unit, or with an example of a mapping."""
-    if name in MAPPING_FIELDS:
-        return f"Add it to the case, or with --set: {MAPPING_FIELDS[name]}."
-    parameter = PARAMETERS[name]
-    return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
-
-
-def lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> list[str]:
-    """Return one sentence for each value that a limit requires and that a case or a material does not have.
-
-    Parameters
-    ----------
-    limit : Limit
-        The limit.
-    solved : SolvedRollers
-        The cases.
-    names : mapping of str to numpy.ndarray
-        Names of the materials by body, (n,) each.
-    """
-    out = []
-    for name in limit.required(solved.options):
-        column = solved.cases.get(name)
-        if column is not None and np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
-            out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
-    values = list(limit.required_of(solved))
-    if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
-        # The scatter of the strength gives that of the life.
-        values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
-    for name, here in values:
-        unknown = np.isnan(solved.materials[name]) & here
-        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
-            how = (
-                f"Add {name}: NUMBER to the material of the case."
-                if material == UNNAMED
-                else f"Enter it in config/materials.yaml under materials.{material}, or in the case: "
-                f"{{like: {material}, {name}: NUMBER}}."
-            )
-            out.append(f"{limit.name}: material '{material}' has no {name}. {how}")
-    return out

@@ -12,8 +12,8 @@ import numpy as np
 
 from trackroller.errors import Collector, InputError, check_names
 from trackroller.numerics.numbers import number_in
+from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.rows import once_each
-from trackroller.parameters import Parameter
 
 
 @dataclass(frozen=True)

@@ -1,31 +1,70 @@
-"""Load limits of a user's own, and print what they declare: `python -m trackroller.damage.own FILE ...`."""
+"""Limits of a user's own, `config/limits/NAME.py`: whether they are allowed, and how they are loaded.
+
+The files are programs, so they are loaded only where the user allows code: by `--allow-code` on the command line, or by
+the environment variable TRACKROLLER_ALLOW_CODE with the folder, which worker processes and the jobs of a workflow
+inherit.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import hashlib
 import importlib.util
+import os
 import sys
+from functools import cache
 from pathlib import Path
+from typing import Any
 
-from trackroller.damage.limit import Limit, declarations
+from trackroller.damage.limit import Limit
+from trackroller.errors import InputError
+
+VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
 
 
-def load(path: Path) -> Limit:
-    """Return the limit of a file.
+def hint(name: Any) -> str:
+    """Return how to load the file of the folder config/limits that declares a limit; an empty text if none does."""
+    file = Path("config", "limits", f"{name}.py")
+    return f"{file} declares it: add --allow-code." if file.is_file() else ""
+
+
+@cache
+def digests() -> dict[Path, str]:
+    """Return the SHA-256 of each allowed file, sorted by name; the files are read once, before they are loaded."""
+    folder = os.environ.get(VARIABLE)
+    files = sorted(Path(folder).resolve().glob("*.py")) if folder else ()
+    return {path: hashlib.sha256(path.read_bytes()).hexdigest() for path in files}
+
+
+def own_limits() -> dict[str, Limit]:
+    """Return the limits of the allowed files by name.
 
     Raises
     ------
-    ValueError
-        If the file declares no `LIMIT` with the name of the file.
+    InputError
+        If a file cannot be loaded or declares no limit of its name, or if the folder has no file.
     """
+    if VARIABLE not in os.environ:
+        return {}
+    if not digests():
+        allowed = "a folder with limits, one file NAME.py each"
+        raise InputError("--allow-code", os.environ[VARIABLE], allowed, "Add a file, or leave out --allow-code.")
+    return {path.stem: _load(path) for path in digests()}
+
+
+def _load(path: Path) -> Limit:
+    """Return the limit that a file declares."""
     spec = importlib.util.spec_from_file_location(f"own_limit_{path.stem}", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
+    try:
+        with contextlib.redirect_stdout(sys.stderr):  # what a file prints must not stand among the results
+            spec.loader.exec_module(module)
+    except Exception as error:
+        why = f"{type(error).__name__}: {error}"
+        raise InputError("limits", str(path), "a file that Python can load", f"Correct it: {why}") from error
     limit = getattr(module, "LIMIT", None)
     if not isinstance(limit, Limit) or limit.name != path.stem:
-        raise ValueError(f"{path.name} must declare LIMIT = Limit(name='{path.stem}', ...)")
+        declares = f"{path.name} must declare LIMIT = Limit(name='{path.stem}', ...)"
+        raise InputError("limits", str(path), "a file that declares one LIMIT", declares)
     return limit
-
-
-if __name__ == "__main__":
-    print(declarations([load(Path(word)) for word in sys.argv[1:]], {}))

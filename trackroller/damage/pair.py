@@ -5,7 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.numerics.variable import BODIES
+
+FIRST_TO_FAIL = (*BODIES, "none", "unknown")
 
 
 def first_failure(roller: ArrayLike, guide: ArrayLike) -> tuple[np.ndarray, np.ndarray]:

@@ -16,8 +16,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trackroller.errors import InputError, check_names
-from trackroller.materials.sn_curve import curve_exponent
-from trackroller.parameters import LIFE_RULES
 
 CONVENTIONS = {
     "elementary": "Miner elementary: the S-N curve runs on below the fatigue limit (as published)",
@@ -26,6 +24,27 @@ CONVENTIONS = {
 }
 PROBABILITIES = (0.1, 0.5, 0.9)
 DEVIATES_10_TO_90 = 2.5631031310892007  # standard deviations of a normal distribution from 10 % to 90 %
+
+
+def curve_exponent(cycles: np.ndarray | float, stresses: np.ndarray | float) -> np.ndarray | float:
+    """Return the exponent of an S-N curve, k = ln(N_k/N_Rm) / ln(R_m/sigma_D).
+
+    Parameters
+    ----------
+    cycles, stresses : float or numpy.ndarray
+        N_k/N_Rm and R_m/sigma_D, both > 1 [1].
+
+    Returns
+    -------
+    float or numpy.ndarray
+        k > 0 [1].
+
+    Examples
+    --------
+    >>> round(float(curve_exponent(5e6 / 1e4, 2.0)), 3)
+    8.966
+    """
+    return np.log(cycles) / np.log(stresses)
 
 
 @dataclass(frozen=True)
@@ -70,7 +89,7 @@ class SNCurve:
     failure_probability: Any = 0.5
 
     def __post_init__(self) -> None:
-        check_names("life_rule", [self.rule], LIFE_RULES)
+        check_names("life_rule", [self.rule], CONVENTIONS)
         strength, limit, first, knee = self._points
         if not np.all((limit > 0) & (strength > limit) & (first > 0) & (knee > first)):
             given = "R_m, sigma_D, N_Rm, N_k"

@@ -8,7 +8,8 @@ import numpy as np
 
 from trackroller.damage.limit import Limit, Results, SolvedRollers, variables
 from trackroller.damage.pair import first_failure
-from trackroller.parameters import BODIES, Parameter
+from trackroller.numerics.parameter import Parameter
+from trackroller.numerics.variable import BODIES
 
 GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"

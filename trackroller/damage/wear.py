@@ -20,7 +20,7 @@ from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
-from trackroller.parameters import Parameter
+from trackroller.numerics.parameter import Parameter
 
 KM_PER_HOUR = 0.06  # for 1 m/min
 # Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
@@ -122,17 +122,12 @@ def _gaps_at_edges(solved: SolvedRollers, t: Tractions) -> np.ndarray:
     if solved.options["normal"] == "hertz":
         curvature = 1.0 / c["roller_profile_radius"] + 1.0 / c["guide_profile_radius"]
         return np.asarray(0.5 * curvature[:, None] * solved.values["semi_axis_lateral"] ** 2)
-    from trackroller.contact.drawn_profiles import gap  # heavy, and planning reads only the declaration below
 
     def of_patch(case: int, contact: int) -> float:
         side = 1 - 2 * contact  # a gap counts x outward
         x, loaded = side * t.x[case, contact], (t.pressure[case, contact] > 0.0).any(axis=0)
         half, own = 0.5 * abs(x[1] - x[0]), x[loaded]
-        guide, roller = str(c["guide_profile"][case]), str(c["roller_profile"][case])
-        r_g, r_r = float(c["guide_profile_radius"][case]), float(c["roller_profile_radius"][case])
-        alpha, curve = float(np.deg2rad(c["contact_angle"][case])), float(c["guide_curve_radius"][case])
-        between = gap(guide, roller, r_g, r_r, alpha, float(solved.rolling_radius[case]), curve, contact + 1)
-        height = between.lateral(np.array([own.min() - half, *own, own.max() + half]))
+        height = solved.unworn_gap(case, contact, np.array([own.min() - half, *own, own.max() + half]))
         return float(max(min(height[0], height[-1]) - height.min(), 0.0))
 
     return t.by_patch(of_patch)

@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.damage.sn_curve import curve_exponent
 from trackroller.errors import InputError
 from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
-from trackroller.materials.sn_curve import curve_exponent
 from trackroller.materials.temperature import FIELD, FOLLOW_STRENGTH, TemperatureTable, read_table
 
 UNNAMED = "inline"  # name of a material that a case gives without one

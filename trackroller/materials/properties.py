@@ -6,11 +6,11 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.units import in_unit
-from trackroller.parameters import Parameter
-from trackroller.parameters.declared import declared
 
 
 def _number(
@@ -50,7 +50,7 @@ _PROPERTIES = (
     _number("scatter_in_cycles", "T_N", "-", "scatter of the life T_N = N_90/N_10", 1.0, 1e6, True, True),
     _number("scatter_in_stress", "T_S", "-", "scatter of the strength T_S = S_90/S_10", 1.0, 1e3, True, True),
 )
-OF_LIMITS: dict[str, Parameter] = {row["name"]: Parameter(**row) for row in declared()["materials"]}
+OF_LIMITS: dict[str, Parameter] = {own.name: own for limit in LIMITS.values() for own in limit.materials}
 PROPERTIES: dict[str, Parameter] = {p.name: p for p in _PROPERTIES} | OF_LIMITS
 # Other ways to give the S-N curve; `trackroller.materials.sn_curve` turns them into the properties above.
 _ALTERNATIVES = (

@@ -12,35 +12,13 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 
-import numpy as np
-
+from trackroller.damage.sn_curve import curve_exponent
 from trackroller.errors import InputError
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, Value
 
 CURVE = ("fatigue_strength_ratio", "cycles_at_tensile_strength", "cycles_at_fatigue_limit", "woehler_exponent")
 AGREE = 0.01  # largest relative difference between a given value and the value that follows from the others
 _ALL = PROPERTIES | ALTERNATIVES
-
-
-def curve_exponent(cycles: np.ndarray | float, stresses: np.ndarray | float) -> np.ndarray | float:
-    """Return the exponent of an S-N curve, k = ln(N_k/N_Rm) / ln(R_m/sigma_D).
-
-    Parameters
-    ----------
-    cycles, stresses : float or numpy.ndarray
-        N_k/N_Rm and R_m/sigma_D, both > 1 [1].
-
-    Returns
-    -------
-    float or numpy.ndarray
-        k > 0 [1].
-
-    Examples
-    --------
-    >>> round(float(curve_exponent(5e6 / 1e4, 2.0)), 3)
-    8.966
-    """
-    return np.log(cycles) / np.log(stresses)
 
 
 def complete_curve(given: Mapping[str, Value], inherited: Mapping[str, Value], where: str) -> dict[str, Value]:

@@ -11,14 +11,22 @@ Units here are those that a user writes: degrees, m/min and hours. The solver wo
 
 from __future__ import annotations
 
-from trackroller.parameters.contact_models import CONTACT_MODELS, EXACTNESS
-from trackroller.parameters.declared import declared
-from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS, Parameter
-from trackroller.parameters.options import OPTIONS, Option, options_text, words_of
+from trackroller.damage import LIMITS, add_own
+from trackroller.damage.pair import FIRST_TO_FAIL
+from trackroller.numerics.parameter import Parameter
+from trackroller.numerics.variable import BODIES
+
+add_own()  # before the modules below read LIMITS; files of a user's own may import the names above from here
+
+from trackroller.parameters.contact_models import CONTACT_MODELS, EXACTNESS  # noqa: E402
+from trackroller.parameters.numbers import OF_LIMITS, PARAMETERS  # noqa: E402
+from trackroller.parameters.options import OPTIONS, Option, options_text, words_of  # noqa: E402
 
 __all__ = [
+    "BODIES",
     "CONTACT_MODELS",
     "EXACTNESS",
+    "FIRST_TO_FAIL",
     "OF_LIMITS",
     "OPTIONS",
     "PARAMETERS",
@@ -33,8 +41,6 @@ SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy
 DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
-BODIES = ("roller", "guide")
-FIRST_TO_FAIL = (*BODIES, "none", "unknown")
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MECHANICAL_MAPPINGS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none
     "friction_law": "friction as a function of the slip speed in mm/s: {kind: constant | linear | exponential | table, "
@@ -42,7 +48,9 @@ MECHANICAL_MAPPINGS = {  # entries of a case that are mappings; in columns they 
     "guide_profile": "drawn or measured cross-section of the guide, for normal: halfspace; not given: the circle",
     "roller_profile": "drawn or measured cross-section of the roller, for normal: halfspace; not given: the circle",
 }
-MAPPING_FIELDS: dict[str, str] = MECHANICAL_MAPPINGS | declared()["mappings"]  # with those of the limits
+MAPPING_FIELDS: dict[str, str] = MECHANICAL_MAPPINGS | {
+    own.name: own.meaning for limit in LIMITS.values() for own in limit.mappings
+}
 ROLES = ("choice", "condition")  # who sets a parameter: the designer, or the use of the roller
 ROLE_OF = {name: parameter.role for name, parameter in PARAMETERS.items()} | {
     **dict.fromkeys((*MATERIAL_FIELDS, "material_pair", *MAPPING_FIELDS), "choice"),

@@ -3,103 +3,10 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-from trackroller.parameters.declared import declared
-
-if TYPE_CHECKING:
-    import numpy as np
-
-SMALLEST = 1e-6  # least size of a number that must not be 0
-
-
-@dataclass(frozen=True)
-class Parameter:
-    """A number that describes a case or a material.
-
-    Parameters
-    ----------
-    name, symbol, unit : str
-        Name in Python and in files, symbol of the publication, unit ("-" for none).
-    default : float
-        Value of a case that does not give it; NaN if there is none.
-    meaning : str
-        Explanation for the documentation.
-    lower, upper : float
-        Bounds, which are allowed values themselves unless `open_lower` or `open_upper` is True.
-    allow_infinite, allow_missing, nonzero : bool
-        Whether +-inf is allowed, whether the value may be left out (None or NaN), and whether 0 is refused, with all
-        numbers that are smaller than `SMALLEST`.
-    label : str
-        Name for figures and reports, if it differs from `name`.
-    role : str
-        Who sets the value: the designer (`choice`) or the use of the roller (`condition`).
-    """
-
-    name: str
-    symbol: str
-    unit: str
-    default: float
-    meaning: str
-    lower: float = -math.inf
-    upper: float = math.inf
-    open_lower: bool = False
-    open_upper: bool = False
-    allow_infinite: bool = False
-    allow_missing: bool = False
-    nonzero: bool = False
-    label: str = ""
-    role: str = "choice"
-
-    @property
-    def long_name(self) -> str:
-        """Return the name for figures and reports."""
-        return self.label or self.name.replace("_", " ")
-
-    @property
-    def units(self) -> str:
-        """Return the unit as the CF conventions write it."""
-        return {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1"}.get(self.unit, self.unit)
-
-    def allowed(self) -> str:
-        """Return what is allowed, in words."""
-        unit = "" if self.unit == "-" else f" {self.unit}"
-        parts = []
-        if math.isfinite(self.lower):
-            parts.append(f"{'>' if self.open_lower else '>='} {self.lower:g}{unit}")
-        if math.isfinite(self.upper):
-            parts.append(f"{'<' if self.open_upper else '<='} {self.upper:g}{unit}")
-        if self.nonzero:
-            parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
-        parts.append("finite or inf" if self.allow_infinite else "finite")
-        return f"{self.long_name} [{self.unit}] must be a number, " + ", ".join(parts)
-
-    def remedy(self, value: float) -> str:
-        """Return what to write instead of a value that only has the wrong sign; '' for any other value."""
-        if not math.isfinite(value) or not self.accepts(-value):
-            return ""
-        return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
-
-    def accepts(self, value: np.ndarray | float) -> Any:
-        """Return which values are allowed, elementwise, a bool array of the shape of `value`; a bool for a number."""
-        if isinstance(value, (float, int)):  # arrays of one number would take most of the time of a case's checks
-            return self._allows(value, math.isnan(value), not math.isinf(value))
-        import numpy as np  # noqa: PLC0415 - the help of the command line needs no arrays and starts faster without
-
-        v = np.asarray(value, dtype=float)
-        return self._allows(v, np.isnan(v), ~np.isinf(v))
-
-    def _allows(self, v: Any, missing: Any, bounded: Any) -> Any:
-        """Return whether a number, or which of an array of numbers, is allowed; see `accepts`."""
-        good = (v > self.lower) if self.open_lower else (v >= self.lower)
-        good = good & ((v < self.upper) if self.open_upper else (v <= self.upper))
-        if self.nonzero:
-            good = good & (abs(v) >= SMALLEST)
-        if not self.allow_infinite:
-            good = good & bounded
-        return good | missing if self.allow_missing else good
-
+from trackroller.damage import LIMITS, verdict
+from trackroller.numerics.parameter import Parameter
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
 # Bounds far outside of what is built. Beyond them the digits of a double do not carry the balance of forces.
@@ -188,5 +95,7 @@ _ALL = (
 )
 
 # They change lives and utilisations; forces and stresses do not depend on them.
-OF_LIMITS: dict[str, Parameter] = {row["name"]: Parameter(**row) for row in declared()["parameters"]}
+OF_LIMITS: dict[str, Parameter] = {
+    own.name: own for own in (*(own for limit in LIMITS.values() for own in limit.parameters), verdict.POSITION)
+}
 PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL} | OF_LIMITS

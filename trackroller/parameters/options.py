@@ -7,10 +7,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+from trackroller.damage import LIMITS, verdict
+from trackroller.damage.own import hint
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import own_limits
 from trackroller.parameters.contact_models import DECLARED, MEANINGS
-from trackroller.parameters.declared import declared
 
 QUANTITIES = ("forces", "peak", "life")  # that may have tolerances of their own
 
@@ -136,7 +136,7 @@ class Option:
 
     def _word(self, value: Any, where: str) -> str:
         if not isinstance(value, str) or value not in self.values:
-            if self.name == "outputs" and (how := own_limits.hint(value)):
+            if self.name == "outputs" and (how := hint(value)):
                 raise InputError(where, value, self.allowed(), how)
             raise unknown_name(where, value, self.values)
         return value
@@ -170,7 +170,8 @@ _OPTIONS = (
             "peak_stress": "largest von Mises stress of each body and its place",
             "tractions": "pressure, shear and creepage over each patch",
             "subsurface": "stresses on two sections through the peak",
-            **declared()["groups"],
+            **{limit.group: limit.meaning for limit in LIMITS.values() if limit.meaning},
+            verdict.GROUP: verdict.MEANING,
         },
         kind="words",
         required=True,

@@ -3,16 +3,20 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Mapping
+from functools import partial
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, asked, fatigue, judged, of_mechanics, of_patches, verdict
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import TRACTIONS, SolvedRollers, lacks
+from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
+from trackroller.materials.material import UNNAMED
+from trackroller.parameters import BODIES, CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import rolling_radius
@@ -57,7 +61,25 @@ def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options)
         values,
         rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)),
         vars(options),
+        unworn_gap=partial(_unworn_gap, table),
     )
+
+
+def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
+    """Return the gap of the undeformed profiles at lateral places of one contact of a case, see `SolvedRollers`."""
+    alpha = float(np.deg2rad(table.contact_angle[case]))
+    axis, guide_radius = float(table.axis_distance[case]), float(table.guide_profile_radius[case])
+    between = gap(
+        str(table.guide_profile[case]),
+        str(table.roller_profile[case]),
+        guide_radius,
+        float(table.roller_profile_radius[case]),
+        alpha,
+        float(rolling_radius(axis, guide_radius, alpha)),
+        float(table.guide_curve_radius[case]),
+        contact + 1,
+    )
+    return between.lateral(lateral)
 
 
 def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
@@ -95,6 +117,48 @@ def patch_limits(results: Results, options: Options) -> None:
         results.values |= limit.shared(solved)
 
 
+def _how_to_give(name: str) -> str:
+    """Say how a field of a case is entered: its meaning with its unit, or with an example of a mapping."""
+    if name in MAPPING_FIELDS:
+        return f"Add it to the case, or with --set: {MAPPING_FIELDS[name]}."
+    parameter = PARAMETERS[name]
+    return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
+
+
+def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> list[str]:
+    """Return one sentence for each value that a limit requires and that a case or a material does not have.
+
+    Parameters
+    ----------
+    limit : Limit
+        The limit.
+    solved : SolvedRollers
+        The cases.
+    names : mapping of str to numpy.ndarray
+        Names of the materials by body, (n,) each.
+    """
+    out = []
+    for name in limit.required(solved.options):
+        column = solved.cases.get(name)
+        if column is not None and np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
+            out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
+    values = list(limit.required_of(solved))
+    if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
+        # The scatter of the strength gives that of the life.
+        values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
+    for name, here in values:
+        unknown = np.isnan(solved.materials[name]) & here
+        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
+            how = (
+                f"Add {name}: NUMBER to the material of the case."
+                if material == UNNAMED
+                else f"Enter it in config/materials.yaml under materials.{material}, or in the case: "
+                f"{{like: {material}, {name}: NUMBER}}."
+            )
+            out.append(f"{limit.name}: material '{material}' has no {name}. {how}")
+    return out
+
+
 def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
     solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
@@ -106,7 +170,7 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
     )
     out = []
     for limit in asked(options.outputs):
-        out += lacks(limit, solved, names)
+        out += _lacks(limit, solved, names)
         required = dict(limit.required_of(solved))
         for material, placeholders in guesses:
             of = np.stack([own.name == material for own in bodies.values()], axis=1)

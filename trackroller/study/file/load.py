@@ -11,11 +11,11 @@ from typing import Any
 from pydantic import ValidationError
 
 from trackroller.contact.friction_laws import at_rest
+from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.parameters.example import not_given
-from trackroller.parameters.own_limits import digests
 from trackroller.roller.aliases import ALIASES, study_with_radii
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile

@@ -13,8 +13,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller import __version__
+from trackroller.damage.own import digests
 from trackroller.parameters import OPTIONS
-from trackroller.parameters.own_limits import digests
 from trackroller.roller.dataset import file_attributes
 from trackroller.study.store.folder import STORE_FORMAT
 from trackroller.study.store.sources import solver_digest

@@ -36,7 +36,7 @@ from collections.abc import Iterable, Iterator
 from functools import cache
 from pathlib import Path
 
-from trackroller.parameters.own_limits import digests
+from trackroller.damage.own import digests
 
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "trackroller.roller.solver"

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+BODIES = ("roller", "guide")  # values of the coordinate `body`
+
 
 @dataclass(frozen=True)
 class Variable:
