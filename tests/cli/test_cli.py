@@ -175,7 +175,7 @@ def wait_until(there, seconds=60):
 @pytest.mark.parametrize(
     ("words", "code", "heavy"),
     [
-        (["--version"], 0, {"numpy"}),
+        (["--version"], 0, {"numba", "scipy"}),
         (["--help"], 0, {"numba", "scipy"}),
         (["solve", "--set", "frction=0.1"], 2, {"numba", "scipy"}),
         (["solve", "--set", "accuracy=fine"], 2, {"dask"}),

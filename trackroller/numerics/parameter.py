@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
-if TYPE_CHECKING:
-    import numpy as np
+import numpy as np
 
 SMALLEST = 1e-6  # least size of a number that must not be 0
 
@@ -83,8 +82,6 @@ class Parameter:
         """Return which values are allowed, elementwise, a bool array of the shape of `value`; a bool for a number."""
         if isinstance(value, (float, int)):  # arrays of one number would take most of the time of a case's checks
             return self._allows(value, math.isnan(value), not math.isinf(value))
-        import numpy as np  # noqa: PLC0415 - the help of the command line needs no arrays and starts faster without
-
         v = np.asarray(value, dtype=float)
         return self._allows(v, np.isnan(v), ~np.isinf(v))
 
