@@ -171,7 +171,11 @@ def studies() -> dict[str, dict[str, Any]]:
         "sobol": {"factors": ranges, "samples": 64},
         "morris": {"factors": ranges, "samples": 8},
         "saltelli": {"factors": ranges, "samples": 16},
-        "inner_outer": {"factors": outer | {"friction_coefficient": ranges["friction_coefficient"]}, "samples": 16},
+        "inner_outer": {
+            "factors": outer | {"friction_coefficient": ranges["friction_coefficient"]},
+            "samples": 16,
+            "inner": "lhs",
+        },
         "central_composite": {"factors": ranges},
     }
     common = {"contact_model": "sliding", "accuracy": "preview", "outputs": ["forces", "peak_stress", "life"]}

@@ -132,7 +132,7 @@ DECISIONS = {
     "missing-case": ("study/store/gather.py", "(place < 0).sum()", "(place < -1).sum()", STORE),
     "not-positive": ("study/outputs.py", "int((values <= 0).sum())", "int((values < -1e300).sum())", ANALYSED),
     "share-of-rolling": ("study/outputs.py", "if i and (regime == i)", "if (regime == i)", ANALYSED),
-    "strata": ("study/design/grown_lhs.py", "permutation(empty)[:new]", "permutation(size)[:new]", SAMPLED),
+    "strata": ("study/design/draws.py", "root, strata=True", "root, strata=False", SAMPLED),
     "level-codes": (
         "report/explorer/pack.py",
         "len(column.levels) < np.iinfo",

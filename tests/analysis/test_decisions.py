@@ -14,7 +14,6 @@ from trackroller.analysis.targets import _all, hits_of
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
 from trackroller.study import cost
-from trackroller.study.design.grown_lhs import grown_lhs
 from trackroller.study.outputs import _countable
 
 
@@ -64,15 +63,6 @@ def test_zero_has_no_logarithm_and_is_counted():
     values, why = _countable(np.array([10.0, 0.0, -1.0, 100.0]), everything, ~everything, False, "log10")
     assert why == {"not positive": 2}
     np.testing.assert_array_equal(values, [1.0, np.nan, np.nan, 2.0])
-
-
-def test_a_grown_sample_fills_the_empty_strata():
-    """4 rows grown to 8 and 16: each stratum of a factor holds one row."""
-    for seed in range(5):
-        unit = grown_lhs(3, [4, 8, 16], seed)
-        for column in unit.T:
-            assert sorted((column * 16).astype(int)) == list(range(16))
-            assert sorted((column[:8] * 8).astype(int)) == list(range(8))
 
 
 @pytest.mark.parametrize("levels", [254, 255, 256, 65_535, 65_536])

@@ -66,7 +66,7 @@ def _of_indices(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarra
     """Return an output (n,) and the half widths of its headline indices; those of mu* over the output's range."""
     design, given = results.design, results.config.analysis
     y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
-    estimates = replicated(y, design, results.config.samples)
+    estimates = replicated(y, design, design.samples)
     scale = float(np.nanmax(y) - np.nanmin(y)) if design.method == "morris" and not constant(y) else 1.0
     widths = [estimates[f"{index}_high"] - estimates[index] for index in HEADLINES[design.method]]
     return y, np.concatenate(widths) / scale

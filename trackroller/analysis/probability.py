@@ -32,8 +32,8 @@ def probabilities(
     The bounds are those of Clopper and Pearson for the effective number of samples p (1 - p) / var(p) [1]_.
 
     A stratified sample removes the part of the variance that is a sum of functions of the single factors [2]_. This
-    function fits such a sum, and takes var(p) as the variance of the residuals at held-out rows, divided by n. A Latin
-    hypercube that has grown has empty strata; their share of the removed part counts again. Few events (or few
+    function fits such a sum, and takes var(p) as the variance of the residuals at held-out rows, divided by n. A Sobol
+    sample whose number of rows is no power of two has empty strata; their share of the removed part counts again. Few events (or few
     non-events) support a fit badly. The effective number of samples is therefore at most n times the smaller of the
     numbers of events and non-events. ``validation/benchmarks/probability_intervals.py`` measures the coverage.
 

@@ -1,4 +1,4 @@
-"""Intervals from independent replicates of a design: whole Sobol sequences, Latin hypercubes or Saltelli designs.
+"""Intervals from independent replicates of a design: whole Sobol sequences or Saltelli designs.
 
 A bootstrap of rows takes them as independent, so it misses the gain of a low-discrepancy sequence. The replicates of a
 study with the key `until` are independent, whatever their rows have in common, so their scatter gives the intervals:
@@ -29,7 +29,7 @@ from trackroller.study.design.sampling import SampledDesign
 # validation/benchmarks/until_sure.py
 WIDER = 1.15
 ROWS_PER_HARMONIC, HARMONICS = 32, (4, 64)  # fewest and most cosines of a factor
-HEADLINES = {"saltelli": ("S1", "ST"), "morris": ("mu_star",), "lhs": ("first",), "sobol": ("first",)}
+HEADLINES = {"saltelli": ("S1", "ST"), "morris": ("mu_star",), "sobol": ("first",)}
 
 
 def jackknife(left: np.ndarray) -> np.ndarray:
@@ -61,16 +61,16 @@ def replicated(y: np.ndarray, design: SampledDesign, samples: int) -> Estimates:
     Parameters
     ----------
     y : output, shape (n,), NaN where unusable
-    design : Saltelli, Morris, Sobol or Latin hypercube design with replicates
+    design : Saltelli, Morris or Sobol design with replicates
     samples : number of base samples, trajectories or rows, a multiple of the replicates
 
     Returns
     -------
-    S1 and ST (saltelli), mu_star (morris) or first (lhs, sobol), each with _low and _high, shape (k,); NaN if too few
+    S1 and ST (saltelli), mu_star (morris) or first (sobol), each with _low and _high, shape (k,); NaN if too few
     rows are usable or the output is constant.
     """
     copies, count = int(design.meta["replicates"]), len(design.factors)
-    rows = len(y) // int(design.meta.get("base_samples") or design.meta.get("trajectories") or len(y))
+    rows = len(y) // design.samples
     y, unit = y[: samples * rows], design.places[: samples * rows]
     member = np.arange(samples) % copies
     if design.method == "saltelli":

@@ -125,7 +125,7 @@ def _given(y: np.ndarray, design: SampledDesign) -> Estimated:
 def _of_replicates(found: Estimated, y: np.ndarray, design: SampledDesign) -> Estimated:
     """Replace the intervals and the course of the headline indices by those of the replicates of a grown sample."""
     copies = int(design.meta["replicates"])
-    total = int(design.meta.get("base_samples") or design.meta.get("trajectories") or design.size)
+    total = design.samples
     at = convergence.sizes(total, smallest=2 * copies)
     out = replicated(y, design, total)
     names = HEADLINES[design.method]

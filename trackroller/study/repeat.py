@@ -77,7 +77,7 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
     folder = study_folder(study.name, results)
-    study = as_planned(study, folder)
+    study = as_planned(study, folder.record())
     design, inventory, place = locate(study, folder)
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")

@@ -117,7 +117,7 @@ def status_of(study: Study, results: Path | str = "results") -> Status:
         Numbers of cases and the expected time. The time is proportional to the number of cases.
     """
     folder = study_folder(study.name, results)
-    study = as_planned(study, folder)
+    study = as_planned(study, folder.record())
     _, inventory, place = locate(study, folder)
     solved = np.flatnonzero(place >= 0)
     states = inventory.states.isel(case=place[solved])

@@ -19,7 +19,6 @@ from scipy import stats
 from scipy.stats import qmc
 
 from trackroller.analysis.probability import probabilities
-from trackroller.study.design.grown_lhs import grown_lhs
 from validation.benchmarks.command import run
 
 COUNT = 4  # factors
@@ -47,8 +46,7 @@ EVENTS: dict[str, tuple[Callable[[np.ndarray], np.ndarray], int]] = {  # event a
     ),
 }
 DESIGNS: dict[str, Callable[[int, int], np.ndarray]] = {
-    "lhs": lambda n, seed: grown_lhs(COUNT, [n], seed),
-    "grown lhs": lambda n, seed: grown_lhs(COUNT, [2 * n // 3, n], seed),
+    "lhs": lambda n, seed: qmc.LatinHypercube(d=COUNT, rng=np.random.default_rng(seed)).random(n),
     "sobol": lambda n, seed: qmc.Sobol(d=COUNT, rng=np.random.default_rng(seed)).random(n),
 }
 

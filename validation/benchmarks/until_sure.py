@@ -58,8 +58,6 @@ def draw(name: str, method: str, count: int, seed: int, step: int) -> SampledDes
     if method == "morris":
         return trajectories(factors, size, seed)
     more: dict[str, Any] = {"saltelli": {"second_order": False}}.get(method, {})
-    if method == "lhs":
-        more = {"grown_from": tuple(size >> back for back in range(step, 0, -1))}
     return sample(factors, method, size, seed, replicates=COPIES, **more)
 
 
@@ -86,9 +84,8 @@ def of_indices(function: Function) -> Estimator:
     """Return an estimator of the headline indices of a function."""
 
     def estimate(design: SampledDesign) -> tuple[np.ndarray, np.ndarray, float]:
-        samples = int(design.meta.get("base_samples") or design.meta.get("trajectories") or design.size)
         y = function.evaluate(design.places)
-        found = replicated(y, design, samples)
+        found = replicated(y, design, design.samples)
         names = HEADLINES[design.method]
         value, high = (np.concatenate([found[name + end] for name in names]) for end in ("", "_high"))
         return value, high - value, float(np.ptp(y)) if design.method == "morris" else 1.0
@@ -164,14 +161,14 @@ def measured(
 def measure(
     runs: int = 1000,
     half_width: float = 0.03,
-    only: tuple[str, ...] = ("sobol", "lhs", "saltelli", "morris", "inner_outer"),
+    only: tuple[str, ...] = ("sobol", "saltelli", "morris", "inner_outer"),
     of: tuple[str, ...] = ("Ishigami", "g-function", "category"),
 ) -> dict[str, Any]:
     """Return the numbers of each design and function, the least coverage and the largest relative width."""
     found = {}
     for method in only:
         if method == "inner_outer":
-            draws = partial(draw, "", "lhs", 3)
+            draws = partial(draw, "", "sobol", 3)
             truth = np.array([np.log10(np.exp(stats.norm.ppf(0.1) * np.sqrt((WEIGHTS**2).sum())))])
             found["inner_outer, log10 B10"] = measured(of_b10, draws, truth, half_width, runs)
             for one, wanted in itertools.product(SHARES, (half_width, half_width / 3)):

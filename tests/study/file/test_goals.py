@@ -390,5 +390,5 @@ def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     names = {path.relative_to(root / "trackroller").as_posix() for path in found["sensitivity"]}
     estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "stored_study")
     assert {f"analysis/{name}.py" for name in estimators} <= names
-    assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling", "grown_lhs")} <= names
+    assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling")} <= names
     assert {"parameters/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names

@@ -146,11 +146,13 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
 
 def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     """Return the line under the title: date, design, size, model, accuracy."""
-    design, most = view.study["design"], "up to " if view.study.get("point_samples") else ""
+    design, drawn = view.study["design"], view.solved.design
+    most = "up to " if "point_samples" in drawn.meta else ""
+    samples = view.study["samples"] if view.solved.config.until is None else drawn.samples
     sampled = not DESIGNS[design].array and design not in ("table", "optimise")
     parts = [
         str(merged.get("date_created", ""))[:10],
-        f"design of experiments {plain(design)}" + f" with {most}{count(view.study['samples'])} samples" * sampled,
+        f"design of experiments {plain(design)}" + f" with {most}{count(samples)} samples" * sampled,
         size_words(view),
         f"contact model {_option_text(merged['contact_model'])}",
         f"accuracy {_option_text(merged['accuracy'])}",

@@ -40,7 +40,7 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
     Notes
     -----
     A half width falls as one over the root of the samples, measured by ``tests/analysis/test_enough.py``. The number is
-    `asked` times a power of two, so that a Sobol sequence stays balanced and a Latin hypercube grows.
+    `asked` times a power of two, so that a Sobol sequence stays balanced.
     """
     method = str(sens.attrs.get("method"))
     if method == "inner_outer":
@@ -92,7 +92,6 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
 
 HEADLINE_WORDS = {  # by design, the quantities whose intervals count
     "sobol": "first-order indices",
-    "lhs": "first-order indices",
     "saltelli": "first-order and total indices",
     "morris": "effects mu*, as shares of the output's range,",
     "inner_outer": "log10 B10 or a probability at each design point",

@@ -43,7 +43,7 @@ def case_columns(known: Any) -> tuple[str, ...]:
     return (*PARAMETERS, *MATERIAL_FIELDS, *(name for name in MAPPING_FIELDS if name in known))
 
 
-def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledDesign:
+def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tuple[int, ...] = ()) -> SampledDesign:
     """Draw the design of a study.
 
     Parameters
@@ -51,6 +51,7 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
     config : what the study file says
     factors : all factors, lists of contact models included
     table : the CSV of cases; without a meaning for other designs
+    grown : number of samples (of each design point) to which `until` has grown the sample; by default that of the file
 
     Returns
     -------
@@ -60,10 +61,12 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
     ------
     InputError : as `sample`; an option that the design does not have; too many cases
     """
-    names = ("second_order", "levels", "inner", "grown_from", "point_samples", "rank_correlations")
+    names = ("second_order", "levels", "inner", "rank_correlations")
     options = {name: value for name in names if (value := getattr(config, name)) not in (None, ())}
     if config.until is not None:
         options["replicates"] = config.until.replicates
+    if len(set(grown)) > 1:
+        options["point_samples"] = grown
     if config.design == "table":
         options["table"] = str(table)
     if config.design == "saltelli" and config.analysis.groups:
@@ -73,7 +76,8 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path) -> SampledD
         options["population"] = config.budget.generation
         options["table"] = None if config.table is None else str(table)
     base = {k: v for k, v in config.values.items() if isinstance(v, float)}
-    design = sample(factors, config.design, config.samples, config.seed, base=base, **options)
+    samples = max(grown, default=config.samples)
+    design = sample(factors, config.design, samples, config.seed, base=base, **options)
     if design.size > MAX_CASES:
         raise InputError("design", f"{design.size} cases", f"at most {MAX_CASES} cases")
     return design

@@ -22,8 +22,6 @@ from trackroller.study.design import correlation, saltelli
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
 from trackroller.study.design.evolution import Gene, first_generation
 from trackroller.study.design.factors import Factor, column
-from trackroller.study.design.grown_lhs import check_sizes, grown_lhs
-from trackroller.study.design.growth import check_point_samples
 from trackroller.study.design.kinds import those_with
 from trackroller.study.design.replicates import in_turn, sobol_rows
 from trackroller.study.design.saltelli import all_groups
@@ -66,11 +64,14 @@ def _grid(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
 def _random(method: str, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
     entries = tuple(settings.get(correlation.KEY, ()))
     root = correlation.copula(entries, free)
-    earlier, copies = check_sizes(settings.get("grown_from", ()), n), settings.get("replicates", 1)
+    copies = settings.get("replicates", 1)
 
     def one(seed: int) -> np.ndarray:
         if method == "lhs":
-            return grown_lhs(len(free), [size // copies for size in (*earlier, n)], seed, root)
+            from scipy.stats import qmc  # heavy, and a plan of a grid does not need it
+
+            unit = qmc.LatinHypercube(d=len(free), rng=np.random.default_rng(seed)).random(n)
+            return correlation.correlate(unit, root, strata=True)
         return correlation.correlate(sobol_rows(len(free), n // copies, seed), root, strata=False)
 
     return in_turn(one, seed, copies), {correlation.KEY: entries}
@@ -153,7 +154,7 @@ def _inner_outer(free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         )
     sample, more = _random(settings["inner"], inner, n, seed, settings)
     index, meta = _grid(outer, 0, 0, {})
-    sizes = check_point_samples(settings["point_samples"], n, len(index))
+    sizes = list(settings["point_samples"]) or [n] * len(index)
     sides = np.repeat(index, sizes, axis=0), np.concatenate([sample[:size] for size in sizes])
     unit = _in_order(np.concatenate(sides, axis=1), [*outer, *inner], free)
     meta |= more | {"outer": list(outer), "inner": list(inner), "inner_samples": n, "design_points": len(index)}

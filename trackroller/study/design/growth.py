@@ -1,19 +1,18 @@
-"""Double the sample of a study with the key `until`, and find the size to which it has grown."""
+"""Double the sample of a study with the key `until`, and find the size to which it has grown.
+
+The study file states the first look. How far the sample has grown stands in the plan of the study's folder.
+"""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from typing import TYPE_CHECKING, Any
-
-from trackroller.errors import InputError
-from trackroller.study.design.grown_lhs import earlier_config, is_lhs, with_history
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
-    from trackroller.study.store.folder import StudyFolder
 
-GROWN = ("samples", "grown_from", "point_samples")  # keys of a study file that growth changes
+SAME = ("factors", "rank_correlations", "design", "seed", "inner", "samples")  # keys that a grown sample shares
 
 
 def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:
@@ -24,39 +23,29 @@ def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:
     study : the study
     unsure : design points of an inner/outer design that grow; by default all
     """
-    config = study.config
-    sizes = [rows.stop - rows.start for rows in study.drawn.points] if config.design == "inner_outer" else []
+    if study.config.design != "inner_outer":
+        return dataclasses.replace(study, grown=(2 * study.samples,))
+    sizes = [rows.stop - rows.start for rows in study.drawn.points]
     sizes = [2 * size if unsure is None or point in unsure else size for point, size in enumerate(sizes)]
-    update: dict[str, Any] = {"point_samples": tuple(sizes) if len({*sizes}) > 1 else None}
-    update["samples"] = max(sizes, default=2 * config.samples)
-    if is_lhs(config) and update["samples"] > config.samples:
-        update["grown_from"] = (*(config.grown_from or ()), config.samples)
-    return dataclasses.replace(study, config=config.model_copy(update=update))
+    return dataclasses.replace(study, grown=tuple(sizes))
 
 
-def check_point_samples(given: Any, samples: int, points: int) -> list[int]:
-    """Return the number of samples of each design point.
+def as_planned(study: Study, record: Mapping[str, Any]) -> Study:
+    """Return a study with the number of samples to which the key `until` has grown it.
 
-    Raises
-    ------
-    InputError : `given` is neither empty nor a whole number from 1 to `samples` for each point
+    Parameters
+    ----------
+    study : the study, at its first look
+    record : record of the plan of its folder
     """
-    sizes = list(given) or [samples] * points
-    if len(sizes) != points or any(not isinstance(size, int) or not 0 < size <= samples for size in sizes):
-        allowed = f"{points} whole numbers from 1 to samples ({samples}), one for each design point"
-        raise InputError(
-            "point_samples", sizes, allowed, "Remove the key. The key until sets it while the sample grows."
-        )
-    return sizes
+    if study.config.until is None or not record.get("grown"):
+        return study
+    planned, now = record["sample"], sample_of(study)
+    return dataclasses.replace(study, grown=tuple(record["grown"])) if planned == now else study
 
 
-def as_planned(study: Study, folder: StudyFolder) -> Study:
-    """Return a study with the number of samples to which the key `until` has grown it; see also `with_history`."""
-    if study.config.until is None:
-        return with_history(study, folder)
-    if (old := earlier_config(study, folder)) is None:
-        return study
-    times, rest = divmod(old.samples, study.config.samples)
-    if rest or times & (times - 1):
-        return study
-    return dataclasses.replace(study, config=study.config.model_copy(update={k: getattr(old, k) for k in GROWN}))
+def sample_of(study: Study) -> dict[str, Any]:
+    """Return what decides the first rows of a sample, as values of JSON."""
+    stated = study.as_dict()
+    replicates = study.config.until.replicates if study.config.until is not None else 1
+    return {key: stated[key] for key in SAME if key in stated} | {"replicates": replicates}

@@ -43,18 +43,18 @@ class Kind:
 
 
 _COPIES: dict[str, Any] = {"replicates": 1}
-_PAIRS: dict[str, Any] = {"rank_correlations": (), **_COPIES}
-_RANDOM = dict.fromkeys(("weighs", "weighted", "grows", "conditional"), True)
+_CORRELATED: dict[str, Any] = {"rank_correlations": ()}
+_RANDOM = dict.fromkeys(("weighs", "weighted", "conditional"), True)
 DESIGNS = {
     "grid": Kind(array=True, follows=True, weighted=True, grouped=True, conditional=True),
-    "lhs": Kind(_PAIRS | {"grown_from": ()}, **_RANDOM),
-    "sobol": Kind(_PAIRS, **_RANDOM),
+    "lhs": Kind(_CORRELATED, **_RANDOM),
+    "sobol": Kind(_CORRELATED | _COPIES, grows=True, **_RANDOM),
     "morris": Kind(_COPIES | {"levels": 4}, grows=True),
-    "saltelli": Kind(_COPIES | {"second_order": True, "groups": None}, grouped=True, **_RANDOM),
+    "saltelli": Kind(_COPIES | {"second_order": True, "groups": None}, grows=True, grouped=True, **_RANDOM),
     "central_composite": Kind(array=True, coded=True),
     "box_behnken": Kind(array=True, coded=True),
     "plackett_burman": Kind(array=True, coded=True),
-    "inner_outer": Kind(_PAIRS | {"inner": "lhs", "grown_from": (), "point_samples": ()}, weighted=True, grows=True),
+    "inner_outer": Kind(_CORRELATED | _COPIES | {"inner": "sobol", "point_samples": ()}, weighted=True, grows=True),
     "table": Kind({"table": None}, follows=True, weighted=True, conditional=True),
     "optimise": Kind({"conditions": (), "population": 32, "table": None}, weighted=True),
 }

@@ -83,6 +83,12 @@ class SampledDesign:
         return np.array(values, dtype=bool)
 
     @property
+    def samples(self) -> int:
+        """Return the number of base samples, trajectories, samples of the largest design point, or rows."""
+        counts = (self.meta[key] for key in ("base_samples", "trajectories", "inner_samples") if key in self.meta)
+        return int(next(counts, self.size))
+
+    @property
     def points(self) -> list[slice]:
         """Return the rows of each design point of an inner/outer array."""
         sizes = self.meta.get("point_samples") or [self.meta["inner_samples"]] * self.meta["design_points"]
@@ -118,8 +124,8 @@ def sample(
     base : values that expressions may use besides the factors
     options : second_order (saltelli, default true), groups (saltelli: groups of factors whose columns are exchanged
         together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
-        default 4), table (path of the CSV), inner (inner_outer: lhs or sobol), grown_from (lhs, inner_outer: earlier
-        numbers of samples, whose rows come first), point_samples (inner_outer: samples of each design point),
+        default 4), table (path of the CSV), inner (inner_outer: sobol, the default, or lhs), point_samples
+        (inner_outer: samples of each design point),
         rank_correlations (lhs, sobol, inner_outer: see `trackroller.study.design.correlation`), conditions and
         population (optimise: factors that are no choices, and designs of the first generation), table (optimise: CSV
         of the genes of the designs instead), replicates (independent samples of n / replicates each, which

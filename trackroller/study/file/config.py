@@ -68,13 +68,11 @@ class _Design(BaseModel):
     )
     second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
     levels: int | None = Field(None, description="morris: number of levels")
-    inner: Literal["lhs", "sobol"] | None = Field(None, description="inner_outer: how the inner array is sampled")
+    inner: Literal["lhs", "sobol"] | None = Field(
+        None, description="inner_outer: how the inner array is sampled; default sobol"
+    )
     rank_correlations: Correlations = Field(
         (), description="lhs, sobol, inner_outer: [factor, factor, Spearman rank correlation] each"
-    )
-    grown_from: tuple[int, ...] | None = Field(None, description="lhs, inner_outer: earlier numbers of samples")
-    point_samples: tuple[int, ...] | None = Field(
-        None, description="inner_outer: number of samples of each design point, where until has grown some of them only"
     )
 
     @field_validator("design")
@@ -145,7 +143,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
             parse_condition(checked)
         return checked
 
-    @field_validator("samples", "seed", "chunk_size", "levels", "grown_from", "point_samples", mode="before")
+    @field_validator("samples", "seed", "chunk_size", "levels", mode="before")
     @classmethod
     def _whole(cls, value: Any, info: Any) -> Any:
         for one in value if isinstance(value, (list, tuple)) else (value,):

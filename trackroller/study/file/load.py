@@ -39,6 +39,11 @@ EXAMPLES = {  # of keys that are mappings or lists
 }
 ROOMS = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
 FORMER = ("measures", "resamples")  # keys of `analysis` that studies of earlier versions hold
+FORMER_KEYS = {  # keys of the study itself that earlier versions held, and what the program does now
+    "exchange": "saltelli exchanges the groups of analysis.groups",
+    "grown_from": "a Latin hypercube is drawn at once, and the samples of design sobol grow",
+    "point_samples": "the plan of a study remembers how far `until` has grown its sample",
+}
 
 
 def _translated(detail: Mapping[str, Any]) -> InputError:
@@ -68,12 +73,13 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
 def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
     """Return a study file without keys of earlier versions that chose nothing else; a warning names them."""
     given = _mapping(data.get("analysis"))
-    former = [f"analysis.{key}" for key in FORMER if key in given] + [key for key in ("exchange",) if key in data]
+    former = [f"analysis.{key}" for key in FORMER if key in given] + [key for key in FORMER_KEYS if key in data]
     if not former:
         return data
-    now = "Every analysis takes all its measures, and 300 resamples; saltelli exchanges the groups of analysis.groups"
-    warnings.warn(f"Ignored: {' and '.join(former)}. {now}.", stacklevel=4)
-    kept = {key: value for key, value in data.items() if key != "exchange"}
+    now = ["every analysis takes all its measures, and 300 resamples"] if former[0].startswith("analysis.") else []
+    now += [words for key, words in FORMER_KEYS.items() if key in data]
+    warnings.warn(f"Ignored: {' and '.join(former)}, because {'; '.join(now)}.", stacklevel=4)
+    kept = {key: value for key, value in data.items() if key not in FORMER_KEYS}
     own = {key: value for key, value in given.items() if key not in FORMER}
     return kept | ({"analysis": own} if given else {})
 

@@ -28,12 +28,23 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Study:
-    """A checked study: its configuration, the path of its file, its materials, and the files that were read for it."""
+    """A checked study.
+
+    Parameters
+    ----------
+    config : what the study file says
+    path : path of the study file
+    database : its materials, None for those of the program and of the user
+    inputs : the files that were read for it
+    grown : number of samples to which the key `until` has grown the sample, one for each design point of an
+        inner/outer design; empty at the first look
+    """
 
     config: StudyFile
     path: Path | None = None
     database: Any = field(default=None, compare=False, repr=False)
     inputs: Reads = field(default_factory=dict, compare=False, repr=False)
+    grown: tuple[int, ...] = ()
 
     @property
     def name(self) -> str:
@@ -49,6 +60,11 @@ class Study:
             if not isinstance(value := getattr(self.config, name), str)
         }
         return {**self.config.factors, **extra}
+
+    @property
+    def samples(self) -> int:
+        """Return the number of samples, at the design point with most of them: as stated, or as grown by `until`."""
+        return max(self.grown, default=int(self.config.samples))
 
     @property
     def friction_laws(self) -> list[Any]:
@@ -97,7 +113,7 @@ class Study:
     @cached_property
     def drawn(self) -> SampledDesign:
         """Return the drawn design; it is kept, because reading a CSV of a million cases takes seconds."""
-        return build.draw(self.config, self.factors, self.table_path)
+        return build.draw(self.config, self.factors, self.table_path, self.grown)
 
     def doubts(self) -> list[str]:
         """Return a sentence for each value that is unusual, see `trackroller.roller.doubts`."""

@@ -26,7 +26,7 @@ class Until(BaseModel):
     half_width: float = Field(
         gt=0,
         lt=10,
-        description="half width of the 95 % intervals: of shares of variance (saltelli, lhs, sobol), of mu* over the "
+        description="half width of the 95 % intervals: of shares of variance (saltelli, sobol), of mu* over the "
         "output's range (morris), of log10 B10 or a probability (inner_outer)",
     )
     of: tuple[str, ...] = Field(
@@ -54,9 +54,12 @@ def check_until(config: Any) -> None:
     until = config.until
     if until is None:
         return
-    if not DESIGNS[config.design].grows:
-        allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
-        raise InputError("design", config.design, allowed, "Choose one of them, or remove until.")
+    for key, drawn in (("design", config.design), ("inner", config.inner)):
+        if drawn is not None and not DESIGNS[drawn].grows:
+            allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
+            allowed = allowed if key == "design" else "with until: sobol, whose rows stay as the sample grows"
+            remedy = f"Write {key}: sobol" if DESIGNS[drawn].weighs else "Choose one of them"
+            raise InputError(key, drawn, allowed, f"{remedy}, or remove until.")
     if config.design == "saltelli" and config.analysis.groups:
         groups = list(config.analysis.groups)
         raise InputError("analysis.groups", groups, "with until: indices of single factors", "Remove groups or until.")

@@ -79,14 +79,14 @@ def check_inputs(folder: StudyFolder) -> None:
     for stored in record.get("inputs", {}).values():
         path = Path(stored["path"])
         now = sha256(path) if path.is_file() else "no file"
-        if stored["path"] and now != stored["sha256"] and not _says_the_same(path, folder, record["study"]):
+        if stored["path"] and now != stored["sha256"] and not _says_the_same(path, record["study"]):
             _compare(path, stored["sha256"], now)
 
 
-def _says_the_same(path: Path, folder: StudyFolder, study: str) -> bool:
+def _says_the_same(path: Path, study: str) -> bool:
     """Return whether a file is a study file that means the study of a plan."""
     try:
-        return as_planned(load_study(path, planned=True), folder).merged() == study
+        return load_study(path, planned=True).merged() == study
     except InputError:
         return False
 
@@ -126,4 +126,4 @@ def study_of_folder(folder: StudyFolder) -> Study:
     materials = folder.inputs / MATERIALS
     with noted_reads():
         database = load_database(materials) if materials.is_file() else builtin_database()
-        return load_study(folder.study_file, database)
+        return as_planned(load_study(folder.study_file, database), record)

@@ -22,7 +22,7 @@ from trackroller.files import sha256
 from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import case_columns
-from trackroller.study.design.grown_lhs import with_history
+from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.store import chunks
@@ -46,7 +46,7 @@ class Plan:
     Attributes
     ----------
     study : Study
-        The study; that of a grown Latin hypercube holds its earlier sizes.
+        The study, with the size to which its sample has grown.
     folder : StudyFolder
         Files of the study.
     chunks : dict
@@ -100,7 +100,7 @@ def chunk_size(study: Study, cases: int) -> int:
 
 def plan_key(study: Study) -> str:
     """Return the hash of everything that a plan depends on, found without drawing the design."""
-    stated = [solver_and_materials(study.materials), study.merged()]
+    stated = [solver_and_materials(study.materials), study.merged(), *([study.grown] if study.grown else [])]
     if study.config.table is not None:
         stated.append(sha256(study.table_path))
     return hashlib.sha256(repr(stated).encode()).hexdigest()
@@ -108,8 +108,7 @@ def plan_key(study: Study) -> str:
 
 def read_plan(study: Study, folder: StudyFolder) -> Plan | None:
     """Return the plan on the disk, or None if it is missing or was made for another version of the study."""
-    record = folder.record()
-    return _recorded(with_history(study, folder), folder, record)
+    return _recorded(study, folder, folder.record())
 
 
 def _recorded(study: Study, folder: StudyFolder, record: Mapping[str, Any]) -> Plan | None:
@@ -185,7 +184,8 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
         return ""
     if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
         return ""
-    earlier, remedy = folder.earlier().get("factors", {}), "They stay in chunks/."
+    before, remedy = folder.earlier(), "They stay in chunks/."
+    earlier = before.get("factors", {})
     added = [name for name in study.config.factors if name not in earlier]
     why = f": {' and '.join(added)} became a factor" if earlier and added else ""
     if why and study.config.design != "grid":
@@ -194,6 +194,8 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
         )
     elif why:
         remedy = "The old value of a new factor must be one of its levels to keep them."
+    elif (drawn := study.config.inner or study.config.design) == "lhs" and before.get("samples") != study.samples:
+        why, remedy = ": lhs draws each number of samples anew", "Design sobol keeps its rows when its samples grow."
     return f"{unused} solved cases of the earlier design are not in this one{why}. {remedy}"
 
 
@@ -229,4 +231,5 @@ def record_of(plan: Plan, inputs: Mapping[str, Any]) -> dict[str, Any]:
         "distinct": plan.distinct,
         "chunks": plan.chunks,
         "uses": list(plan.uses),
+        **({"grown": list(plan.study.grown), "sample": sample_of(plan.study)} if plan.study.grown else {}),
     }

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError, WorkError
 from trackroller.files import try_lock
-from trackroller.study.design.grown_lhs import with_history
 from trackroller.study.store.folder import StudyFolder, Tell, sweep, unheard, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
@@ -73,7 +72,6 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
     """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
-    study = with_history(study, folder)  # before an altered study.nc, which also has the history, is removed
     _remove_altered(folder, tell)
     inventory = _sound_inventory(folder, tell)
     if rerun_failed:
@@ -83,8 +81,6 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
     for line in damaged:
         tell(line)
     if plan is None:
-        if study.config.grown_from:
-            tell(f"the sample grows from {study.config.grown_from[-1]} to {study.config.samples}: its first cases stay")
         plan = new_plan(study, folder, inventory)
         if inventory.paths and (
             unused := unused_cases(study, folder, inventory, inventory.find(plan.cases.fingerprints))
