@@ -14,8 +14,8 @@ import yaml
 
 from trackroller.analysis.stored_study import read_results
 from trackroller.analysis.table import StudyResults, StudyView
-from trackroller.study.design.factors import parse
-from trackroller.study.design.sampling import SampledDesign
+from trackroller.methods import METHODS, Design
+from trackroller.methods.factor import parse
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
@@ -228,7 +228,7 @@ def results_of(ds) -> StudyResults:
     factors = {n: factor for n in columns if (factor := parse(n, specs[n])).varies}
     unit = [np.unique(columns[n], return_inverse=True)[1] for n in factors]
     method, meta = told.get("design", "grid"), {"shape": tuple(ds.sizes[d] for d in dims), "rank_correlations": ()}
-    return StudyResults(study, SampledDesign(columns, factors, method, np.array(unit, float).T, meta), ds)
+    return StudyResults(study, Design(columns, factors, METHODS[method], np.array(unit, float).T, meta), ds)
 
 
 def view_of(ds, analysis: xr.Dataset | None = None) -> StudyView:

@@ -27,6 +27,7 @@ ORDER = (
     "materials",
     "contact",
     "roller",
+    "methods",
     "study",
     "analysis",
     "report",

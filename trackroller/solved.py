@@ -42,7 +42,7 @@ class Solved(StudyResults):
     ----------
     study : Study
         The checked study; `config` is what its file says.
-    design : SampledDesign
+    design : Design
         The rows of the design with their places and the groups of factors, as they were drawn.
     data : xarray.Dataset
         The results, over the factors of a grid or along `case`, with every input as a coordinate.
@@ -84,9 +84,9 @@ class Solved(StudyResults):
         InputError
             If the study has another design.
         """
-        if self.design.method != "inner_outer":
+        if not self.design.method.points:
             remedy = "Take indices() for this study, or give the study design: inner_outer."
-            raise InputError("design", self.design.method, "design inner_outer, which has design points", remedy)
+            raise InputError("design", self.design.method.name, "design inner_outer, which has design points", remedy)
         return self._analysis
 
     def pareto(
@@ -108,7 +108,7 @@ class Solved(StudyResults):
             None if the study has no goals.
         """
         if objectives is None and constraints is None:
-            needs_points = self.design.method == "inner_outer" and self.config.pareto
+            needs_points = self.design.method.points and self.config.pareto
             return study_pareto(self.view.analysed(self._analysis if needs_points else None))
         goals = objectives or self.config.pareto or default_objectives(self.data)
         return pareto(self, goals, self.config.constraints if constraints is None else constraints)
@@ -134,7 +134,7 @@ class Solved(StudyResults):
         designs = Designs.of(self.view)
         if designs is not None and not designs.comparable:
             remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
-            raise InputError("design", self.design.method, "designs that share their conditions", remedy)
+            raise InputError("design", self.design.method.name, "designs that share their conditions", remedy)
         return pd.DataFrame() if designs is None else designs.table.head(count).copy()
 
     def to_table(self) -> pd.DataFrame:
@@ -158,7 +158,7 @@ class Solved(StudyResults):
 
     def explore(self, path: Path | str) -> Path:
         """Write the explorer as one HTML file that works without a network, and return its path."""
-        points = self._analysis if self.design.method == "inner_outer" else None
+        points = self._analysis if self.design.method.points else None
         return write_explorer(self.view.analysed(points), Path(path))
 
 

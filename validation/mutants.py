@@ -83,8 +83,8 @@ FORMULAS = {
     ),
     "spin-arm": ("contact/table/coordinates.py", "g / 4.0) / 3.0", "g / 2.0) / 3.0", TABLE),
     "coupling": ("contact/table/coordinates.py", "0.5 / (1.0 + g)", "0.5 / (1.0 - g)", TABLE),
-    "total-index": ("analysis/sobol.py", '("ST", 1 - rest)', '("ST", rest)', SOBOL),
-    "second-order": ("analysis/sobol.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
+    "total-index": ("methods/saltelli.py", '("ST", 1 - rest)', '("ST", rest)', SOBOL),
+    "second-order": ("methods/saltelli.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
     "dominated": (
         "analysis/pareto.py",
         "(held < costs[row]).any",
@@ -104,9 +104,9 @@ FORMULAS = {
 }
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
-    "needed-samples": ("analysis/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
+    "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
     "converged": ("report/templates/sentences/indices.txt.j2", "if times <= 1", "if times <= 4", CONVERGENCE),
-    "interval-of-a-step": ("analysis/effects.py", "a - low_a))", "high_a - a))", WORDS),
+    "interval-of-a-step": ("methods/intervals.py", "a - low_a))", "high_a - a))", WORDS),
     "rising": ("analysis/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
     "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("analysis/designs.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
@@ -132,7 +132,7 @@ DECISIONS = {
     "missing-case": ("study/store/gather.py", "(place < 0).sum()", "(place < -1).sum()", STORE),
     "not-positive": ("study/outputs.py", "int((values <= 0).sum())", "int((values < -1e300).sum())", ANALYSED),
     "share-of-rolling": ("study/outputs.py", "if i and (regime == i)", "if (regime == i)", ANALYSED),
-    "strata": ("study/design/draws.py", "root, strata=True", "root, strata=False", SAMPLED),
+    "strata": ("methods/lhs.py", "strata=True)", "strata=False)", SAMPLED),
     "level-codes": (
         "report/explorer/pack.py",
         "len(column.levels) < np.iinfo",

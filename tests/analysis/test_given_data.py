@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 from scipy.stats import norm
 
-from trackroller.analysis.delta import delta
-from trackroller.analysis.givendata import firsts
-from trackroller.analysis.pairs import pairs
+from trackroller.methods.delta import delta
+from trackroller.methods.given_data import firsts
+from trackroller.methods.interactions import pairs
 from trackroller.report.numbers import level_text, near
 from trackroller.study.design.levels import short
 

@@ -11,13 +11,13 @@ from trackroller.analysis.optimum import cheaper, search_designs
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.cli.study import print_best
 from trackroller.errors import InputError
-from trackroller.report.pages.best import best_of, write_best
-from trackroller.study.design.evolution import (
+from trackroller.methods.optimise import (
     Gene,
     first_generation,
     next_generation,
     nondominated_ranks,
 )
+from trackroller.report.pages.best import best_of, write_best
 from trackroller.study.file.load import load_study
 from validation.benchmarks.optimum import hypervolume
 

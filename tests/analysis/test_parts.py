@@ -7,13 +7,12 @@ import pytest
 import xarray as xr
 from synthetic_results import results_of, view_of
 
-from trackroller.analysis.parts import of_groups, within_levels
+from trackroller.analysis.parts import within_levels
 from trackroller.analysis.sensitivity import analyse
-from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
+from trackroller.methods.saltelli import pairs_sharing, sobol
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import level_indices, part_tables
-from trackroller.study.design.saltelli import pairs_sharing
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study, without_former
 from validation.benchmarks.known_indices import functions
@@ -61,7 +60,7 @@ def test_groups_of_the_g_function_lie_in_their_intervals(second_order):
     hits, errors = [], []
     for seed in range(40):
         design = sample(UNIT5, "saltelli", 128, seed, groups=PARTS, second_order=second_order)
-        found = of_groups(G.evaluate(design.unit), design, PARTS)
+        found = design.method.group_indices(G.evaluate(design.unit), design, PARTS)
         for name, exact in (("group_S1", first), ("group_ST", total)):
             hits.append((found[f"{name}_low"] <= exact) & (exact <= found[f"{name}_high"]))
             errors.append(found[name] - exact)
@@ -75,16 +74,16 @@ def test_groups_of_ishigami_and_single_factors_have_their_known_indices():
     spec = {f"x{i}": {"uniform": [0, 1]} for i in range(3)}
     groups = {"outer": ("x0", "x2"), "x1": ("x1",)}
     design = sample(spec, "saltelli", 1024, 1, groups=groups)
-    found = of_groups(f.evaluate(design.unit), design, groups)
+    found = design.method.group_indices(f.evaluate(design.unit), design, groups)
     exact = 1 - f.first[1]
     assert found["group_S1"] == pytest.approx([exact, f.first[1]], abs=0.02)
     assert found["group_ST"] == pytest.approx([exact, f.first[1]], abs=0.02)
     single = {name: (name,) for name in spec}
     design = sample(spec, "saltelli", 1024, 1, groups=single)
     y = f.evaluate(design.unit)
-    alone = of_groups(y, design, single)
+    alone = design.method.group_indices(y, design, single)
     with pytest.raises(InputError, match="Run the study again"):
-        of_groups(y, sample(spec, "saltelli", 1024, 1), single)
+        sample(spec, "saltelli", 1024, 1).method.group_indices(y, sample(spec, "saltelli", 1024, 1), single)
     plain = sobol(y, 3, True)
     np.testing.assert_allclose(alone["group_S1"], plain["S1"], atol=1e-12)
     np.testing.assert_allclose(alone["group_ST"], plain["ST"], atol=1e-12)
@@ -95,14 +94,14 @@ def test_groups_of_a_grid_are_exact():
     spec = {"a": {"values": [-1, 1]}, "c": {"values": [-2, 0, 2]}, "b": {"values": [-1, 0, 1]}}
     design = sample(spec, "grid", 0, 0)
     a, b, c = (design.columns[name] for name in "abc")
-    found = of_groups(a * b + c, design, {"ab": ("a", "b"), "c": ("c",)})
+    found = design.method.group_indices(a * b + c, design, {"ab": ("a", "b"), "c": ("c",)})
     product, sole = 2 / 3, 8 / 3
     assert found["group_S1"] == pytest.approx(np.array([product, sole]) / (product + sole))
     assert found["group_ST"] == pytest.approx(found["group_S1"])
-    apart = of_groups(a * b + c, design, {"ac": ("a", "c"), "b": ("b",)})
+    apart = design.method.group_indices(a * b + c, design, {"ac": ("a", "c"), "b": ("b",)})
     assert apart["group_S1"] == pytest.approx([sole / (product + sole), 0])
     assert apart["group_ST"] == pytest.approx([1, product / (product + sole)])
-    assert np.isnan(of_groups(np.ones(18), design, {"ab": ("a", "b"), "c": ("c",)})["group_S1"]).all()
+    assert np.isnan(design.method.group_indices(np.ones(18), design, {"ab": ("a", "b"), "c": ("c",)})["group_S1"]).all()
 
 
 SPEC = {"a": {"uniform": [0, 1]}, "kind": {"values": KINDS, "weights": [2, 1, 1]}, "b": {"uniform": [0, 1]}}

@@ -5,9 +5,10 @@ import pytest
 from scipy import stats
 from synthetic_results import results_of
 
-from trackroller.analysis.robustness import b10, robustness
+from trackroller.analysis.robustness import robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
+from trackroller.methods.b10 import b10
 from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {

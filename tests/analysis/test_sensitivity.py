@@ -7,11 +7,14 @@ import pytest
 import xarray as xr
 from synthetic_results import results_of
 
-from trackroller.analysis import convergence, indices
-from trackroller.analysis.givendata import first_order, given_data, prcc
 from trackroller.analysis.sensitivity import analyse
-from trackroller.analysis.sobol import sobol
 from trackroller.errors import InputError
+from trackroller.methods import convergence
+from trackroller.methods import morris as elementary
+from trackroller.methods.arrays import effects
+from trackroller.methods.given_data import first_order, given_data, prcc
+from trackroller.methods.grid import grid_shares
+from trackroller.methods.saltelli import sobol
 from trackroller.report.words import indices as words
 from trackroller.report.words.indices import caveat
 from trackroller.study.design.sampling import sample
@@ -222,14 +225,14 @@ def test_categorical_function_comes_right_in_every_analysis():
     assert np.isnan(given["prcc"][1]) and given["prcc"][0] > 0.95  # the category taken out
 
     design = sample(spec, "morris", 300, 1)
-    morris = indices.morris(categorical(**design.columns), design.unit, np.array([False, True]))
+    morris = elementary.morris(categorical(**design.columns), design.unit, np.array([False, True]))
     assert morris["mu_star"][0] == pytest.approx(1.0)
     assert morris["sigma"][0] == pytest.approx(0.0, abs=1e-9)
     assert morris["mu_star"][1] == pytest.approx(2.0, abs=0.2)  # pairs ab 0, ac 3, bc 3
 
     levels = {"x": {"linspace": [0.0, 1.0, 5]}, "c": spec["c"]}
     design = sample(levels, "grid", 0, 0)
-    grid = indices.grid_shares(categorical(**design.columns).reshape(design.meta["shape"]))
+    grid = grid_shares(categorical(**design.columns).reshape(design.meta["shape"]))
     np.testing.assert_allclose(grid["main_share"], np.array([0.125, 2.0]) / 2.125)
     assert grid["interaction_share"][0, 1] == pytest.approx(0.0, abs=1e-12)
 
@@ -237,10 +240,10 @@ def test_categorical_function_comes_right_in_every_analysis():
 def test_grid_shares_of_a_product_are_exact():
     """y = x1 x2 + x3 on {-1, 1}^3: all of the product is interaction."""
     x1, x2, x3 = np.meshgrid([-1, 1], [-1, 1], [-1, 1], indexing="ij")
-    found = indices.grid_shares((x1 * x2 + x3).astype(float))
+    found = grid_shares((x1 * x2 + x3).astype(float))
     np.testing.assert_allclose(found["main_share"], [0, 0, 0.5], atol=1e-12)
     assert found["interaction_share"][0, 1] == pytest.approx(0.5)
-    triple = indices.grid_shares((x1 * x2 * x3).astype(float))
+    triple = grid_shares((x1 * x2 * x3).astype(float))
     assert float(triple["higher_share"]) == pytest.approx(1.0)
 
 
@@ -314,10 +317,10 @@ def test_grid_with_holes_drops_levels_and_says_how_many_cells():
     """A corner without results removes levels; the remaining levels stay balanced."""
     y = np.add.outer(np.arange(5.0) ** 2, 10 * np.arange(4.0))
     y[4, 3] = np.nan
-    found = indices.grid_shares(y)
+    found = grid_shares(y)
     assert int(found["cells"]) == 20 and int(found["cells_used"]) in (15, 16)
     assert found["interaction_share"][0, 1] == pytest.approx(0, abs=1e-12)
-    assert np.isnan(indices.grid_shares(np.full((3, 3), np.nan))["main_share"]).all()
+    assert np.isnan(grid_shares(np.full((3, 3), np.nan))["main_share"]).all()
 
 
 def test_note_of_a_grid_counts_the_cells_left_out_because_one_failed():
@@ -342,12 +345,12 @@ def test_morris_agrees_with_salib_and_uses_what_is_left():
     table = np.stack(list(design.columns.values()), axis=1)
     y = ishigami(*table.T)
     none = np.zeros(3, dtype=bool)
-    found = indices.morris(y, design.unit, none)
+    found = elementary.morris(y, design.unit, none)
     theirs = oracle.analyze({"num_vars": 3, "names": list(X3), "bounds": [[-PI, PI]] * 3}, table, y)
     for name in ("mu", "mu_star", "sigma"):
         np.testing.assert_allclose(found[name], theirs[name], atol=1e-9)
     y[1] = np.nan
-    assert indices.morris(y, design.unit, none)["effects_used"].sum() == 150 - 2
+    assert elementary.morris(y, design.unit, none)["effects_used"].sum() == 150 - 2
 
 
 def test_partial_rank_correlation_sees_through_other_factors():
@@ -370,7 +373,7 @@ def test_response_surface_recovers_a_quadratic(method):
     """y = 1 + 2a - 3b + a b + 4 c^2 in coded units: effects 4, -6, 0; interaction 2; curvature 4."""
     design = sample({k: {"uniform": [0, 10]} for k in "abc"}, method, 0, 1)
     a, b, c = design.unit.T
-    found = indices.effects(1 + 2 * a - 3 * b + a * b + 4 * c**2, design.unit, np.zeros(3, dtype=bool), True)
+    found = effects(1 + 2 * a - 3 * b + a * b + 4 * c**2, design.unit, np.zeros(3, dtype=bool), True)
     np.testing.assert_allclose(found["effect"], [4, -6, 0], atol=1e-9)
     assert found["interaction"][0, 1] == pytest.approx(2) and found["curvature"][2] == pytest.approx(4)
     assert float(found["r_squared"]) == pytest.approx(1)
@@ -380,7 +383,7 @@ def test_plackett_burman_keeps_main_effects_clear_of_interactions():
     """Folded over: a strong interaction does not leak into any main effect."""
     design = sample({k: {"uniform": [0, 1]} for k in "abcdefg"}, "plackett_burman", 0, 1)
     u = design.unit
-    found = indices.effects(u[:, 0] + 5 * u[:, 1] * u[:, 2], u, np.zeros(7, dtype=bool), False)
+    found = effects(u[:, 0] + 5 * u[:, 1] * u[:, 2], u, np.zeros(7, dtype=bool), False)
     np.testing.assert_allclose(found["effect"], [2, 0, 0, 0, 0, 0, 0], atol=1e-9)
 
 

@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from SALib.analyze import rbd_fast
 
-from trackroller.analysis.givendata import firsts
-from trackroller.analysis.pairs import GROUPS, held_out, pairs
+from trackroller.methods.given_data import firsts
+from trackroller.methods.interactions import GROUPS, held_out, pairs
 from validation.benchmarks.known_indices import functions, random_rows
 
 

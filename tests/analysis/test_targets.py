@@ -6,9 +6,9 @@ from scipy import stats
 from scipy.stats import qmc
 from synthetic_results import results_of
 
-from trackroller.analysis.probability import bounds, probabilities
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
+from trackroller.methods.probability import bounds, probabilities
 from trackroller.study.file.load import parse_study
 
 POINTS = {

@@ -15,9 +15,11 @@ from workflow_place import snakemake, started
 import trackroller as tr
 from trackroller.analysis.growing import grow_study
 from trackroller.analysis.looks import looks_of
-from trackroller.analysis.replicates import first_indices, jackknife, log_b10, share
 from trackroller.analysis.table import OUTSIDE
 from trackroller.errors import InputError
+from trackroller.methods.b10 import log_b10, share
+from trackroller.methods.given_data import first_indices
+from trackroller.methods.replicates import jackknife
 from trackroller.report.words.samples import grown
 from trackroller.study.design.growth import doubled
 from trackroller.study.design.sampling import sample

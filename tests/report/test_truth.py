@@ -414,7 +414,7 @@ def test_no_sentence_on_a_random_study_is_false(part):
 
 def test_an_interval_of_a_ratio_of_medians_covers_the_truth():
     """Skewed, bimodal and tied draws: the interval holds the true difference in at least 94 % of 1,000 samples."""
-    from trackroller.analysis.effects import difference_of_medians
+    from trackroller.methods.intervals import difference_of_medians
 
     rng = np.random.default_rng(1)
     draws = {

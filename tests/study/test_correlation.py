@@ -5,8 +5,8 @@ import pytest
 from scipy.stats import kstest, norm, spearmanr
 
 from trackroller.errors import InputError
-from trackroller.study.design.correlation import normal_correlation
-from trackroller.study.design.factors import parse
+from trackroller.methods.correlation import normal_correlation
+from trackroller.methods.factor import parse
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
 

@@ -5,11 +5,10 @@ import pytest
 from SALib.sample import sobol as salib
 
 from trackroller.errors import InputError
+from trackroller.methods import METHODS, saltelli
+from trackroller.methods import arrays as designs
+from trackroller.methods.factor import Factor, parse
 from trackroller.parameters.expressions import comparisons, condition, evaluate, names
-from trackroller.study.design import arrays as designs
-from trackroller.study.design import saltelli
-from trackroller.study.design.factors import Factor, parse
-from trackroller.study.design.kinds import METHODS
 from trackroller.study.design.sampling import sample
 
 MIXED = {

@@ -9,10 +9,10 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
+from trackroller.methods import Design
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.dataset import shown
 from trackroller.study.design.levels import OF_MATERIALS
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import flat
 
 CONTACT_RESULTS, WHOLE_RESULTS = shown("contact"), shown()
@@ -100,7 +100,7 @@ def _of_bodies(results: dict[str, np.ndarray]) -> dict[str, np.ndarray]:
     return worse_of
 
 
-def factor_names(ds: xr.Dataset, dims: Sequence[str], design: SampledDesign, table: pd.DataFrame) -> list[str]:
+def factor_names(ds: xr.Dataset, dims: Sequence[str], design: Design, table: pd.DataFrame) -> list[str]:
     """Name the factors that vary: dimensions of a grid, or independent factors along `case`."""
     if "case" not in dims:
         return [d for d in dims if ds.sizes[d] > 1]

@@ -12,7 +12,7 @@ from trackroller.study.store.plan import Plan
 
 def decides(study: Study) -> bool:
     """Return whether the cases of a study depend on results; with a table of its designs a search is at its end."""
-    searches = study.config.design == "optimise" and study.config.table is None
+    searches = study.config.method.proposes and study.config.table is None
     return bool(searches or study.config.until is not None)
 
 

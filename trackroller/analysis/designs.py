@@ -13,14 +13,14 @@ import pandas as pd
 
 from trackroller.analysis.columns import codes
 from trackroller.analysis.lives import FIRST_LIMIT, body_lives
-from trackroller.analysis.robustness import b10, material_deviations
+from trackroller.analysis.robustness import material_deviations
 from trackroller.analysis.table import StudyView
+from trackroller.methods.b10 import b10
 from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.roles import roles_of
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
-DRAWN = ("lhs", "sobol", "saltelli", "morris", "inner_outer")  # designs of experiments with random conditions
 TIED = 1e-9  # relative difference of lives that count as equal
 
 
@@ -125,7 +125,7 @@ class Designs:
     @property
     def drawn(self) -> bool:
         """Return whether the conditions are a random sample, so that a worst case depends on its size."""
-        return bool(self.conditions) and (not self.matched or self.view.solved.config.design in DRAWN)
+        return bool(self.conditions) and (not self.matched or self.view.solved.config.method.sampled)
 
     @property
     def comparable(self) -> bool:

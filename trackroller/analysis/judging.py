@@ -12,11 +12,11 @@ import xarray as xr
 
 from trackroller.analysis.limits import Column
 from trackroller.analysis.pareto import SAFE_B10, default_objectives, front_of
-from trackroller.analysis.robustness import b10
 from trackroller.analysis.table import OUTSIDE, StudyResults
+from trackroller.methods.b10 import b10
+from trackroller.methods.factor import readable
+from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.study.design.evolution import crowding
-from trackroller.study.design.factors import readable
 from trackroller.study.file.search import judged_by
 
 OPTIMUM = "optimum"  # attribute of study.nc with what the search found (JSON)

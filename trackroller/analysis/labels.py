@@ -7,14 +7,14 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.stats import rankdata
 
-from trackroller.analysis.indices import Estimates, constant
+from trackroller.methods import Design
+from trackroller.methods.correlation import correlated_pairs
+from trackroller.methods.intervals import constant
+from trackroller.methods.method import Estimates
 from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output
 
-CORRELATED = 0.5  # rank correlation of two columns of a table above which the result warns
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
 INDEX_WORDS = {  # of the variables of an analysis; figures, tables and sentences take them too
     "S1": "first-order index",
@@ -151,28 +151,7 @@ def treatment(regime: np.ndarray, keep: Iterable[str], allowed: np.ndarray | Non
     return text
 
 
-def correlated_pairs(design: SampledDesign) -> list[tuple[str, str, float]]:
-    """Return the pairs of factors that are correlated.
-
-    Parameters
-    ----------
-    design : the design
-
-    Returns
-    -------
-    (factor, factor, rank correlation [1]): the pairs of the study file, or the pair of columns of a table with the
-    largest correlation above 0.5. The factors of every other design are independent.
-    """
-    if design.method != "table" or len(design.factors) < 2:
-        return [(one, other, rho) for one, other, rho in design.meta.get("rank_correlations", ()) if rho]
-    names = list(design.factors)
-    table = np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False))
-    pairs = [(names[j], names[i], float(table[i, j])) for i in range(len(names)) for j in range(i)]
-    strongest = max(pairs, key=lambda pair: abs(pair[2]))
-    return [strongest] if abs(strongest[2]) >= CORRELATED else []
-
-
-def correlated(design: SampledDesign) -> str:
+def correlated(design: Design) -> str:
     """Return a warning of correlated factors, or an empty text; see `correlated_pairs`."""
     warnings = [
         f"{factor_name(one)} and {factor_name(other)} are correlated (rank correlation {rho:.2f})"
@@ -181,7 +160,7 @@ def correlated(design: SampledDesign) -> str:
     return f"; {', '.join(warnings)}: the index of each includes the influence of both" if warnings else ""
 
 
-def labelled(design: SampledDesign, columns: list[Output], results: list[Estimates], at: np.ndarray) -> xr.Dataset:
+def labelled(design: Design, columns: list[Output], results: list[Estimates], at: np.ndarray) -> xr.Dataset:
     """Join the results of all outputs.
 
     Parameters

@@ -9,9 +9,9 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, nearest
+from trackroller.methods.factor import readable
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.expressions import condition
-from trackroller.study.design.factors import readable
 from trackroller.study.outputs import flat, outputs, regimes
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.indices import constant
 from trackroller.analysis.labels import factor_name
-from trackroller.analysis.replicates import HEADLINES, log_b10, replicated, share
 from trackroller.analysis.robustness import material_deviations
 from trackroller.analysis.table import StudyResults
 from trackroller.analysis.targets import body_of, hits_of
+from trackroller.methods.b10 import log_b10, share
+from trackroller.methods.intervals import constant
 from trackroller.parameters import REGIMES
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
@@ -49,26 +49,26 @@ def look(results: StudyResults) -> dict[str, Any]:
     unsure = np.zeros(len(names), dtype=bool)
     inside = results.view.inside.any() or results.config.analysis.keep != ("rolling",)
     for name in until.of:
-        values, widths = (_of_points if design.method == "inner_outer" else _of_indices)(results, name)
+        values, widths = (_of_points if design.method.points else _of_indices)(results, name)
         if np.isnan(values).all() or not (inside or statistic(name)[1] in REGIMES):
             seen["empty"].append(name)
             widths[:] = np.inf
-        elif design.method != "inner_outer" and constant(values):
+        elif not design.method.points and constant(values):
             seen["constant"].append(name)
         widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)
         widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
         seen["half_width"][name] = float(widths[widest]) if np.isfinite(widths[widest]) else None
         seen["at"][name] = names[widest]
-    return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method == "inner_outer" else {})
+    return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method.points else {})
 
 
 def _of_indices(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarray]:
-    """Return an output (n,) and the half widths of its headline indices; those of mu* over the output's range."""
+    """Return an output (n,) and the half widths of its headline indices; those of effects over the output's range."""
     design, given = results.design, results.config.analysis
     y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
-    estimates = replicated(y, design, design.samples)
-    scale = float(np.nanmax(y) - np.nanmin(y)) if design.method == "morris" and not constant(y) else 1.0
-    widths = [estimates[f"{index}_high"] - estimates[index] for index in HEADLINES[design.method]]
+    estimates = design.method.replicated(y, design, design.samples)
+    scale = float(np.nanmax(y) - np.nanmin(y)) if design.method.effects and not constant(y) else 1.0
+    widths = [estimates[f"{index}_high"] - estimates[index] for index in design.method.narrowed]
     return y, np.concatenate(widths) / scale
 
 
@@ -97,7 +97,7 @@ def _of_points(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarray
 def _names(results: StudyResults) -> list[str]:
     """Return the factors, or the design points of an inner/outer design, in words."""
     design = results.design
-    if design.method != "inner_outer":
+    if not design.method.points:
         return list(map(factor_name, design.factors))
     named = [[in_words(n, design.columns[n][rows.start]) for n in design.meta["outer"]] for rows in design.points]
     return [", ".join(row) or "all" for row in named]

@@ -25,10 +25,9 @@ from trackroller.analysis.stored_study import solved_results
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
 from trackroller.files import sha256, write_text
+from trackroller.methods.factor import Factor
+from trackroller.methods.optimise import first_generation, genes_of, next_generation, nondominated_ranks, survivors
 from trackroller.parameters import PARAMETERS
-from trackroller.study.design.draws import genes_of
-from trackroller.study.design.evolution import first_generation, next_generation, nondominated_ranks, survivors
-from trackroller.study.design.factors import Factor
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.run import Runner

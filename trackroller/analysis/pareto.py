@@ -11,9 +11,9 @@ import xarray as xr
 from trackroller.analysis.limits import Column, meeting
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
+from trackroller.methods import Design
+from trackroller.methods.factor import readable
 from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
-from trackroller.study.design.factors import readable
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.outputs import regimes
 
@@ -171,7 +171,7 @@ def _allowed(
     return allowed, excluded
 
 
-def _own_rows(design: SampledDesign) -> tuple[np.ndarray, str]:
+def _own_rows(design: Design) -> tuple[np.ndarray, str]:
     """Return the rows of the most exact of several contact models and its name; without several models, all rows."""
     column = design.columns.get("contact_model")
     named = np.full(design.size, "") if column is None else column.astype(str)

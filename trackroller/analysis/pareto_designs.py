@@ -31,9 +31,9 @@ def study_pareto(view: StudyView) -> xr.Dataset | None:
     """
     config = view.solved.config
     given = config.pareto
-    if config.design == "optimise":
+    if config.method.proposes:
         return pareto_of_search(view.solved)
-    if config.design == "inner_outer":
+    if config.method.points:
         return pareto_of_points(view.analysis, given) if view.analysis is not None and given else None
     goals = given or default_objectives(view.data)
     if not goals:

@@ -11,13 +11,13 @@ from typing import NamedTuple
 import numpy as np
 import xarray as xr
 
+from trackroller.methods import METHODS, Method
 from trackroller.parameters import BODIES
 
 ENDS = ("low", "high")
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
 SIZED = ("mu_star", "effect")  # indices with the unit of the output; all others are shares of variance
 USABLE = 0.5  # share of the design below which an index decides nothing
-HEADLINES = {"saltelli": "ST", "morris": "mu_star", "grid": "main_share"}
 
 
 class Rank(NamedTuple):
@@ -37,9 +37,15 @@ def estimate(part: xr.Dataset, name: str) -> np.ndarray:
     return np.stack([value, *bounds])
 
 
+def method_of(sens: xr.Dataset) -> Method | None:
+    """Return the design of experiments behind an analysis; None if the analysis does not name one."""
+    return METHODS.get(str(sens.attrs.get("method")))
+
+
 def robust_design(sens: xr.Dataset) -> bool:
     """Return whether the analysis is that of an inner/outer design."""
-    return str(sens.attrs.get("method")) == "inner_outer"
+    method = method_of(sens)
+    return method is not None and method.points
 
 
 def main_lives(sens: xr.Dataset) -> list[str]:
@@ -66,7 +72,8 @@ def best_points(part: xr.Dataset) -> np.ndarray:
 
 def headline(sens: xr.Dataset) -> str:
     """Name the index that ranks the factors of a design: ST, mu_star, main_share, effect or first."""
-    index = HEADLINES.get(str(sens.attrs.get("method")), "effect" if "effect" in sens else "first")
+    method = method_of(sens)
+    index = method.headline if method is not None else "first"
     if "first" in sens and (index not in sens or not np.isfinite(sens[index]).any()):
         return "first"
     return index

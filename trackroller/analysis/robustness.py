@@ -14,18 +14,17 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy import stats
-from scipy.optimize import brentq
 
 from trackroller.analysis.labels import output_labels
 from trackroller.analysis.table import StudyResults
 from trackroller.analysis.targets import at_points, body_of
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90, SNCurve
 from trackroller.errors import InputError
+from trackroller.methods import Design
+from trackroller.methods.b10 import b10, quantile
+from trackroller.methods.factor import readable
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
-from trackroller.study.design.factors import readable
 from trackroller.study.design.levels import in_words
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import Output, default_names, flat, outputs, regimes
 
@@ -62,9 +61,9 @@ def robustness(
         If the study has another design.
     """
     ds, design, config = results.data, results.design, results.config
-    if design.method != "inner_outer":
+    if not design.method.points:
         allowed = "design inner_outer: lists as outer array, distributions as inner array"
-        raise InputError("design", design.method, allowed)
+        raise InputError("design", design.method.name, allowed)
     regime = regimes(ds, results.dims)
     wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
     goals = [statistic(goal) for goal in config.pareto]
@@ -90,13 +89,13 @@ def robustness(
     return out
 
 
-def _attributes(design: SampledDesign, scatter: float) -> dict[str, str | int | float]:
+def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
         "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
         "other case as life 0; the same inner sample at every design point"
     )
     return {
-        "method": design.method,
+        "method": design.method.name,
         "rows": design.size,
         "inner_samples": design.meta["inner_samples"],
         "interval": "95 %",
@@ -136,7 +135,7 @@ def material_deviations(results: StudyResults) -> dict[str, np.ndarray]:
     return out
 
 
-def _coordinates(design: SampledDesign, columns: list[Output]) -> dict[str, Any]:
+def _coordinates(design: Design, columns: list[Output]) -> dict[str, Any]:
     first = [rows.start for rows in design.points]
     outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
     point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(len(first))]
@@ -165,7 +164,7 @@ def _statistics(
         out["used_share"][p] = good.size / own.size
         if good.size < 2:
             continue
-        out["percentile_value"][p] = _quantile(good, np.array(PERCENTILES) / 100)
+        out["percentile_value"][p] = quantile(good, np.array(PERCENTILES) / 100)
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:
@@ -174,45 +173,3 @@ def _statistics(
             safe = np.where(~known | (regime[rows] != 0), 0.0, own)
             out["b10_safe"][p] = b10(safe, spread)[0]
     return out
-
-
-def _quantile(values: np.ndarray, share: np.ndarray | float) -> np.ndarray:
-    """Return order statistics, so that no arithmetic mixes finite and infinite lives."""
-    return np.asarray(np.quantile(values, share, method="inverted_cdf"))
-
-
-def b10(lives: np.ndarray, log_life_scatter: float | np.ndarray = 0.0) -> tuple[float, float, float]:
-    """Estimate the life that 90 % reach, with its 95 % interval.
-
-    Parameters
-    ----------
-    lives : median lives at the sampled conditions [any unit], shape (n,); 0 and inf are allowed
-    log_life_scatter : standard deviation of log10 life of the material itself [1], one or of shape (n,)
-
-    Returns
-    -------
-    B10, lower and upper bound in the unit of `lives`.
-
-    Notes
-    -----
-    Without scatter of the material: the 10 % order statistic and its distribution-free (binomial) interval. With it:
-    the root of mean_i Phi((lg t - lg N_i) / s) = 0.1, and the same interval moved by the ratio of both.
-    """
-    ranked = np.sort(lives)
-    count = len(ranked)
-    value = float(_quantile(ranked, 0.1))
-    low = ranked[max(0, int(stats.binom.ppf(0.025, count, 0.1)) - 1)]
-    high = ranked[min(count - 1, int(stats.binom.ppf(0.975, count, 0.1)))]
-    deviations = np.broadcast_to(np.asarray(log_life_scatter, dtype=float), lives.shape)[np.argsort(lives)]
-    if not (deviations > 0).any() or not np.isfinite(ranked).any() or value in (0.0, np.inf):
-        return value, float(low), float(high)
-    with np.errstate(divide="ignore"):
-        logs = np.log10(ranked)
-
-    def miss(t: float) -> float:
-        return float(stats.norm.cdf((t - logs) / np.maximum(deviations, 1e-9)).mean()) - 0.1
-
-    finite = logs[np.isfinite(logs)]
-    wide = 6 * float(deviations.max())
-    scattered = 10 ** brentq(miss, finite.min() - wide, finite.max() + wide)
-    return float(scattered), float(low * scattered / value), float(high * scattered / value)

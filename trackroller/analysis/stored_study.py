@@ -121,7 +121,7 @@ def _read_unfinished(folder: StudyFolder) -> StudyResults:
         f"Unfinished study: {len(rows)} of {len(place)} cases are solved, and all numbers are those of these.{only}"
     )
     warnings.warn(notice, stacklevel=4)
-    if study.config.design == "inner_outer":  # its goals are statistics of whole design points
+    if study.config.method.points:  # its goals are statistics of whole design points
         study = dataclasses.replace(study, config=study.config.model_copy(update={"pareto": {}}))
     return StudyResults(study, drawn, data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(rows)}))
 

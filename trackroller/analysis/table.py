@@ -16,9 +16,9 @@ from trackroller.analysis.columns import base_values, case_columns, factor_names
 from trackroller.analysis.limits import Column, meeting, quantity_of
 from trackroller.analysis.lives import FIRST_LIMIT, LIVES, body_lives, past_data
 from trackroller.damage.pair import first_failure
+from trackroller.methods import Design
 from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS
 from trackroller.study.design.levels import NAMED
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
@@ -36,14 +36,14 @@ class StudyResults:
     ----------
     study : Study
         The checked study.
-    design : SampledDesign
+    design : Design
         Its design, with the places of the rows and the groups of factors.
     data : xarray.Dataset
         The results, over the factors of a grid or along `case`.
     """
 
     study: Study
-    design: SampledDesign
+    design: Design
     data: xr.Dataset
 
     @property

@@ -9,15 +9,14 @@ import numpy as np
 import xarray as xr
 from scipy import stats
 
-from trackroller.analysis.labels import correlated_pairs
-from trackroller.analysis.probability import probabilities
 from trackroller.analysis.ranking import estimate
-from trackroller.study.design.factors import Factor
+from trackroller.methods import Design
+from trackroller.methods.correlation import correlated_pairs
+from trackroller.methods.factor import Factor
+from trackroller.methods.probability import probabilities
 from trackroller.study.design.levels import in_words
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.outputs import Output, outputs
 
-WITHOUT_CHANCE = ("grid", "table")  # designs whose shares are no probabilities and have no interval
 MOST_LEVELS = 12  # a number with more levels is divided into CLASSES classes
 CLASSES = 4
 ENDS = ("", "_low", "_high")
@@ -44,7 +43,7 @@ class Level(NamedTuple):
 
 def targets(
     ds: xr.Dataset,
-    design: SampledDesign,
+    design: Design,
     wanted: Mapping[str, Mapping[str, float]],
     deviations: Mapping[str, np.ndarray],
     allowed: np.ndarray | None = None,
@@ -76,7 +75,7 @@ def targets(
     names = [c.name for c in columns]
     if len(names) > 1:
         hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
-    robust = design.method == "inner_outer"
+    robust = design.method.points
     levels, estimates = (_of_points if robust else _of_rows)(hits, design)
     out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
     for end, whole in zip(ENDS, estimates[0], strict=True):
@@ -115,7 +114,7 @@ def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
     return np.asarray(np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0))
 
 
-def _of_points(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
+def _of_points(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
     """Return the levels of the outer factors, and the probabilities at all points and at each level."""
     first = [rows.start for rows in design.points]
     outer = [name for name in design.meta["outer"] if len(design.meta["outer"]) > 1]
@@ -124,7 +123,7 @@ def _of_points(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], li
     return levels, [(p.T, low.T, high.T), *(_at_level(hits, design, level, whole) for level in levels)]
 
 
-def at_points(hits: np.ndarray, design: SampledDesign) -> Found:
+def at_points(hits: np.ndarray, design: Design) -> Found:
     """Return the probability of events and its bounds at each design point of an inner/outer array.
 
     Parameters
@@ -146,7 +145,7 @@ def at_points(hits: np.ndarray, design: SampledDesign) -> Found:
     return bounds[0], bounds[1], bounds[2]
 
 
-def _at_level(hits: np.ndarray, design: SampledDesign, level: Level, whole: Found) -> Found:
+def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Found) -> Found:
     """Return the mean probability of the design points of a level and its bounds.
 
     Points with different numbers of samples get the mean of their bounds, which is wide enough for any correlation.
@@ -164,22 +163,20 @@ def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
     return (sample[0][:size], sample[1]) if sample else ()
 
 
-def _of_rows(hits: np.ndarray, design: SampledDesign) -> tuple[list[Level], list[Found]]:
+def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
     """Return the levels of the factors, and the probabilities over all rows and at each level."""
-    rows = np.arange(design.size)
-    if design.method == "saltelli":  # rows of A and B; their mixtures repeat coordinates
-        rows = design.blocks(rows)[:, [0, -1]].ravel()
+    rows = design.method.independent_rows(design)
     levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
     hits = hits[rows]
     strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
     estimates = [probabilities(hits, *strata)]
     estimates += [probabilities(hits[level.rows]) for level in levels]
-    if design.method in WITHOUT_CHANCE:
+    if not design.method.sampled:  # shares of such rows are no probabilities
         estimates = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in estimates]
     return levels, estimates
 
 
-def inner_sample(design: SampledDesign) -> tuple[np.ndarray, np.ndarray] | tuple[()]:
+def inner_sample(design: Design) -> tuple[np.ndarray, np.ndarray] | tuple[()]:
     """Return the inner sample of an inner/outer design; nothing if its factors are correlated and so not stratified.
 
     Returns

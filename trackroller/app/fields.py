@@ -8,11 +8,11 @@ from typing import Any
 
 from trackroller.materials import load_database
 from trackroller.materials.tables import material_rows
+from trackroller.methods import METHODS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, OPTIONS, PARAMETERS, Parameter
 from trackroller.parameters.example import LASTING
 from trackroller.report.numbers import capital, unit_text
 from trackroller.roller.doubts import USUAL
-from trackroller.study.design.kinds import METHODS
 
 SPAN = 4.0  # a slider goes from a quarter of the example's value to four times this value
 WIDEST = 100.0  # bounds that are farther apart say what the solver takes, not what rollers have

@@ -27,7 +27,6 @@ from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
 from trackroller.roller.aliases import ALIASES
-from trackroller.study.design.kinds import DESIGNS
 from trackroller.study.file.config import check_name
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
@@ -89,7 +88,7 @@ def _study(text: str) -> Study:
         study = parse_study(data, TEXTS / "study.yaml")
     cases, config = _least_cases(study), study.config
     if cases <= MOST_CASES:  # a larger design may fill the memory when it is drawn
-        searched = config.budget.designs * study.drawn.meta["inner_samples"] if config.design == "optimise" else 0
+        searched = config.budget.designs * study.drawn.meta["inner_samples"] if config.method.proposes else 0
         cases = max(study.drawn.size, searched, config.until.at_most if config.until else 0)
     if cases > MOST_CASES:
         allowed = f"at most {MOST_CASES:,} cases on this page"
@@ -99,10 +98,10 @@ def _study(text: str) -> Study:
 
 def _least_cases(study: Study) -> int:
     """Return about how many cases a study has, found without drawing its design."""
-    method = study.config.design
-    array = DESIGNS[method].array
-    crossed = [len(f.levels) for f in study.parsed.values() if f.levels] if array or method == "inner_outer" else []
-    return math.prod(crossed) * (1 if array or method == "table" else int(study.config.samples))
+    method = study.config.method
+    drawn = method.sampled or method.proposes
+    crossed = [len(f.levels) for f in study.parsed.values() if f.levels] if method.points or not drawn else []
+    return math.prod(crossed) * (int(study.config.samples) if drawn else 1)
 
 
 def start(text: str) -> dict[str, Any]:

@@ -7,10 +7,10 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from trackroller.contact.friction_laws import law_of
+from trackroller.methods import METHODS
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.contact_models import DECLARED, SOLVED_PATCHES
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.kinds import DESIGNS
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -64,8 +64,7 @@ def study_rate(study: Study) -> float:
 
 def seconds_of_report(design: str, cases: int) -> float:
     """Return the expected time on one core [s] to gather and analyse a study, draw its figures and write its page."""
-    itself = DESIGNS[design].array or design in ("saltelli", "morris")  # indices without given-data measures
-    return (PAGES_OF_ARRAY if itself else PAGES_OF_SAMPLE) + cases * PAGES_A_CASE
+    return (PAGES_OF_ARRAY if METHODS[design].quick else PAGES_OF_SAMPLE) + cases * PAGES_A_CASE
 
 
 def bytes_a_case(outputs: tuple[str, ...]) -> int:

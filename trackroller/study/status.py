@@ -166,7 +166,7 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     pages = seconds_of_report(study.config.design, status.total)
     most = study.config.budget.designs
     generations = f"these are the first generation; it goes on to {most} design{'s' * (most != 1)}, and checks the best"
-    until, where = study.config.until, " at unsure design points" if study.config.design == "inner_outer" else ""
+    until, where = study.config.until, " at unsure design points" if study.config.method.points else ""
     rows = [
         ("study", f"{study.name} ({study.config.design})"),
         ("cases", f"{status.total}, {status.done} of them solved already"),
@@ -174,7 +174,7 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
             "until",
             f"the sample doubles{where} until its intervals are narrow, up to {until.at_most} cases" if until else "",
         ),
-        ("search", generations if study.config.design == "optimise" else ""),
+        ("search", generations if study.config.method.proposes else ""),
         ("unused", status.unused),
         ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),
         ("time", f"{times} ({source} cases/s: {status.speed:.3g})"),

@@ -21,11 +21,10 @@ from SALib.analyze import delta as salib_delta
 from SALib.analyze import hdmr, rbd_fast
 from SALib.analyze import sobol as salib_sobol
 
-from trackroller.analysis import givendata
-from trackroller.analysis.delta import delta
-from trackroller.analysis.pairs import pairs
-from trackroller.analysis.sobol import sobol
-from trackroller.study.design import arrays
+from trackroller.methods import arrays, given_data
+from trackroller.methods.delta import delta
+from trackroller.methods.interactions import pairs
+from trackroller.methods.saltelli import sobol
 from validation.benchmarks.command import run
 from validation.benchmarks.known_indices import (
     Data,
@@ -87,13 +86,13 @@ def their_sobol(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
 
 def our_first(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
     """Return first-order indices from given data; whole numbers are categories."""
-    found = givendata.firsts(y, unit, (unit % 1 != 0).any(axis=0), seed)
+    found = given_data.firsts(y, unit, (unit % 1 != 0).any(axis=0), seed)
     return found["first"], found["first_low"], found["first_high"]
 
 
 def their_first(unit: np.ndarray, y: np.ndarray, seed: int) -> Estimate:
     """Return first-order indices by SALib's RBD-FAST without our treatment of categories."""
-    found = rbd_fast.analyze(problem(unit.shape[1]), unit, y, num_resamples=givendata.FAST_RESAMPLES, seed=seed)
+    found = rbd_fast.analyze(problem(unit.shape[1]), unit, y, num_resamples=given_data.FAST_RESAMPLES, seed=seed)
     return _symmetric(np.array(found["S1"], float), np.array(found["S1_conf"], float))
 
 

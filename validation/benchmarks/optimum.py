@@ -16,7 +16,7 @@ import numpy as np
 
 import trackroller as tr
 from trackroller.analysis.pareto import pareto_mask
-from trackroller.study.design.evolution import Gene, first_generation, next_generation
+from trackroller.methods.optimise import Gene, first_generation, next_generation
 from trackroller.study.file.search import Budget
 from validation.benchmarks.command import run
 

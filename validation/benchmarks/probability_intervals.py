@@ -3,7 +3,7 @@
     python -m validation.benchmarks.probability_intervals [--seeds N]
 
 Each entry is an event over four uniform factors and a design. `ours` is the interval of
-`trackroller.analysis.probability`; `Wilson` takes the samples as independent, for the mean of four design points all
+`trackroller.methods.probability`; `Wilson` takes the samples as independent, for the mean of four design points all
 four times as many. Found are the coverage and the mean half width of both, and the standard deviation of the
 estimate from seed to seed. An interval of a random sample would need a half width of about twice that deviation.
 """
@@ -18,7 +18,7 @@ import numpy as np
 from scipy import stats
 from scipy.stats import qmc
 
-from trackroller.analysis.probability import probabilities
+from trackroller.methods.probability import probabilities
 from validation.benchmarks.command import run
 
 COUNT = 4  # factors

@@ -18,20 +18,20 @@ from typing import Any
 import numpy as np
 from scipy import stats
 
-from trackroller.analysis.replicates import HEADLINES, log_b10, replicated, share
-from trackroller.study.design.factors import parse
-from trackroller.study.design.sampling import SampledDesign, sample
+from trackroller.methods import METHODS, Design
+from trackroller.methods.b10 import log_b10, share
+from trackroller.methods.factor import parse
+from trackroller.study.design.sampling import sample
 from validation.benchmarks.command import run
 from validation.benchmarks.known_indices import Function, functions
 
 COPIES = 16
 STEPS = 9
-FIRST = {"morris": 2}  # samples of a replicate at the first look, as in `trackroller.study.file.until`
 LEVELS = np.array([0.0, 1.0, 4.0])  # of the categorical function
 SHARES = (0.002, 0.015, 0.03, 0.05, 0.5)
 RARE = 0.03  # an event below this share has too few cases for a scatter to compare widths with
 WEIGHTS = np.array([1.0, 0.5, 0.25])  # of three normal factors, whose sum is log life
-Estimator = Callable[[SampledDesign], tuple[np.ndarray, np.ndarray, float]]  # values, half widths, scale of these
+Estimator = Callable[[Design], tuple[np.ndarray, np.ndarray, float]]  # values, half widths, scale of these
 
 
 def categorical(unit: np.ndarray) -> np.ndarray:
@@ -49,19 +49,19 @@ def known() -> dict[str, Function]:
     return chosen | {"category": Function(categorical, first, first + np.array([both, both, 0.0]))}
 
 
-def draw(name: str, method: str, count: int, seed: int, step: int) -> SampledDesign:
+def draw(name: str, method: str, count: int, seed: int, step: int) -> Design:
     """Draw the sample of a look; it begins with those of the looks before."""
     factors: dict[str, Any] = {f"x{i}": {"uniform": [0, 1]} for i in range(count)}
     if name == "category":
         factors["x0"] = {"values": ["a", "b", "c"]}
-    size = COPIES * FIRST.get(method, 8) << step
+    size = COPIES * METHODS[method].first_look << step
     if method == "morris":
         return trajectories(factors, size, seed)
     more: dict[str, Any] = {"saltelli": {"second_order": False}}.get(method, {})
     return sample(factors, method, size, seed, replicates=COPIES, **more)
 
 
-def trajectories(factors: dict[str, Any], size: int, seed: int) -> SampledDesign:
+def trajectories(factors: dict[str, Any], size: int, seed: int) -> Design:
     """Draw Morris trajectories of four levels with the law of `sample`, which needs 0.13 ms for each of them."""
     parsed, path = {name: parse(name, spec) for name, spec in factors.items()}, []
     for block in range(max(1, size // COPIES).bit_length()):  # so that a larger sample begins with a smaller one
@@ -77,30 +77,30 @@ def trajectories(factors: dict[str, Any], size: int, seed: int) -> SampledDesign
         moved = moves[:, None, :] < np.arange(len(parsed) + 1)[:, None]
         path.append(np.where(moved, ends[:, 1:], ends[:, :1]))
     unit = np.concatenate(path)[:size].reshape(-1, len(parsed))
-    return SampledDesign({"x0": unit[:, 0]}, parsed, "morris", unit, {"trajectories": size, "replicates": COPIES})
+    return Design({"x0": unit[:, 0]}, parsed, METHODS["morris"], unit, {"trajectories": size, "replicates": COPIES})
 
 
 def of_indices(function: Function) -> Estimator:
     """Return an estimator of the headline indices of a function."""
 
-    def estimate(design: SampledDesign) -> tuple[np.ndarray, np.ndarray, float]:
+    def estimate(design: Design) -> tuple[np.ndarray, np.ndarray, float]:
         y = function.evaluate(design.places)
-        found = replicated(y, design, design.samples)
-        names = HEADLINES[design.method]
+        found = design.method.replicated(y, design, design.samples)
+        names = design.method.narrowed
         value, high = (np.concatenate([found[name + end] for name in names]) for end in ("", "_high"))
-        return value, high - value, float(np.ptp(y)) if design.method == "morris" else 1.0
+        return value, high - value, float(np.ptp(y)) if design.method.effects else 1.0
 
     return estimate
 
 
-def of_b10(design: SampledDesign) -> tuple[np.ndarray, np.ndarray, float]:
+def of_b10(design: Design) -> tuple[np.ndarray, np.ndarray, float]:
     """Estimate log10 B10 of a life exp(z1 + z2 / 2 + z3 / 4) with normal z."""
     life = np.exp(stats.norm.ppf(design.places) @ WEIGHTS)
     value, half = log_b10(life, np.zeros(len(life)), np.arange(len(life)) % COPIES, COPIES)
     return np.array([value]), np.array([half]), 1.0
 
 
-def of_share(truth: float, design: SampledDesign) -> tuple[np.ndarray, np.ndarray, float]:
+def of_share(truth: float, design: Design) -> tuple[np.ndarray, np.ndarray, float]:
     """Estimate the probability of a life below the one that a share of all lives reaches."""
     low = stats.norm.ppf(design.places) @ WEIGHTS < stats.norm.ppf(truth) * np.sqrt((WEIGHTS**2).sum())
     value, half = share(low.astype(float), np.arange(len(low)) % COPIES, COPIES)
@@ -122,7 +122,7 @@ def mean_effects(function: Function, count: int, listed: np.ndarray) -> np.ndarr
     return found
 
 
-def stopped(estimate: Estimator, design: Callable[[int], SampledDesign], wanted: float) -> list[tuple[np.ndarray, ...]]:
+def stopped(estimate: Estimator, design: Callable[[int], Design], wanted: float) -> list[tuple[np.ndarray, ...]]:
     """Return values and half widths at each look until all intervals are narrow."""
     looks: list[tuple[np.ndarray, ...]] = []
     for step in range(STEPS):
@@ -134,7 +134,7 @@ def stopped(estimate: Estimator, design: Callable[[int], SampledDesign], wanted:
 
 
 def measured(
-    estimate: Estimator, draws: Callable[[int, int], SampledDesign], truth: np.ndarray, wanted: float, runs: int
+    estimate: Estimator, draws: Callable[[int, int], Design], truth: np.ndarray, wanted: float, runs: int
 ) -> dict[str, Any]:
     """Return coverage at stopping and relative width of each index, and the number of stops by look."""
     every = [stopped(estimate, partial(draws, seed), wanted) for seed in range(runs)]

@@ -4,7 +4,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.errors import Collector
-from trackroller.study.design.draws import table
+from trackroller.study.design.read_table import table
 from trackroller.study.file.csv import read_rows
 
 
@@ -34,7 +34,7 @@ TEXT = "axial_force [N];friction_coefficient;Größe µ\r\n10,5;0,12;groß\r\n-2
 @pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16"])
 def test_a_table_of_excel_is_read_in_each_unicode_encoding(encoding, tmp_path):
     (tmp_path / "t.csv").write_bytes(TEXT.encode(encoding))
-    columns = table(tmp_path / "t.csv")[0]
+    columns = table(tmp_path / "t.csv")
     assert columns["axial_force"].tolist() == [10.5, -20.0]
     assert columns["friction_coefficient"].tolist() == [0.12, 0.3]
     assert columns["Größe µ"].tolist() == ["groß", "klein"]

@@ -11,14 +11,15 @@ import pytest
 import xarray as xr
 from synthetic_results import results_of, view_of
 
-from trackroller.analysis.delta import delta
-from trackroller.analysis.givendata import given_data
 from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.robustness import b10, material_deviations
+from trackroller.analysis.robustness import material_deviations
 from trackroller.analysis.sensitivity import analyse
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import load_database
+from trackroller.methods.b10 import b10
+from trackroller.methods.delta import delta
+from trackroller.methods.given_data import given_data
 from trackroller.parameters import expressions
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import share
@@ -376,7 +377,7 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     )
     ds = study.design()
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
-    assert results_of(ds).design.method == "table"
+    assert results_of(ds).design.method.name == "table"
     assert "are correlated (rank correlation -1.00)" in analyse(results_of(ds)).attrs["treatment"]
 
 
@@ -388,7 +389,18 @@ def test_every_source_of_an_analysis_is_an_input_of_its_rule():
     assert {"sensitivity", "figures", "report"} <= set(rules)
     found = {rule: source_files(re.findall(r'"(trackroller[\w.]+)"', named)) for rule, named in rules.items()}
     names = {path.relative_to(root / "trackroller").as_posix() for path in found["sensitivity"]}
-    estimators = ("sobol", "indices", "givendata", "delta", "pairs", "convergence", "robustness", "stored_study")
-    assert {f"analysis/{name}.py" for name in estimators} <= names
-    assert {f"study/design/{name}.py" for name in ("arrays", "draws", "factors", "sampling")} <= names
+    estimators = (
+        "grid",
+        "sobol",
+        "saltelli",
+        "morris",
+        "arrays",
+        "inner_outer",
+        "given_data",
+        "delta",
+        "interactions",
+        "b10",
+    )
+    assert {f"methods/{name}.py" for name in (*estimators, "factor", "lhs", "convergence", "probability")} <= names
+    assert {f"analysis/{name}.py" for name in ("robustness", "stored_study")} <= names
     assert {"parameters/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names

@@ -96,7 +96,7 @@ def pareto_rows(view: StudyView, cases: int) -> np.ndarray:
     """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False without goals."""
     marked = np.zeros(cases, dtype=bool)
     goals = view.study["pareto"] or default_objectives(view.data)
-    if not goals or view.solved.design.method == "inner_outer":
+    if not goals or view.solved.design.method.points:
         return marked
     front = pareto(view.solved, goals, view.solved.config.constraints)
     marked[front["row"].values[front["optimal"].values == 1]] = True

@@ -18,6 +18,7 @@ from matplotlib.figure import Figure
 from trackroller.analysis.looks import looks_of
 from trackroller.analysis.ranking import SIGNED, SIZED, headline, order
 from trackroller.analysis.table import StudyView
+from trackroller.methods import METHODS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, with_unit
 from trackroller.report.words import indices
@@ -121,7 +122,7 @@ def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
         axes.fill_between(size, low, high, color=colour, alpha=0.15, linewidth=0)
         look = {"marker": style.MARKERS[i], "linestyle": style.LINES[i % len(style.LINES)]}
         axes.plot(size, one[f"{index}_course"], color=colour, label=capital(rank.name), **look)
-    unit = {"saltelli": "base samples", "morris": "trajectories"}.get(str(sens.attrs["method"]), "rows")
+    unit = METHODS[str(sens.attrs["method"])].samples_unit
     top = max(np.nanmax(part[f"{index}_course"].sel(factor=r.factor).values) for r in ranks)
     _doubled(axes, part["sample_size"].values, unit)
     axes.set_ylim(min(0.0, -0.1 * top), 1.35 * top)

@@ -17,6 +17,7 @@ from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import headline, robust_design
 from trackroller.analysis.table import StudyView
 from trackroller.files import write_text
+from trackroller.methods import METHODS
 from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
@@ -36,7 +37,6 @@ from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
-from trackroller.study.design.kinds import DESIGNS
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -105,6 +105,7 @@ def contents(view: StudyView) -> dict[str, Any]:
         "materials": [t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t],
         "solution": solution_facts(view),
         "used": defaultdict(str, merged),
+        "design_reference": METHODS[view.study["design"]].reference,
         "results": set(map(str, view.data.data_vars)),
         "record": inputs.record_rows(attrs, _NO_RECORD),
         "study_text": str(attrs.get("study", "")),
@@ -149,10 +150,9 @@ def _facts(view: StudyView, merged: dict[str, Any]) -> str:
     design, drawn = view.study["design"], view.solved.design
     most = "up to " if "point_samples" in drawn.meta else ""
     samples = view.study["samples"] if view.solved.config.until is None else drawn.samples
-    sampled = not DESIGNS[design].array and design not in ("table", "optimise")
     parts = [
         str(merged.get("date_created", ""))[:10],
-        f"design of experiments {plain(design)}" + f" with {most}{count(samples)} samples" * sampled,
+        f"design of experiments {plain(design)}" + f" with {most}{count(samples)} samples" * METHODS[design].sampled,
         size_words(view),
         f"contact model {_option_text(merged['contact_model'])}",
         f"accuracy {_option_text(merged['accuracy'])}",

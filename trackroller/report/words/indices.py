@@ -8,7 +8,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.labels import INDEX_WORDS, RELIABLE, factor_name
-from trackroller.analysis.ranking import SIGNED, USABLE, Rank, estimate, headline, order, used_share
+from trackroller.analysis.ranking import SIGNED, USABLE, Rank, estimate, headline, method_of, order, used_share
 from trackroller.report.numbers import capital, count, level_text, percent, plus_minus, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
@@ -236,7 +236,8 @@ def _level_table(sens: xr.Dataset) -> Table | None:
     """List the factors by their index within each level, the largest first."""
     name = "conditional_ST" if "conditional_ST" in sens else "conditional_S1"
     leading = f"Factors that matter most ({INDEX_WORDS['ST' if name.endswith('ST') else 'S1']})"
-    unit = {"saltelli": "Blocks", "grid": "Cells"}.get(str(sens.attrs.get("method")), "Rows")
+    method = method_of(sens)
+    unit = capital(method.unit if method is not None else "rows")
     rows = []
     for output in _with_index(sens, name):
         for level in sens["level"].values:

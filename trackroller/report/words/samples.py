@@ -7,17 +7,17 @@ import math
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.convergence import HALF_WIDTH
 from trackroller.analysis.looks import looks_of
 from trackroller.analysis.ranking import best_points, estimate
 from trackroller.analysis.table import StudyView
+from trackroller.methods import METHODS, Method
+from trackroller.methods.method import HALF_WIDTH
 from trackroller.parameters import REGIMES
 from trackroller.report.numbers import capital, plain, rounded
 from trackroller.report.tables.table import Table
 from trackroller.report.words.indices import of_output
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import samples_of_points, target_words
-from trackroller.study.design.kinds import DESIGNS
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import DEFAULTS
 
@@ -31,7 +31,7 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
     Parameters
     ----------
     sens : analysis
-    asked : `samples` of the study file
+    asked : `samples` of the study file, for an analysis that does not state its number of samples
 
     Returns
     -------
@@ -42,22 +42,21 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
     A half width falls as one over the root of the samples, measured by ``tests/analysis/test_enough.py``. The number is
     `asked` times a power of two, so that a Sobol sequence stays balanced.
     """
-    method = str(sens.attrs.get("method"))
-    if method == "inner_outer":
+    method, asked = METHODS[str(sens.attrs["method"])], int(sens.attrs.get("samples", asked))
+    if method.points:
         return _of_points(sens, asked)
-    if DESIGNS[method].array or "take_times" not in sens:
+    if not method.judged or "take_times" not in sens:
         return None
-    asked = 1 << max(0, asked - 1).bit_length() if method == "saltelli" else asked
     needed = {str(o): float(sens["take_times"].sel(output=o)) for o in sens["output"].values if str(o) not in REGIMES}
     needed = {name: value for name, value in needed.items() if np.isfinite(value)}
     if not needed:
         return None
     worst = max(needed, key=lambda name: (needed[name], float(sens["half_width"].sel(output=name))))
     half, times = float(sens["half_width"].sel(output=worst)), needed[worst]
-    number = int(times * (sens.attrs.get("rows", asked) if method == "table" else asked))
+    number = int(times * asked)
     values = {"point": False, "too_few": False, "output": worst, "what": f"the indices of {of_output(sens, worst)}"}
-    values |= {"apart": bool(set(map(str, sens["output"].values)) & set(REGIMES)), "table": method == "table"}
-    values |= {"share": "the largest effect" if method == "morris" else "the variance", "half": half}
+    values |= {"apart": bool(set(map(str, sens["output"].values)) & set(REGIMES)), "table": method.observed}
+    values |= {"share": "the largest effect" if method.effects else "the variance", "half": half}
     values |= {"take_times": times, "number": number, "predicted": half / math.sqrt(times)}
     return say("samples", "enough" if times <= 1 else "more", **values)
 
@@ -90,19 +89,11 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
     return say("samples", "more", **values, too_few=half <= wanted)
 
 
-HEADLINE_WORDS = {  # by design, the quantities whose intervals count
-    "sobol": "first-order indices",
-    "saltelli": "first-order and total indices",
-    "morris": "effects mu*, as shares of the output's range,",
-    "inner_outer": "log10 B10 or a probability at each design point",
-}
-
-
-def quantity_words(name: str, design: str) -> str:
+def quantity_words(name: str, method: Method) -> str:
     """Name an entry of `until.of` in words."""
-    kind, output = statistic(name) if design == "inner_outer" else ("", name)
+    kind, output = statistic(name) if method.points else ("", name)
     words = DEFAULTS[output][4] if output in DEFAULTS else plain(output)
-    if design == "inner_outer":
+    if method.points:
         return f"probability of {words}" if kind == "probability" else f"log10 B10 of the {words}"
     return words
 
@@ -112,12 +103,12 @@ def grown(view: StudyView) -> Sentence | None:
     growth = looks_of(view.solved)
     if growth is None:
         return None
-    last, design = growth["looks"][-1], view.solved.design.method
-    widths = [(quantity_words(n, design), width, last["at"][n]) for n, width in last["half_width"].items()]
+    last, method = growth["looks"][-1], view.solved.design.method
+    widths = [(quantity_words(n, method), width, last["at"][n]) for n, width in last["half_width"].items()]
     sens = view.analysis
     points = samples_of_points(sens) if sens is not None and "point_samples" in sens else ""
     facts = {name: growth[name] for name in ("half_width", "stopped", "replicates")}
-    values = {"what": HEADLINE_WORDS[design], "cases": last["cases"], "widths": widths, "points": points}
+    values = {"what": method.known_by, "cases": last["cases"], "widths": widths, "points": points}
     return say("samples", "grown", **values, **facts)
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.analysis.designs import Designs
-from trackroller.analysis.ranking import best_points, estimate, main_lives
+from trackroller.analysis.ranking import best_points, estimate, main_lives, method_of
 from trackroller.analysis.table import StudyView
 from trackroller.analysis.targets import most_apart
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90
@@ -31,7 +31,6 @@ from trackroller.study.design.levels import in_words
 
 SAME = 1e-6  # probabilities that differ by less are called the same
 INTERVAL = "95 % interval "
-WHOLE = {"grid": "cases of the grid", "table": "cases of the table"}  # designs of experiments without an interval
 
 
 def target_words(table: xr.Dataset, target: int) -> str:
@@ -44,6 +43,12 @@ def target_words(table: xr.Dataset, target: int) -> str:
     if np.isfinite(low):
         return f"{name} of at least {quantity(low, unit)}"
     return f"{name} of at most {quantity(high, unit)}" if np.isfinite(high) else name
+
+
+def _whole(table: xr.Dataset) -> str:
+    """Return the words for the rows of a design whose shares have no interval; '' for a random sample."""
+    method = method_of(table)
+    return "" if method is None else method.whole
 
 
 def target(table: xr.Dataset, number: int) -> Sentence:
@@ -65,7 +70,7 @@ def target(table: xr.Dataset, number: int) -> Sentence:
         "targets",
         "target",
         what=target_words(table, number),
-        whole="" if robust or np.isfinite(low).all() else WHOLE.get(str(table.attrs.get("method")), "cases"),
+        whole="" if robust or np.isfinite(low).all() else _whole(table) or "cases",
         many=len(share) if robust else None,
         same=bool(np.ptp(share) < SAME),
         chances=[chance(share[i], low[i], high[i], INTERVAL) for i in order],
@@ -114,7 +119,7 @@ def target_tables(table: xr.Dataset, view: StudyView) -> list[Table]:
     if "target_probability" not in table:
         return []
     targets = range(table.sizes["target"])
-    sure = "share of the cases" if WHOLE.get(str(table.attrs.get("method"))) else "95 % interval"
+    sure = "share of the cases" if _whole(table) else "95 % interval"
     heads = [f"{capital(target_words(table, t))} ({sure})" for t in targets]
     said = [target(table, t).text for t in targets]
     said.append("A case that is not valid, or has no value, misses every target.")

@@ -14,12 +14,14 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.materials.database import FRICTION
+from trackroller.methods import METHODS, Design
+from trackroller.methods.factor import parse, readable
+from trackroller.methods.method import study_keys
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.fields import own_frictions
-from trackroller.study.design.factors import parse, readable
 from trackroller.study.design.roles import scattered
-from trackroller.study.design.sampling import SampledDesign, sample
+from trackroller.study.design.sampling import sample
 from trackroller.study.design.stored import stored
 
 if TYPE_CHECKING:
@@ -43,7 +45,7 @@ def case_columns(known: Any) -> tuple[str, ...]:
     return (*PARAMETERS, *MATERIAL_FIELDS, *(name for name in MAPPING_FIELDS if name in known))
 
 
-def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tuple[int, ...] = ()) -> SampledDesign:
+def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tuple[int, ...] = ()) -> Design:
     """Draw the design of a study.
 
     Parameters
@@ -55,26 +57,26 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tupl
 
     Returns
     -------
-    SampledDesign, see `trackroller.study.design.sampling.sample`
+    Design, see `trackroller.study.design.sampling.sample`
 
     Raises
     ------
     InputError : as `sample`; an option that the design does not have; too many cases
     """
-    names = ("second_order", "levels", "inner", "rank_correlations")
+    names = (*study_keys(), "rank_correlations")
     options = {name: value for name in names if (value := getattr(config, name)) not in (None, ())}
     if config.until is not None:
         options["replicates"] = config.until.replicates
     if len(set(grown)) > 1:
         options["point_samples"] = grown
-    if config.design == "table":
+    method = METHODS[config.design]
+    if config.table is not None:
         options["table"] = str(table)
-    if config.design == "saltelli" and config.analysis.groups:
+    if "groups" in method.takes and config.analysis.groups:
         options["groups"] = config.analysis.groups
-    if config.design == "optimise":
+    if method.proposes:
         options["conditions"] = scattered({name: parse(name, spec) for name, spec in factors.items()}, config.roles)
         options["population"] = config.budget.generation
-        options["table"] = None if config.table is None else str(table)
     base = {k: v for k, v in config.values.items() if isinstance(v, float)}
     samples = max(grown, default=config.samples)
     design = sample(factors, config.design, samples, config.seed, base=base, **options)
@@ -83,7 +85,7 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tupl
     return design
 
 
-def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase) -> xr.Dataset:
+def build(config: StudyFile, design: Design, materials: MaterialDatabase) -> xr.Dataset:
     """Build the dataset of cases of a study.
 
     Parameters
@@ -117,7 +119,7 @@ def build(config: StudyFile, design: SampledDesign, materials: MaterialDatabase)
 
 
 def _columns(
-    config: StudyFile, design: SampledDesign, n: int, materials: MaterialDatabase
+    config: StudyFile, design: Design, n: int, materials: MaterialDatabase
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Return every case field and further factor as a column of n values, and the attribute of `_friction`."""
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}

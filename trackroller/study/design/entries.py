@@ -8,12 +8,12 @@ from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.methods.factor import LISTS, parse
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
-from trackroller.study.design.factors import LISTS, parse
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 OPTION_FACTORS = {option.name: option.values for option in OPTIONS.values() if option.factor}

@@ -23,7 +23,7 @@ def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:
     study : the study
     unsure : design points of an inner/outer design that grow; by default all
     """
-    if study.config.design != "inner_outer":
+    if not study.drawn.method.points:
         return dataclasses.replace(study, grown=(2 * study.samples,))
     sizes = [rows.stop - rows.start for rows in study.drawn.points]
     sizes = [2 * size if unsure is None or point in unsure else size for point, size in enumerate(sizes)]

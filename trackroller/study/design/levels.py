@@ -11,8 +11,8 @@ import zlib
 from collections.abc import Mapping
 from typing import Any
 
+from trackroller.methods.factor import label
 from trackroller.parameters import MAPPING_FIELDS, MECHANICAL_MAPPINGS
-from trackroller.study.design.factors import label
 
 OF_MATERIALS = ("material_pair", "roller_material", "guide_material")
 NAMED = ("motor_force", "guide_curve_radius", *OF_MATERIALS)  # factors whose levels have names

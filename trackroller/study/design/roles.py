@@ -9,9 +9,10 @@ from collections.abc import Iterable, Mapping
 from typing import Any
 
 from trackroller.errors import InputError, collected, unknown_name
+from trackroller.methods import METHODS
+from trackroller.methods.factor import Factor
 from trackroller.parameters import ROLE_OF, ROLES, expressions
 from trackroller.study.design.entries import OPTION_FACTORS, choice
-from trackroller.study.design.factors import Factor
 
 
 def check_words(value: Any) -> Any:
@@ -40,12 +41,12 @@ def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: st
         if name not in factors:
             raise unknown_name(where, name, [n for n in factors if n not in OPTION_FACTORS])
         factor = factors[name]
-        if design != "inner_outer" or factor.kind == "expression" or (role == "condition") == factor.scatter:
+        if not METHODS[design].points or factor.kind == "expression" or (role == "condition") == factor.scatter:
             continue
         if factor.scatter:
             allowed = "condition: the factor scatters in the inner array"
             raise InputError(where, role, allowed, "Give it as a list of values, or remove the line.")
-        allowed = "choice: the lists of inner_outer are design points"
+        allowed = f"choice: the lists of {design} are design points"
         raise InputError(where, role, allowed, f"Write scatter: true beside the list of factors.{name}.")
 
 
@@ -85,7 +86,7 @@ def roles_of(
         if name in given:
             return given[name]
         known = factors.get(name)
-        if design == "inner_outer" and known is not None and known.kind != "expression":
+        if design and METHODS[design].points and known is not None and known.kind != "expression":
             return "condition" if known.scatter else "choice"
         if name in ROLE_OF:
             return ROLE_OF[name]

@@ -1,105 +1,27 @@
 """From the factors of a study to the rows of a design.
 
-Every method first draws quantiles in the unit cube (SALib, scipy.stats.qmc) or a classical design in coded units.
-It then maps them through the distribution of each factor, so that every method takes every factor. The values of a
-list are equally likely in random samples (lhs, sobol, saltelli), unless they have weights. In Morris trajectories they
-are random pairs of different values, and in response-surface designs they are crossed with all other rows.
+A method of `trackroller.methods` first draws places: quantiles in the unit cube, codes of a classical design, or
+indices of listed values. The places are then mapped through the distribution of each factor, so that every method takes
+every factor. The values of a list are equally likely in random samples (lhs, sobol, saltelli), unless they have
+weights. In Morris trajectories they are random pairs of different values, and in response-surface designs they are
+crossed with all other rows.
 """
 
 from __future__ import annotations
 
 import graphlib
-import itertools
 from collections.abc import Mapping
-from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
 
 from trackroller.errors import InputError, check_names, unknown_name
+from trackroller.methods import METHODS, Design, those_that_take, those_with
+from trackroller.methods.factor import Factor, parse
+from trackroller.methods.grid import MAX_ROWS
+from trackroller.methods.table import of_columns
 from trackroller.parameters import PARAMETERS, expressions
-from trackroller.study.design.draws import DRAW, MAX_ROWS, table
-from trackroller.study.design.factors import TAIL, Factor, parse
-from trackroller.study.design.kinds import DESIGNS, those_that_take, those_with
-
-
-def is_random(factor: Factor, method: str) -> bool:
-    """Return whether a design draws the values of a factor at random."""
-    return DESIGNS[method].weighs or (method == "inner_outer" and factor.scatter)
-
-
-def values_at(factor: Factor, places: np.ndarray, method: str) -> np.ndarray:
-    """Return the values of a factor at its places in a design, a column of `SampledDesign.unit`, shape (n,)."""
-    coded = DESIGNS[method].coded
-    if factor.discrete and method != "plackett_burman" and not is_random(factor, method):
-        return factor.take(places)
-    tail = TAIL if coded or method == "morris" else 0.0
-    return factor.from_unit((places + 1) / 2 if coded else places, tail)
-
-
-@dataclass(frozen=True)
-class SampledDesign:
-    """The rows of a design and the facts that an analysis needs.
-
-    Parameters
-    ----------
-    columns : every factor, derived ones included: name -> shape (n,), float, or object for categories
-    factors : the independent factors by name; indices are given for them
-    method : one of `DESIGNS`
-    unit : shape (n, number of factors) [1]: quantiles; codes -1..1 in classical designs; the index of the
-        listed value for a list in a grid, an inner/outer array or a Morris design
-    meta : numbers of the method (base_samples, second_order, levels, shape, inner_samples, ...)
-    """
-
-    columns: dict[str, np.ndarray]
-    factors: dict[str, Factor]
-    method: str
-    unit: np.ndarray
-    meta: dict[str, Any] = field(default_factory=dict)
-
-    @property
-    def size(self) -> int:
-        """Return the number of rows."""
-        return len(next(iter(self.columns.values()))) if self.columns else 0
-
-    @property
-    def places(self) -> np.ndarray:
-        """Return `unit` with the index of the listed value for every list, also in random samples."""
-        places = self.unit.copy()
-        for j, factor in enumerate(self.factors.values()):
-            if factor.discrete and is_random(factor, self.method):
-                places[:, j] = factor.bin(self.unit[:, j])
-        return places
-
-    @property
-    def ordered(self) -> np.ndarray:
-        """Return for which factors more and less mean something, shape (number of factors,)."""
-        return np.array([f.ordered for f in self.factors.values()], dtype=bool)
-
-    @property
-    def listed(self) -> np.ndarray:
-        """Return which factors enter `unit` as list indices, shape (number of factors,)."""
-        values = [f.discrete and self.method != "plackett_burman" for f in self.factors.values()]
-        return np.array(values, dtype=bool)
-
-    @property
-    def samples(self) -> int:
-        """Return the number of base samples, trajectories, samples of the largest design point, or rows."""
-        counts = (self.meta[key] for key in ("base_samples", "trajectories", "inner_samples") if key in self.meta)
-        return int(next(counts, self.size))
-
-    @property
-    def points(self) -> list[slice]:
-        """Return the rows of each design point of an inner/outer array."""
-        sizes = self.meta.get("point_samples") or [self.meta["inner_samples"]] * self.meta["design_points"]
-        return [slice(end - size, end) for size, end in zip(sizes, itertools.accumulate(sizes), strict=True)]
-
-    def blocks(self, values: np.ndarray) -> np.ndarray:
-        """Return the values (n,) of a Saltelli design by base sample, shape (base samples, rows of a base sample).
-
-        The first row of a base sample is its row of A, and the last one its row of B.
-        """
-        return values.reshape(int(self.meta["base_samples"]), -1)
+from trackroller.study.design.read_table import genes, table
 
 
 def sample(
@@ -110,13 +32,13 @@ def sample(
     *,
     base: Mapping[str, Any] | None = None,
     **options: Any,
-) -> SampledDesign:
+) -> Design:
     """Draw a design.
 
     Parameters
     ----------
-    factors : name -> dictionary as described in `trackroller.study.design.factors`
-    method : one of `DESIGNS`
+    factors : name -> dictionary as described in `trackroller.methods.factor`
+    method : one of `METHODS`
     n : rows (lhs, sobol), trajectories (morris), base samples (saltelli, rounded up to a power of two; the design has
         n (2 k + 2) rows, or n (k + 2) without second order), samples per design point (inner_outer). The other
         methods have their own number
@@ -126,23 +48,24 @@ def sample(
         together; the design has n (2 g + 2) or n (g + 2) rows for g groups, single factors included), levels (morris,
         default 4), table (path of the CSV), inner (inner_outer: sobol, the default, or lhs), point_samples
         (inner_outer: samples of each design point),
-        rank_correlations (lhs, sobol, inner_outer: see `trackroller.study.design.correlation`), conditions and
+        rank_correlations (lhs, sobol, inner_outer: see `trackroller.methods.correlation`), conditions and
         population (optimise: factors that are no choices, and designs of the first generation), table (optimise: CSV
         of the genes of the designs instead), replicates (independent samples of n / replicates each, which
         take turns: sample i belongs to replicate i % replicates)
 
     Returns
     -------
-    SampledDesign. Factors with a single value are columns but not independent factors.
+    Design. Factors with a single value are columns but not independent factors.
 
     Raises
     ------
     InputError : unknown method or option, a factor the method cannot take, a value outside its bounds
     """
-    settings = _settings(method, options)
-    if method == "table":
+    settings, drawn_by = _settings(method, options), METHODS[method]
+    if drawn_by.observed:
         used = {name for spec in factors.values() for name in expressions.names(spec.get("expression", "0"))}
-        columns, free, unit = table(settings["table"], used)
+        columns = table(settings["table"], used)
+        free, unit = of_columns(columns)
         meta: dict[str, Any] = {}
         parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
         for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
@@ -151,13 +74,15 @@ def sample(
     else:
         parsed = {name: parse(name, spec) for name, spec in factors.items()}
         free = {k: f for k, f in parsed.items() if f.varies}
-        if not free and method != "grid":
+        if not free and not drawn_by.crossed:
             raise InputError("factors", list(factors), "at least one factor must vary")
         _check_weights(free, method)
-        if not DESIGNS[method].array and int(n) < 1:
+        if drawn_by.sampled and int(n) < 1:
             raise InputError("samples", n, "a whole number >= 1")
-        unit, meta = DRAW[method](free, int(n), int(seed), settings)
-        columns = {name: values_at(f, unit[:, j], method) for j, (name, f) in enumerate(free.items())}
+        if drawn_by.proposes and settings["table"] is not None:
+            settings["genes"] = genes(settings["table"])
+        unit, meta = drawn_by.draw(free, int(n), int(seed), settings)
+        columns = {name: drawn_by.values(f, unit[:, j]) for j, (name, f) in enumerate(free.items())}
     rows = len(unit)
     if rows > MAX_ROWS:
         raise InputError("design", method, f"at most {MAX_ROWS} rows")
@@ -170,12 +95,12 @@ def sample(
     _check_bounds(columns, parsed)
     if settings.get("replicates", 1) > 1:
         meta["replicates"] = settings["replicates"]
-    return SampledDesign(columns, free, method, unit, meta | {"seed": int(seed)})
+    return Design(columns, free, drawn_by, unit, meta | {"seed": int(seed)})
 
 
 def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
-    check_names("design", [method], DESIGNS)
-    settings = DESIGNS[method].takes
+    check_names("design", [method], METHODS)
+    settings = METHODS[method].defaults
     for key in options.keys() - settings.keys():
         if having := those_that_take(key):
             raise InputError(key, options[key], f"an option of design {' and '.join(having)}", "Remove the key.")
@@ -185,10 +110,10 @@ def _settings(method: str, options: Mapping[str, Any]) -> dict[str, Any]:
 
 def _check_weights(free: Mapping[str, Factor], method: str) -> None:
     """Refuse weights in a design that does not draw the values of a list at random."""
-    drawing, outer = those_with("weighs"), method == "inner_outer"
+    drawing, outer = those_with("weighs"), METHODS[method].points
     for name, factor in free.items():
-        if factor.weights and not is_random(factor, method):
-            where = "the outer array of inner_outer" if outer else f"design {method}"
+        if factor.weights and not METHODS[method].random(factor):
+            where = f"the outer array of {method}" if outer else f"design {method}"
             known = f"a design that draws values at random ({', '.join(drawing)})"
             remedy = f"Remove the weights, or {'add scatter: true' if outer else f'choose design {drawing[0]}'}."
             allowed = f"{known}; {where} takes each value equally often"

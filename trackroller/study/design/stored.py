@@ -15,16 +15,16 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.study.design.draws import of_columns
-from trackroller.study.design.factors import Factor
-from trackroller.study.design.kinds import DESIGNS
-from trackroller.study.design.sampling import SampledDesign, values_at
+from trackroller.methods import METHODS, Design
+from trackroller.methods.factor import Factor
+from trackroller.methods.grid import cells
+from trackroller.methods.table import of_columns
 from trackroller.study.outputs import flat
 
 PLACE, FACTOR, META = "design_place", "design_factor", "design_meta"
 
 
-def stored(design: SampledDesign) -> tuple[dict[str, Any], dict[str, Any]]:
+def stored(design: Design) -> tuple[dict[str, Any], dict[str, Any]]:
     """Return the coordinates and attributes that hold a design.
 
     Parameters
@@ -36,15 +36,15 @@ def stored(design: SampledDesign) -> tuple[dict[str, Any], dict[str, Any]]:
     Coordinates along `case`, and attributes, for an xarray.Dataset.
     """
     meta = {"columns": list(design.columns), "size": design.size, **design.meta}
-    attrs = {"design": design.method, META: json.dumps(meta)}
-    if DESIGNS[design.method].follows:
+    attrs = {"design": design.method.name, META: json.dumps(meta)}
+    if design.method.follows:
         return {}, attrs
     words = {"long_name": "place in the design: quantile, code, or number of the listed value", "units": "1"}
     names = np.array(list(design.factors), dtype=object)
     return {PLACE: (("case", FACTOR), design.unit, words), FACTOR: (FACTOR, names, {"long_name": "factor"})}, attrs
 
 
-def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]) -> SampledDesign:
+def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]) -> Design:
     """Return the design that a data set of cases holds.
 
     Parameters
@@ -55,35 +55,36 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
 
     Returns
     -------
-    SampledDesign, equal to the one that was stored
+    Design, equal to the one that was stored
 
     Raises
     ------
     InputError : the design is missing, or rows and factors are not those of the study file
     """
-    method, meta = str(ds.attrs.get("design", "")), json.loads(ds.attrs.get(META, "null"))
+    known, meta = str(ds.attrs.get("design", "")), json.loads(ds.attrs.get(META, "null"))
     remedy = "Rows and study file do not belong together. Run the study again."
-    if not method or meta is None:
+    if known not in METHODS or meta is None:
         raise InputError("study", sorted(map(str, ds.attrs)), f"results with the attributes design and {META}", remedy)
+    method = METHODS[known]
     names, size = meta.pop("columns"), meta.pop("size")
     rows = int(np.prod([ds.sizes[d] for d in dims]))
     if rows != max(size, 1):
-        raise InputError("study", f"{rows} rows", f"the {size} rows of its design {method}", "Gather the study again.")
-    if method == "table":
+        raise InputError("study", f"{rows} rows", f"the {size} rows of its design {known}", "Gather the study again.")
+    if method.observed:
         columns = {name: _column(ds, name, dims) for name in names}
         free, unit = of_columns({name: values for name, values in columns.items() if name not in parsed})
-        return SampledDesign(columns, free, method, unit, meta)
+        return Design(columns, free, method, unit, meta)
     free = {name: factor for name, factor in parsed.items() if factor.varies}
-    if method == "grid":
-        unit = np.indices(meta["shape"]).reshape(len(free), rows).T.astype(float)
+    if method.crossed:
+        unit = cells(meta["shape"])
     else:
         unit = flat(ds, PLACE, dims)
         if [str(name) for name in ds[FACTOR].values] != list(free):
             raise InputError("study", list(map(str, ds[FACTOR].values)), f"the factors {', '.join(free)}", remedy)
-    drawn = {name: values_at(factor, unit[:, j], method) for j, (name, factor) in enumerate(free.items())}
+    drawn = {name: method.values(factor, unit[:, j]) for j, (name, factor) in enumerate(free.items())}
     for name, values in drawn.items():
-        known = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
-        if known and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
+        number = name in ds.variables and free[name].ordered and ds[name].dtype.kind in "fiu"
+        if number and not np.allclose(flat(ds, name, dims), values, rtol=1e-6, atol=1e-12):
             raise InputError("study", name, "the values of its design", remedy)
     columns = {}
     for name in names:
@@ -91,25 +92,25 @@ def restored(ds: xr.Dataset, parsed: Mapping[str, Factor], dims: tuple[str, ...]
             columns[name] = _column(ds, name, dims)
         else:
             columns[name] = drawn[name] if name in drawn else parsed[name].take(np.zeros(rows))
-    return SampledDesign(columns, free, method, unit, meta)
+    return Design(columns, free, method, unit, meta)
 
 
-def solved_part(design: SampledDesign, rows: np.ndarray) -> SampledDesign:
+def solved_part(design: Design, rows: np.ndarray) -> Design:
     """Return the design of some rows: a smaller random sample, otherwise a table, which needs no structure.
 
     Parameters
     ----------
-    design : SampledDesign
+    design : Design
         The whole design.
     rows : numpy.ndarray of int, shape (n,)
         Rows to keep.
     """
     columns = {name: values[rows] for name, values in design.columns.items()}
-    if design.method in ("lhs", "sobol"):
+    if design.method.subset:
         meta = {key: value for key, value in design.meta.items() if key != "replicates"}  # they are not complete
-        return SampledDesign(columns, design.factors, design.method, design.unit[rows], meta)
+        return Design(columns, design.factors, design.method, design.unit[rows], meta)
     free, unit = of_columns({name: columns[name] for name in design.factors})
-    return SampledDesign(columns, free, "table", unit, {"rank_correlations": ()})
+    return Design(columns, free, METHODS["table"], unit, {"rank_correlations": ()})
 
 
 def _column(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> np.ndarray:

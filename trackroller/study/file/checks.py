@@ -10,17 +10,18 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import Collector, InputError, listing, raise_all, unknown_name
+from trackroller.methods import those_with
+from trackroller.methods.correlation import copula
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.accuracy import accuracy_settings
 from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
-from trackroller.study.design.correlation import check_design, copula
-from trackroller.study.design.draws import check_listed, table_lines
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
-from trackroller.study.design.kinds import DESIGNS, those_with
+from trackroller.study.design.read_table import table_lines
 from trackroller.study.design.roles import check_roles
+from trackroller.study.file.correlations import check_design
 from trackroller.study.file.csv import column_names, read_rows
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
@@ -29,7 +30,7 @@ from trackroller.study.file.until import check_first_look, check_until
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
-    from trackroller.study.design.factors import Factor
+    from trackroller.methods.factor import Factor
 
 
 MOST_LEVELS = 12
@@ -79,12 +80,11 @@ def cross_check(study: Study) -> None:
     if doubled := set(config.base) & set(study.factors):
         name = min(doubled)
         raise InputError(f"base.{name}", config.base[name], f"{name} is a factor too", "Remove one of them.")
-    if config.design != "optimise" and (config.design == "table") != (config.table is not None):
+    if not config.method.proposes and config.method.observed != (config.table is not None):
         remedy = "Write 'design: table' too." if config.table else "Write 'table: cases.csv' too, with your file."
         raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
-    if config.design == "grid":
-        check_listed(study.parsed)
-    if config.design == "optimise" and (several := [n for n in OPTION_FACTORS if n in study.factors]):
+    config.method.check(study.parsed)
+    if config.method.proposes and (several := [n for n in OPTION_FACTORS if n in study.factors]):
         raise InputError(several[0], study.factors[several[0]]["values"], "one model: a search compares designs")
     for name in study.factors:
         check_own_name(name, f"factors.{name}")
@@ -103,7 +103,7 @@ def cross_check(study: Study) -> None:
 def _check_roles(study: Study) -> None:
     config = study.config
     if config.roles:
-        check_roles(config.roles, study.parsed if config.design != "table" else study.drawn.columns, config.design)
+        check_roles(config.roles, study.drawn.columns if config.method.observed else study.parsed, config.design)
 
 
 def _check_parts(study: Study) -> None:
@@ -112,7 +112,7 @@ def _check_parts(study: Study) -> None:
     groups, category = config.analysis.groups, config.analysis.conditional_on
     if not groups and category is None:
         return
-    free = study.drawn.factors if config.design == "table" else {n: f for n, f in study.parsed.items() if f.varies}
+    free = study.drawn.factors if config.method.observed else {n: f for n, f in study.parsed.items() if f.varies}
     if groups:
         _check_groups(config, groups, free, study.factors)
     if category is not None:
@@ -123,7 +123,7 @@ def _check_groups(
     config: Any, groups: Mapping[str, tuple[str, ...]], free: Mapping[str, Factor], specs: Mapping[str, Any]
 ) -> None:
     names, seen = list(free), set()
-    if not DESIGNS[config.design].grouped:
+    if not config.method.grouped:
         allowed = f"design {listing(those_with('grouped'), 'or')}, not {config.design}"
         raise InputError("analysis.groups", list(groups), allowed, "Take design: saltelli.")
     for group, members in groups.items():
@@ -144,8 +144,8 @@ def _check_groups(
 
 def _check_category(config: Any, name: str, free: Mapping[str, Factor]) -> None:
     where = "analysis.conditional_on"
-    by_group = config.design == "saltelli" and bool(config.analysis.groups)
-    if not DESIGNS[config.design].conditional or by_group:
+    by_group = "groups" in config.method.takes and bool(config.analysis.groups)
+    if not config.method.conditional or by_group:
         own = f"{config.design} with analysis.groups" if by_group else config.design
         raise InputError(where, name, f"design {listing(those_with('conditional'), 'or')}, not {own}")
     if name not in free:
@@ -161,7 +161,7 @@ def _check_correlations(study: Study) -> None:
     config = study.config
     check_design(config.rank_correlations, config.design)
     random = {n: f for n, f in study.parsed.items() if f.kind != "expression"}
-    copula(config.rank_correlations, {n: f for n, f in random.items() if f.scatter or config.design != "inner_outer"})
+    copula(config.rank_correlations, {n: f for n, f in random.items() if config.method.random(f)})
 
 
 def _check_materials(study: Study) -> None:
@@ -237,10 +237,10 @@ def check_geometry(study: Study) -> None:
     tables are checked on the whole design before anything is solved.
     """
     config = study.config
-    if config.design == "table" or any(factor.kind == "expression" for factor in study.parsed.values()):
+    if config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values()):
         design = study.design()
         problems = list(geometry_problems({name: design[name].values for name in _GEOMETRY}))
-        if problems and config.design == "table":
+        if problems and config.method.observed:
             lines = table_lines(study.table_path)
             raise_all(problem.at(study.table_path, lines[row]) for row, problem in problems)
         problem = problems[0][1] if problems else None

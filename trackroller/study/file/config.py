@@ -4,19 +4,20 @@ from __future__ import annotations
 
 import re
 from functools import partial
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
 
 from trackroller.errors import InputError, collected
+from trackroller.methods import METHODS, Method
+from trackroller.methods.method import study_keys
 from trackroller.parameters import OPTIONS
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.stop import parse_condition
-from trackroller.study.design.correlation import check_entries
 from trackroller.study.design.entries import base_value, choice, factor
-from trackroller.study.design.kinds import METHODS
 from trackroller.study.design.roles import check_words
+from trackroller.study.file.correlations import check_entries
 from trackroller.study.file.goals import Analysis, comparisons, directions
 from trackroller.study.file.search import Budget
 from trackroller.study.file.until import Until
@@ -66,11 +67,6 @@ class _Design(BaseModel):
     table: str | None = Field(
         None, description="for design table: CSV file or workbook (.xlsx) of cases beside the study file"
     )
-    second_order: bool | None = Field(None, description="saltelli: also the second-order indices")
-    levels: int | None = Field(None, description="morris: number of levels")
-    inner: Literal["lhs", "sobol"] | None = Field(
-        None, description="inner_outer: how the inner array is sampled; default sobol"
-    )
     rank_correlations: Correlations = Field(
         (), description="lhs, sobol, inner_outer: [factor, factor, Spearman rank correlation] each"
     )
@@ -88,10 +84,19 @@ _TYPES: dict[str, Any] = {
     "condition": str | None,
     "switch": bool,
 }
+WHOLE = tuple(name for name, (key, _) in study_keys().items() if key.kind is int)  # keys with a whole number
 IN_STUDY = tuple(option for option in OPTIONS.values() if "study" in option.files)
+_WithKeys = create_model(
+    "_WithKeys",
+    __base__=_Design,
+    **{  # type: ignore[call-overload]
+        name: (key.kind | None, Field(None, description=f"{method}: {key.meaning}"))
+        for name, (key, method) in study_keys().items()
+    },
+)
 _WithOptions = create_model(
     "_WithOptions",
-    __base__=_Design,
+    __base__=_WithKeys,
     **{  # type: ignore[call-overload]
         option.name: (
             str | tuple[str, ...] if option.factor else _TYPES.get(option.kind, str),
@@ -124,6 +129,11 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     chunk_size: int | None = Field(None, ge=1, le=1_000_000, description="cases in each job; chosen if not given")
 
     @property
+    def method(self) -> Method:
+        """Return the design of experiments."""
+        return METHODS[self.design]
+
+    @property
     def values(self) -> dict[str, Any]:
         """Return the values that all cases share: those of `not_given`, and those of `base`."""
         return {**self.not_given, **self.base}
@@ -143,7 +153,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
             parse_condition(checked)
         return checked
 
-    @field_validator("samples", "seed", "chunk_size", "levels", mode="before")
+    @field_validator("samples", "seed", "chunk_size", *WHOLE, mode="before")
     @classmethod
     def _whole(cls, value: Any, info: Any) -> Any:
         for one in value if isinstance(value, (list, tuple)) else (value,):

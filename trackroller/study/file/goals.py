@@ -24,13 +24,12 @@ from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSche
 
 from trackroller.damage import judged
 from trackroller.errors import InputError, collected, listing, raise_all, unknown_name
+from trackroller.methods.factor import Factor
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity, without_units
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.study.design.entries import choice
-from trackroller.study.design.factors import Factor
-from trackroller.study.design.kinds import DESIGNS
 from trackroller.study.outputs import DEFAULTS, FIELDS
 
 SCALES = ("natural", "log10")
@@ -200,7 +199,7 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
     wanted = config.analysis.material_scatter
     if wanted is False:
         return
-    if config.design != "inner_outer":
+    if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."
         raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)
     asked = config.analysis.outputs or [f"{body}_life_cycles" for body in materials if "life" in config.outputs]
@@ -220,12 +219,12 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
     known = output_names(config.outputs)
     check_analysed(config)
-    if config.analysis.target and not DESIGNS[config.design].weighted:
+    if config.analysis.target and not config.method.weighted:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
         raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
     free = [*known, *factors, *PARAMETERS]
     _check_statistics(config, factors, known)
-    for name in config.pareto if config.design != "inner_outer" else ():
+    for name in config.pareto if not config.method.points else ():
         if name not in free:
             raise unknown_result("pareto", name, free, config.outputs)
         if name in factors and not factors[name].numeric:
@@ -253,10 +252,10 @@ def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[st
     chosen = [name for name, factor in factors.items() if factor.discrete and factor.numeric and not factor.scatter]
     for name in config.pareto:
         kind, output = statistic(name)
-        if config.design != "inner_outer" and kind:
+        if not config.method.points and kind:
             remedy = "Name the result itself, or use design: inner_outer."
             raise InputError("pareto", name, "a result or factor; statistics need design points", remedy)
-        if config.design != "inner_outer" or name in chosen:
+        if not config.method.points or name in chosen:
             continue
         if not kind:
             allowed = f"{', '.join(STATISTICS)} of a result, or a numeric factor with a list: it compares design points"

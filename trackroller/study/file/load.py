@@ -114,14 +114,14 @@ def complete(study: Study) -> Study:
     """Return a study whose key `not_given` holds the value of every parameter that it does not name."""
     config = study.config
     names = {*config.base, *study.factors}
-    if config.design == "table" and config.table is not None:
+    if config.method.observed and config.table is not None:
         names.update(column_names(study.table_path, "table"))
     if any(at_rest(law) is not None for law in study.friction_laws if law):
         names.add("friction_coefficient")  # the first value of the table
     values = not_given(names) | {name: value for name, value in config.not_given.items() if name not in names}
     update: dict[str, Any] = {"not_given": values}
     if config.until is not None and "samples" not in config.model_fields_set:
-        update["samples"] = config.until.first_look(config.design)
+        update["samples"] = config.until.replicates * config.method.first_look
     return replace(study, config=config.model_copy(update=update))
 
 
@@ -143,7 +143,7 @@ def parse_study(
         with wrong.part():
             cross_check(study)
         with wrong.part():
-            if study.config.design == "table" and study.config.table and not planned:
+            if study.config.method.observed and study.config.table and not planned:
                 check_cells(study)
         wrong.check()
         if not planned:

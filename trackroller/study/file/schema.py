@@ -6,11 +6,11 @@ import json
 from pathlib import Path
 from typing import Any
 
+from trackroller.methods import METHODS
+from trackroller.methods.factor import DISTRIBUTIONS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.parameters.options import QUANTITIES
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.factors import DISTRIBUTIONS
-from trackroller.study.design.kinds import METHODS
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 
 FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.schema.json"

@@ -13,8 +13,8 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field
 
 from trackroller.errors import InputError
+from trackroller.methods.factor import Factor
 from trackroller.parameters import PARAMETERS
-from trackroller.study.design.factors import Factor
 from trackroller.study.design.roles import scattered
 from trackroller.study.file.goals import STATISTICS_OF, check_statistic, output_names, statistic
 
@@ -48,7 +48,7 @@ def judged_by(goal: str) -> tuple[str, str]:
 
 def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check the goals of a search, and refuse them in every other design."""
-    if config.design != "optimise":
+    if not config.method.proposes:
         if config.goals:
             remedy = "Use design: optimise, or name the goals under pareto."
             raise InputError("goals", config.design, "design: optimise", remedy)

@@ -12,18 +12,18 @@ import numpy as np
 
 from trackroller.files import Reads
 from trackroller.materials import MaterialDatabase, load_database
+from trackroller.methods.factor import Factor, parse
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.doubts import doubts
 from trackroller.study.design import build
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.factors import Factor, parse
 from trackroller.study.file.config import IN_STUDY, StudyFile
 from trackroller.yaml_file import write_yaml
 
 if TYPE_CHECKING:
     import xarray as xr
 
-    from trackroller.study.design.sampling import SampledDesign
+    from trackroller.methods import Design
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class Study:
         return write_yaml(self.as_dict())  # kept: planning, solving and gathering ask for it several times
 
     @cached_property
-    def drawn(self) -> SampledDesign:
+    def drawn(self) -> Design:
         """Return the drawn design; it is kept, because reading a CSV of a million cases takes seconds."""
         return build.draw(self.config, self.factors, self.table_path, self.grown)
 

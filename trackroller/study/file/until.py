@@ -10,12 +10,9 @@ from typing import Any
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from trackroller.errors import InputError, listing
+from trackroller.methods import METHODS, those_with
 from trackroller.parameters import REGIMES
-from trackroller.study.design.kinds import DESIGNS, those_with
 from trackroller.study.file.goals import output_names, statistic, unknown_result
-
-FIRST_LOOK = {"morris": 2}  # samples of a replicate at the first look, unless the study file names `samples`
-USUAL_FIRST_LOOK = 8
 
 
 class Until(BaseModel):
@@ -44,10 +41,6 @@ class Until(BaseModel):
             return tuple(dict.fromkeys(name.replace(" ", "") for name in listed))
         raise InputError("until.of", value, "a list of at least one output", "For example of: [roller_life_hours].")
 
-    def first_look(self, design: str) -> int:
-        """Return the number of samples of the first look."""
-        return self.replicates * FIRST_LOOK.get(design, USUAL_FIRST_LOOK)
-
 
 def check_until(config: Any) -> None:
     """Check that the design of a study can grow, and that the outputs of `until` have a headline quantity."""
@@ -55,12 +48,12 @@ def check_until(config: Any) -> None:
     if until is None:
         return
     for key, drawn in (("design", config.design), ("inner", config.inner)):
-        if drawn is not None and not DESIGNS[drawn].grows:
+        if drawn is not None and not METHODS[drawn].grows:
             allowed = f"with until: {listing(those_with('grows'), 'or')}, which grow by more samples"
             allowed = allowed if key == "design" else "with until: sobol, whose rows stay as the sample grows"
-            remedy = f"Write {key}: sobol" if DESIGNS[drawn].weighs else "Choose one of them"
+            remedy = f"Write {key}: sobol" if METHODS[drawn].weighs else "Choose one of them"
             raise InputError(key, drawn, allowed, f"{remedy}, or remove until.")
-    if config.design == "saltelli" and config.analysis.groups:
+    if "groups" in config.method.takes and config.analysis.groups:
         groups = list(config.analysis.groups)
         raise InputError("analysis.groups", groups, "with until: indices of single factors", "Remove groups or until.")
     each, rest = divmod(config.samples, until.replicates)
@@ -74,7 +67,7 @@ def check_until(config: Any) -> None:
 
 def _check_of(config: Any, name: str, known: list[str]) -> None:
     """Check one entry of `until.of`."""
-    points = config.design == "inner_outer"
+    points = config.method.points
     kind, output = statistic(name) if points else ("", name)
     if kind == "probability" and output in (*config.analysis.target, *REGIMES):
         return

@@ -9,11 +9,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.materials.database import FRICTION
+from trackroller.methods import Design
+from trackroller.methods.factor import Factor, readable
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.record import MATERIALS, materials_of_design
-from trackroller.study.design.factors import Factor, readable
-from trackroller.study.design.sampling import SampledDesign
 from trackroller.study.design.stored import FACTOR, META, PLACE
 from trackroller.study.store import provenance
 
@@ -23,14 +23,14 @@ if TYPE_CHECKING:
 Variables = dict[Hashable, tuple[tuple[Hashable, ...], np.ndarray, dict[str, Any], dict[str, Any]]]
 
 
-def labelled(study: Study, drawn: SampledDesign, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
+def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset) -> xr.Dataset:
     """Return the data set of a solved study.
 
     Parameters
     ----------
     study : Study
         The study.
-    drawn : SampledDesign
+    drawn : Design
         Its design.
     cases : xarray.Dataset
         Its n cases, as `Study.design` returns them.
@@ -44,7 +44,7 @@ def labelled(study: Study, drawn: SampledDesign, cases: xr.Dataset, solved: xr.D
         Results with parameters, factors and the places of the design as coordinates. The attributes hold what is needed
         to repeat the study, and the study file itself.
     """
-    grid = drawn.factors if drawn.method == "grid" else {}
+    grid = drawn.factors if drawn.method.crossed else {}
     shape = drawn.meta["shape"] if grid else (cases.sizes["case"],)
     sizes = dict(zip(grid or ("case",), shape, strict=True))
     unstacked = {

@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.files import sha256
+from trackroller.methods import METHODS
 from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
 from trackroller.study.design.build import case_columns
@@ -180,7 +181,7 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
         Index of each case of the design in `found.states`; -1 for a case that is not solved.
     """
     solved = found.states.sizes["case"]
-    if study.config.design == "optimise" or study.config.until is not None:  # each step is a design of its own
+    if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
     if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
         return ""
@@ -188,15 +189,22 @@ def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.
     earlier = before.get("factors", {})
     added = [name for name in study.config.factors if name not in earlier]
     why = f": {' and '.join(added)} became a factor" if earlier and added else ""
-    if why and study.config.design != "grid":
+    if why and not study.config.method.crossed:
         remedy = (
             f"A {study.config.design} design with another factor is drawn anew. To keep both, give it another name."
         )
     elif why:
         remedy = "The old value of a new factor must be one of its levels to keep them."
-    elif (drawn := study.config.inner or study.config.design) == "lhs" and before.get("samples") != study.samples:
-        why, remedy = ": lhs draws each number of samples anew", "Design sobol keeps its rows when its samples grow."
+    elif not _keeps_rows(study) and before.get("samples") != study.samples:
+        why = f": {study.config.inner or study.config.design} draws each number of samples anew"
+        remedy = "Design sobol keeps its rows when its samples grow."
     return f"{unused} solved cases of the earlier design are not in this one{why}. {remedy}"
+
+
+def _keeps_rows(study: Study) -> bool:
+    """Return whether a larger sample begins with the rows of a smaller one; True for a design without samples."""
+    method = METHODS[study.config.inner or study.config.design]
+    return method.grows or not method.sampled
 
 
 def _split(rows: np.ndarray, size: int) -> list[np.ndarray]:

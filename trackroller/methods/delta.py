@@ -33,7 +33,7 @@ from typing import NamedTuple
 import numpy as np
 from scipy.stats import norm
 
-from trackroller.analysis.indices import Z
+from trackroller.methods.intervals import Z
 
 FEW = 10  # a column with at most so many different values is a list: nothing is smoothed along it
 CELLS_X, CELLS_Y = 64, 96  # of ranks

@@ -7,10 +7,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from trackroller.analysis.indices import Estimates
-
-HALF_WIDTH = 0.05  # a share of variance whose 95 % interval has at most this half width counts as converged
-HALF_WIDTH_MORRIS = 0.15  # the same for mu*, relative to the largest mu*
+from trackroller.methods.method import Estimates
 
 
 def sizes(total: int, smallest: int = 16, points: int = 7) -> np.ndarray:

@@ -6,65 +6,18 @@ The copula changes which values meet in a row. The distribution of each factor s
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any
 
 import numpy as np
 from scipy.special import ndtr, ndtri
 
-from trackroller.errors import InputError, listing, unknown_name
-from trackroller.study.design.factors import Factor
-from trackroller.study.design.kinds import those_that_take
+from trackroller.errors import InputError, unknown_name
+from trackroller.methods.factor import Factor
+from trackroller.methods.method import Design
 
 KEY = "rank_correlations"
 SMALLEST = 1e-6  # eigenvalue of the correlation matrix below which it does not count as positive definite
 Entry = tuple[str, str, float]
-TAKE = "Take design lhs: first and delta allow correlation."
-REFUSALS = {
-    "saltelli": f"Sobol indices need independent factors. {TAKE}",
-    "morris": f"Elementary effects change one factor at a time. {TAKE}",
-    "table": "Remove the key: the rows of the table have their own correlation.",
-}
-REFUSAL = "This design has fixed combinations of values. Take design lhs."
-
-
-def check_entries(value: Any) -> tuple[Entry, ...]:
-    """Check the key `rank_correlations` of a study file.
-
-    Parameters
-    ----------
-    value : list of [factor, factor, rank correlation]
-
-    Returns
-    -------
-    The entries, each (factor, factor, rank correlation [1]).
-
-    Raises
-    ------
-    InputError : an entry has another form, or a pair stands twice
-    """
-    example = "For example [[radial_force, axial_force, 0.6]]."
-    if not isinstance(value, (list, tuple)):
-        raise InputError(KEY, value, "a list of [factor, factor, rank correlation]", example)
-    entries: dict[frozenset[str], Entry] = {}
-    for entry in value:
-        good = isinstance(entry, (list, tuple)) and len(entry) == 3 and all(isinstance(n, str) for n in entry[:2])
-        if not good or entry[0] == entry[1]:
-            raise InputError(KEY, entry, "[factor, factor, rank correlation] with two different factors", example)
-        rho = entry[2]
-        if isinstance(rho, bool) or not isinstance(rho, (int, float)) or not -1 < rho < 1:
-            raise InputError(KEY, list(entry), "a rank correlation (Spearman) above -1 and below 1")
-        if frozenset(entry[:2]) in entries:
-            raise InputError(KEY, list(entry), "each pair of factors once", "Remove one of the entries.")
-        entries[frozenset(entry[:2])] = (entry[0], entry[1], float(rho))
-    return tuple(entries.values())
-
-
-def check_design(entries: Sequence[Entry], method: str) -> None:
-    """Refuse rank correlations in a design that cannot have them; the message says what to take instead."""
-    having = those_that_take(KEY)
-    if entries and method not in having:
-        allowed = f"design {listing(having, 'or')}, not {method}"
-        raise InputError(KEY, [list(e) for e in entries], allowed, REFUSALS.get(method, REFUSAL))
+CORRELATED = 0.5  # rank correlation of two columns of a table above which the result warns
 
 
 def copula(entries: Sequence[Entry], factors: Mapping[str, Factor]) -> np.ndarray | None:
@@ -72,7 +25,7 @@ def copula(entries: Sequence[Entry], factors: Mapping[str, Factor]) -> np.ndarra
 
     Parameters
     ----------
-    entries : see `check_entries`; a pair that is not listed has no correlation
+    entries : (factor, factor, Spearman rank correlation [1]); a pair that is not listed has no correlation
     factors : the factors of the random sample by name
 
     Returns
@@ -161,3 +114,26 @@ def correlate(unit: np.ndarray, root: np.ndarray | None, strata: bool) -> np.nda
 
 def _normal(unit: np.ndarray) -> np.ndarray:
     return np.asarray(ndtri(np.clip(unit, 1e-15, 1 - 1e-15)))
+
+
+def correlated_pairs(design: Design) -> list[tuple[str, str, float]]:
+    """Return the pairs of factors that are correlated.
+
+    Parameters
+    ----------
+    design : the design
+
+    Returns
+    -------
+    (factor, factor, rank correlation [1]): the pairs of the study file, or the pair of columns of a table with the
+    largest correlation above 0.5. The factors of every other design are independent.
+    """
+    if not design.method.observed or len(design.factors) < 2:
+        return [(one, other, rho) for one, other, rho in design.meta.get("rank_correlations", ()) if rho]
+    from scipy.stats import rankdata  # heavy, and drawing does not need it
+
+    names = list(design.factors)
+    table = np.atleast_2d(np.corrcoef(rankdata(design.unit, axis=0), rowvar=False))
+    pairs = [(names[j], names[i], float(table[i, j])) for i in range(len(names)) for j in range(i)]
+    strongest = max(pairs, key=lambda pair: abs(pair[2]))
+    return [strongest] if abs(strongest[2]) >= CORRELATED else []

@@ -1,4 +1,6 @@
-"""Multi-objective evolution over mixed factors: real, ordered lists (integers) and categories.
+"""Search for the best designs by multi-objective evolution over mixed factors.
+
+Factors are real numbers, ordered lists (integers) or categories.
 
 Every generation follows from the seed, its number and the results of all earlier generations alone. A search that was
 stopped is therefore replayed from stored results, without a stored state of the search.
@@ -21,6 +23,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from trackroller.errors import InputError
+from trackroller.methods.grid import Grid
+from trackroller.methods.method import METHODS, Drawn, Factors, Method, Settings, crossed, in_order
+
 CROSSOVER, MUTATION = 5.0, 10.0  # distribution indices: larger ones keep children nearer to their parents
 CROSSED = 0.9  # share of the children that mix two parents
 ROUNDS = 30  # attempts to find children that are new
@@ -38,6 +44,45 @@ class Gene:
 
     levels: int = 0
     ordered: bool = True
+
+
+class Optimise(Method):
+    """Designs of a search, each at all conditions: lists of conditions in a grid, and `samples` rows of the others."""
+
+    name = "optimise"
+    takes = {"conditions": (), "population": 32, "genes": None, "table": None}
+    weighted = proposes = True
+    judged = ()
+
+    def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
+        """Return quantiles or indices of choices and conditions.
+
+        `conditions` are the factors that are no choices. `genes` are the designs, shape (designs, choices), by default
+        a first generation of `population` designs.
+        """
+        choices = {name: f for name, f in free.items() if name not in settings["conditions"]}
+        inner = {name: f for name, f in free.items() if name not in choices}
+        if not choices:
+            remedy = "Give a choice two values or a range, or write roles: {NAME: choice}."
+            raise InputError("factors", list(free), "at least one choice of the designer that varies", remedy)
+        for name, f in choices.items():
+            if not f.discrete and f.kind not in ("uniform", "loguniform"):
+                raise InputError(f"factors.{name}", f.kind, "a list, uniform or loguniform: the range of a search")
+        genes = settings["genes"]
+        if genes is None:
+            genes = first_generation(genes_of(choices), settings["population"], seed)
+        listed, drawn = ({name: f for name, f in inner.items() if f.discrete is discrete} for discrete in (True, False))
+        plain = {"rank_correlations": (), "replicates": 1}
+        sample = METHODS["sobol"].draw(drawn, n, seed, plain)[0] if drawn else np.zeros((1, 0))
+        conditions = crossed(Grid().draw(listed, 0, 0, {})[0], sample)
+        unit = in_order(crossed(genes, conditions), [*choices, *listed, *drawn], free)
+        meta = {"design_points": len(genes), "inner_samples": len(conditions)}
+        return unit, meta | {"outer": list(choices), "inner": list(inner)}
+
+
+def genes_of(choices: Factors) -> list[Gene]:
+    """Return the kind of each choice."""
+    return [Gene(len(f.levels), f.ordered) for f in choices.values()]
 
 
 def nondominated_ranks(costs: np.ndarray, violation: np.ndarray, enough: int | None = None) -> np.ndarray:
@@ -136,7 +181,7 @@ def next_generation(
     for attempt in range(ROUNDS):
         # a lower index stands for a better parent: of two drawn ones, the better one has children
         mother, father = (parents[rng.integers(0, len(parents), (2, count)).min(axis=0)] for _ in range(2))
-        drawn = _mutated(_crossed(mother, father, genes, rng), genes, rng)
+        drawn = _mutated(_mixed(mother, father, genes, rng), genes, rng)
         if attempt > ROUNDS // 2:
             drawn = _snapped(rng.random(drawn.shape) * [max(g.levels, 1) for g in genes], genes)
         children = np.concatenate([children, _new(drawn, np.concatenate([known, children]), count - len(children))])
@@ -145,7 +190,7 @@ def next_generation(
     return children
 
 
-def _crossed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
+def _mixed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
     """Mix the genes of two parents."""
     out = mother.copy()
     mixed = rng.random(len(out)) < CROSSED

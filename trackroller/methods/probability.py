@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from scipy import stats
 
-from trackroller.analysis.pairs import held_out, orthonormal
+from trackroller.methods.interactions import held_out, orthonormal
 
 # degrees of the polynomials of each factor; the one with the smallest residuals at held-out rows counts
 DEGREES = (12, 8, 5, 3, 2, 1)
@@ -33,9 +33,10 @@ def probabilities(
 
     A stratified sample removes the part of the variance that is a sum of functions of the single factors [2]_. This
     function fits such a sum, and takes var(p) as the variance of the residuals at held-out rows, divided by n. A Sobol
-    sample whose number of rows is no power of two has empty strata; their share of the removed part counts again. Few events (or few
-    non-events) support a fit badly. The effective number of samples is therefore at most n times the smaller of the
-    numbers of events and non-events. ``validation/benchmarks/probability_intervals.py`` measures the coverage.
+    sample whose number of rows is no power of two has empty strata; their share of the removed part counts again. Few
+    events (or few non-events) support a fit badly. The effective number of samples is therefore at most n times the
+    smaller of the numbers of events and non-events. ``validation/benchmarks/probability_intervals.py`` measures the
+    coverage.
 
     References
     ----------

@@ -1,6 +1,9 @@
 """Sensitivity measures from given data: valid for any sample of independent factors, also where cases failed.
 
-First-order shares of variance, delta with the level that chance alone reaches, partial rank correlations.
+First-order shares of variance, delta with the level that chance alone reaches, partial rank correlations. Of a sample
+with independent replicates, the first-order index is the sum of squares of c_m = E[y phi_m(x)] over orthonormal
+functions phi_m. Its estimate multiplies coefficients of different replicates only, which makes it free of bias (a
+U-statistic, Hoeffding (1948), Ann. Math. Statist. 19, 293-325).
 """
 
 from __future__ import annotations
@@ -9,13 +12,18 @@ import numpy as np
 from SALib.analyze import rbd_fast
 from scipy.stats import rankdata
 
-from trackroller.analysis.delta import delta
-from trackroller.analysis.indices import Estimates, Z, constant
+from trackroller.methods import convergence
+from trackroller.methods.delta import delta
+from trackroller.methods.interactions import pairs
+from trackroller.methods.intervals import Z, constant
+from trackroller.methods.method import Design, Estimated, Estimates, spread
+from trackroller.methods.replicates import wide
 
 MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
 HARMONICS, ROWS_PER_HARMONIC = 10, 16  # of RBD-FAST: SALib's number, fewer for small samples
 FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_ROWS have a rare value
+ROWS_PER_COSINE, COSINES = 32, (4, 64)  # of a factor, for replicates: fewest and most cosines
 MEASURES = {
     "first": ("first", "first_low", "first_high"),
     "delta": ("delta", "delta_low", "delta_high", "delta_noise"),
@@ -189,3 +197,102 @@ def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarr
         middle = np.arctanh(np.clip(value[j], -1 + 1e-12, 1 - 1e-12))
         low[j], high[j] = np.tanh(middle - half), np.tanh(middle + half)
     return value, low, high
+
+
+def measures(y: np.ndarray, design: Design, tied: bool) -> Estimated:
+    """Return the measures of a sample, the course of its first-order shares, and its interactions.
+
+    Parameters
+    ----------
+    y : output, shape (n,), NaN where unusable
+    design : the rows
+    tied : whether factors are correlated, so that no interactions can be given
+    """
+    ordered, places = design.ordered, design.places
+    out = given_data(y, places, ordered)
+    if len(design.factors) > 1 and not tied:
+        out |= pairs(y, places, ordered)
+    at = convergence.sizes(len(y), smallest=64)
+
+    def part(n: int) -> Estimates:
+        every = max(1, len(y) // n)  # the first rows of a table may be sorted, so take every so many rows
+        return firsts(y[::every], places[::every], ordered)
+
+    out |= convergence.course(part, at, out, ("first",))
+    return Estimated(out, int(out.pop("rows_used")), len(y), at)
+
+
+def firsts_within(y: np.ndarray, design: Design, place: int, inside: np.ndarray) -> Estimates:
+    """Return the first-order shares of all other factors among the rows `inside` a level of a category."""
+    rows = inside & np.isfinite(y)
+    shares = firsts(y[rows], np.delete(design.places[rows], place, axis=1), np.delete(design.ordered, place))
+    out: Estimates = {"conditional_rows": np.array(rows.sum())}
+    return out | {f"conditional_S1{end}": spread(shares[f"first{end}"], place) for end in ("", "_low", "_high")}
+
+
+def first_indices(
+    y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, member: np.ndarray, copies: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """Estimate the first-order share of variance of each factor from products of different replicates.
+
+    Parameters
+    ----------
+    y : output, shape (n,), NaN where unusable
+    unit : quantiles or list indices, shape (n, k)
+    ordered : for which factors more and less mean something, shape (k,)
+    member : replicate of each row, shape (n,)
+    copies : number of replicates
+
+    Returns
+    -------
+    Var(E[y | x_j]) / V and the half width of its 95 % interval, each of shape (k,). NaN for a factor that does not
+    vary, and if a replicate has fewer than two usable rows.
+
+    Notes
+    -----
+    The functions of a continuous factor are cosines of its rank, up to one for each `ROWS_PER_COSINE` rows; those of
+    a list mark its values. The variance of the U-statistic is that of its projections (rows of the kernel) and of the
+    remainder; a plain jackknife would count the remainder twice for an inert factor.
+    """
+    good = np.isfinite(y)
+    y, unit, member = y[good], unit[good], member[good]
+    value, half = np.full(unit.shape[1], np.nan), np.full(unit.shape[1], np.nan)
+    size = np.bincount(member, minlength=copies).astype(float)
+    if (size < 2).any() or constant(y):
+        return value, half
+    y = y - y.mean()
+    spread = np.bincount(member, y * y, copies) / size
+    whole = float(spread.mean())
+    for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
+        functions = _functions(unit[:, j], bool(ordered[j]))
+        means = np.stack([np.bincount(member, y * phi, copies) for phi in functions], axis=1) / size[:, None]
+        kernel = means @ means.T / whole
+        value[j] = kernel[~np.eye(copies, dtype=bool)].mean()
+        kernel -= value[j] * (spread[:, None] + spread) / (2 * whole)  # the variance is estimated, too
+        half[j] = wide(copies) * _deviation(kernel)
+    return value, half
+
+
+def _functions(x: np.ndarray, ordered: bool) -> np.ndarray:
+    """Return orthonormal functions of a factor at its rows, shape (functions, n)."""
+    values, group = np.unique(x, return_inverse=True)
+    if not ordered or 2 * len(values) <= len(x):
+        share = np.bincount(group) / len(x)
+        marks = group == np.arange(len(values))[:, None]
+        return np.asarray((marks - share[:, None]) / np.sqrt(share[:, None]))
+    count = int(np.clip(len(x) // ROWS_PER_COSINE, *COSINES))
+    place = (rankdata(x) - 0.5) / len(x)
+    return np.asarray(np.sqrt(2) * np.cos(np.pi * np.arange(1, count + 1)[:, None] * place))
+
+
+def _deviation(kernel: np.ndarray) -> float:
+    """Return the standard deviation of the mean of a symmetric kernel over pairs of different replicates."""
+    count = len(kernel)
+    off = ~np.eye(count, dtype=bool)
+    rows = np.where(off, kernel, 0.0).sum(axis=1) / (count - 1)
+    effect = (count - 1) / (count - 2) * (rows - rows.mean())
+    rest = (kernel - rows.mean() - effect[:, None] - effect)[off]
+    remainder = (rest**2).sum() / (count * (count - 3))
+    jackknifed = 4 * (count - 1) / (count * (count - 2) ** 2) * ((rows - rows.mean()) ** 2).sum()
+    least = 2 * remainder / (count * (count - 1))
+    return float(np.sqrt(max(jackknifed - 4 * remainder / (count * (count - 2)) + least, least)))

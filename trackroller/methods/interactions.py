@@ -22,7 +22,8 @@ from typing import NamedTuple
 import numpy as np
 from scipy.linalg import lapack
 
-from trackroller.analysis.indices import Estimates, Z, constant
+from trackroller.methods.intervals import Z, constant
+from trackroller.methods.method import Estimates
 
 TRUSTED = 0.8  # share of variance that a fit must predict
 # Degrees of a factor alone and in a product. Each pair contains the next one; the best prediction wins.

@@ -1,0 +1,99 @@
+"""Read the user's own cases, and the designs of a search, from a CSV file or workbook."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Collection, Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trackroller.errors import Collector, InputError, nearest, unknown_name
+from trackroller.methods.factor import column
+from trackroller.numerics.numbers import read_number
+from trackroller.parameters import PARAMETERS
+from trackroller.roller.aliases import AXIS_DISTANCE, RADII
+from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
+from trackroller.study.file.csv import read_rows
+
+
+def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
+    """Read the user's own cases from a CSV file.
+
+    Parameters
+    ----------
+    path : CSV or workbook with one named column a factor
+    used : names that expressions use
+
+    Returns
+    -------
+    Columns: name -> values, shape (n,).
+
+    Raises
+    ------
+    InputError : no such file, a line of another length, an empty cell, or a text where a number is wanted
+    """
+    wrong = Collector()
+    names, head, lines = read_rows(Path(path), "table", "case", wrong, most=math.inf)
+    with wrong.part():
+        _check_names(names, used, path, head)
+    columns = {}
+    for j, name in enumerate(names):
+        cells = {number: line[j] for number, line in lines.items()}
+        numbers = _numbers_of(name, cells)
+        columns[name] = _cells_of(name, cells, path, wrong) if numbers is None else numbers
+    wrong.check()
+    return columns
+
+
+def genes(path: Any) -> np.ndarray:
+    """Read the designs of a search, one row of genes each, shape (designs, choices)."""
+    lines = read_rows(Path(path), "table", "design", Collector(), most=math.inf).lines
+    return np.array([[read_number(cell) for cell in line] for line in lines.values()])
+
+
+def table_lines(path: Path) -> list[int]:
+    """Return the number of the line of each case of a table."""
+    return list(read_rows(path, "table", "case", Collector(), most=math.inf).lines)
+
+
+def _check_names(names: list[str], used: Collection[str], path: Any, head: int) -> None:
+    """Refuse further columns of a table that look like a misspelt name, and a table with further columns only."""
+    own, wrong = [name for name in names if name not in FACTOR_NAMES and name not in used], Collector()
+    for name in own:
+        with wrong.part():
+            check_own_name(name, "table column")
+            if name in RADII:
+                remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
+                raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
+            if nearest(name, FACTOR_NAMES) or len(own) == len(names):
+                raise unknown_name("table column", name, FACTOR_NAMES)
+    for error in wrong.errors:
+        error.at(path, head)
+    wrong.check()
+
+
+def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:
+    """Return a column of plain numbers that its parameter allows, None for any other column."""
+    if name in FACTOR_NAMES and name not in PARAMETERS:
+        return None
+    try:
+        numbers = np.array([read_number(cell) for cell in cells.values()], dtype=float)
+    except ValueError:
+        return None
+    return numbers if name not in PARAMETERS or PARAMETERS[name].accepts(numbers).all() else None
+
+
+def _cells_of(name: str, cells: Mapping[int, str], path: Any, wrong: Collector) -> np.ndarray:
+    """Return a column with words, units or wrong cells; each wrong cell adds an error."""
+    values: list[Any] = []
+    for number, cell in cells.items():
+        try:
+            if not cell:
+                raise InputError(name, cell, "a value; the cell is empty", "Fill the cell, or remove the line.")
+            pair = [part.strip() for part in cell.split("/")] if name == "material_pair" else cell
+            values.append(field_value(name, pair, name) if name in FACTOR_NAMES else cell)
+        except InputError as error:
+            wrong.errors += [one.at(path, number) for one in error.errors]
+    return column(values, name in PARAMETERS and not any(isinstance(value, str) for value in values))
