@@ -1,0 +1,79 @@
+"""A design of experiments from outside: the example of CONTRIBUTING is registered, run, analysed and removed."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import fake_solver
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.analysis.growing import grow_study
+from trackroller.analysis.looks import looks_of
+from trackroller.app.fields import all_fields
+from trackroller.methods import METHODS, Method, register
+
+RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
+STUDY = {
+    "name": "numbers",
+    "design": "halton",
+    "samples": 64,
+    "factors": {
+        "axial_force": {"uniform": [20, 50]},
+        "friction_coefficient": {"uniform": [0.1, 0.3]},
+        "motor_force": {"values": [0, -10], "weights": [3, 1]},
+    },
+    "outputs": ["forces"],
+    "contact_model": "sliding",
+    "accuracy": "preview",
+}
+
+
+@pytest.fixture
+def halton():
+    text = RECIPE.read_text(encoding="utf-8")
+    code = re.search(r"## Add a method.*?```python\n(.*?)```", text, re.DOTALL)[1]
+    assert len(code.splitlines()) < 30
+    exec(compile(code, str(RECIPE), "exec"), {})
+    yield "halton"
+    del METHODS["halton"]
+    with pytest.raises(tr.InputError, match="halton"):
+        tr.load_study(STUDY)
+
+
+def test_a_study_with_the_method_of_the_recipe_is_drawn_analysed_and_reported(halton, tmp_path):
+    study = tr.load_study(STUDY)
+    half = tr.load_study(STUDY | {"samples": 32}).drawn
+    assert np.array_equal(study.drawn.unit[:32], half.unit) and study.drawn.size == 64
+    assert (study.drawn.columns["motor_force"] == -10).mean() == pytest.approx(0.25, abs=0.05)
+    solved = tr.run(STUDY, progress=False)
+    share = solved.indices().sel(output="normal_force_1")["first"]
+    assert float(share.sel(factor="axial_force")) > 0.8 and solved.indices().attrs["method"] == halton
+    page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "design of experiments halton with 64 samples" in page and "Halton (1960)" in page
+    assert np.array_equal(tr.open_study(solved.data).design.unit, study.drawn.unit)
+
+
+def test_the_method_of_the_recipe_grows(halton, tmp_path):
+    until = {"half_width": 0.05, "of": ["normal_force_1"], "at_most": 4096}
+    study = tr.load_study({key: value for key, value in STUDY.items() if key != "samples"} | {"until": until})
+    assert study.drawn.size == 128
+    solved = tr.open_study(grow_study(study, tmp_path, solver=fake_solver.solve).folder.root)
+    assert "narrower than ± 0.05" in looks_of(solved)["stopped"] and solved.design.samples > 128
+
+
+def test_everything_else_follows_from_the_class(halton):
+    assert halton in all_fields()["designs"]
+    with pytest.raises(tr.InputError, match=r"groups.*not halton"):
+        tr.load_study(STUDY | {"analysis": {"groups": {"load": ["axial_force"]}}})
+    with pytest.raises(tr.InputError, match=r"rank_correlations.*not halton"):
+        tr.load_study(STUDY | {"rank_correlations": [["axial_force", "friction_coefficient", 0.5]]})
+    with pytest.raises(tr.InputError, match=r"levels = 6.*an option of design morris"):
+        tr.load_study(STUDY | {"levels": 6}).design()
+
+
+def test_names_are_unique():
+    with pytest.raises(tr.InputError, match="no other design of experiments"):
+        register(type("Grid", (Method,), {"name": "grid"}))
