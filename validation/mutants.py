@@ -132,7 +132,7 @@ DECISIONS = {
     "missing-case": ("study/store/gather.py", "(place < 0).sum()", "(place < -1).sum()", STORE),
     "not-positive": ("study/outputs.py", "int((values <= 0).sum())", "int((values < -1e300).sum())", ANALYSED),
     "share-of-rolling": ("study/outputs.py", "if i and (regime == i)", "if (regime == i)", ANALYSED),
-    "strata": ("methods/lhs.py", "strata=True)", "strata=False)", SAMPLED),
+    "strata": ("methods/lhs.py", ".random(n)", ".random(n + 1)[:n]", SAMPLED),
     "level-codes": (
         "report/explorer/pack.py",
         "len(column.levels) < np.iinfo",
