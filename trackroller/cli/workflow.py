@@ -140,7 +140,17 @@ def captions(study: Study, folder: StudyFolder) -> dict[str, str]:
     drawn = json.loads(index.read_text(encoding="utf-8")) if index.is_file() else []
     texts = {"report": f"Study {study.name}: {study.config.description or 'no description'}"}
     texts |= {item["name"]: f"{item['sentence']} {item['caption']}".strip() for item in drawn}
-    return {name: re.sub(r"([*`|_\\])", r"\\\1", text) for name, text in texts.items()}
+    return {name: _as_paragraph(text) for name, text in texts.items()}
+
+
+def _as_paragraph(text: str) -> str:
+    """Return a user's text as one paragraph of reStructuredText without markup, directives and links.
+
+    A directive such as `.. include::` needs a line of its own, and every markup needs a punctuation mark. So all white
+    space becomes single spaces, and each mark is escaped.
+    """
+    words = " ".join("".join(c if c.isprintable() or c.isspace() else "?" for c in text).split())
+    return re.sub(r"([^\w\s]|_)", r"\\\1", words)
 
 
 def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
