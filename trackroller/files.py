@@ -6,6 +6,7 @@ import codecs
 import contextlib
 import errno
 import hashlib
+import math
 import os
 import shutil
 import signal
@@ -24,10 +25,36 @@ import portalocker
 from trackroller.errors import InputError, WorkError
 
 LOCK = {True: portalocker.LockFlags.SHARED, False: portalocker.LockFlags.EXCLUSIVE}
+MATERIALS = "TRACKROLLER_MATERIALS"  # the environment variable that names a materials file anywhere
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
 Reads = dict[Path, tuple[str, str]]  # kind and SHA-256 of each file that was read
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
 _noted: ContextVar[Reads | None] = ContextVar("noted", default=None)
+_confined: list[Path] = []  # what this process may read and write; everything if empty
+
+
+def confine(folder: Path) -> None:
+    """Let this process read users' files and write files below one folder only, and read the user's materials.
+
+    Links are followed before the check, so a link that leads out of the folder is refused.
+    """
+    materials = os.environ.get(MATERIALS)
+    _confined[:] = [folder.resolve(), *([Path(os.path.expanduser(materials)).resolve()] if materials else [])]
+
+
+def _check_confined(path: Path, what: str) -> None:
+    """Refuse a path outside the folder that `confine` names."""
+    if _confined and not any(path.resolve().is_relative_to(place) for place in _confined):
+        allowed = f"a file below {_confined[0]}; this path or a link in it leads out of this folder"
+        raise InputError(what, str(path), allowed, "Copy the file into the folder.")
+
+
+def refuse_links(root: Path, what: str) -> None:
+    """Refuse a folder that is a link or holds one, at any depth: the link may lead to files of other people."""
+    for place, folders, names in os.walk(root):
+        for path in (Path(place), *(Path(place, name) for name in (*folders, *names))):
+            if path.is_symlink():
+                raise InputError(what, str(path), "a file or folder of this place; this is a link", "Remove the link.")
 
 
 @contextmanager
@@ -46,6 +73,7 @@ def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
     """Return the content of a user's file, see `read_text`, and note its digest for `noted_reads`."""
     path = Path(path)
     try:
+        _check_confined(path, what)
         if path.is_dir():
             raise InputError(what, str(path), "a file; this is a folder", "Give the path of a file.")
         if path.exists() and not path.is_file():
@@ -169,6 +197,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     WorkError
         If the operating system or the netCDF library cannot write.
     """
+    _check_confined(path.parent, "file to write")
     beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
@@ -195,6 +224,18 @@ def write_text(path: Path, text: str) -> None:
     write_whole(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
+def write_private(path: Path, text: str) -> None:
+    """Write a text file that only its owner can read, whatever file stood there; see `write_whole`."""
+
+    def write(beside: Path) -> None:
+        beside.unlink(missing_ok=True)
+        handle = os.open(beside, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with open(handle, "w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+
+    write_whole(path, write)
+
+
 @contextmanager
 def whole_folder(path: Path) -> Iterator[Path]:
     """Yield an empty folder that takes the place of `path` at the end; two processes may do so at once.
@@ -209,6 +250,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
     WorkError
         If the folder cannot be written.
     """
+    _check_confined(path.parent, "folder to write")
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent) as scratch:
         new, old = Path(scratch, "new"), Path(scratch, "old")
@@ -304,6 +346,14 @@ def sha256(path: Path) -> str:
 def cores() -> int:
     """Return the number of processors that this process may use; of the machine where the system does not say."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def memory() -> float:
+    """Return the memory of this machine [bytes]; infinite where the system does not say."""
+    try:
+        return float(os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE"))
+    except (AttributeError, ValueError, OSError):
+        return math.inf
 
 
 def try_lock(stream: IO[bytes], shared: bool = False) -> bool:

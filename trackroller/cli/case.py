@@ -177,11 +177,11 @@ def run_wear(
     target, page = None if out is None else writable(out), None if report is None else writable_page(report)
     new, options, _ = case_of(case, settings)
     tell_doubts(new)
-    import xarray as xr  # heavy
 
     from trackroller.report.pages.wear import write_wear
     from trackroller.report.words.wear import sentences
     from trackroller.roller.wear import wear
+    from trackroller.study.store.seal import read_netcdf
 
     def tell(dataset: xr.Dataset, goal: float) -> None:
         if target is not None:
@@ -193,8 +193,7 @@ def run_wear(
 
     before = None
     if target is not None and target.exists():
-        with xr.open_dataset(target) as stored:
-            before = stored.load()
+        before = read_netcdf(target, "--out", "Give another file: a run goes on from what the file holds.")
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)

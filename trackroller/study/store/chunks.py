@@ -16,10 +16,11 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from trackroller.files import write_whole
+from trackroller.files import memory, write_whole
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
 from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.seal import too_large
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
@@ -85,10 +86,14 @@ def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     Raise `CorruptFile` if the file was altered or holds other cases than its name says: the name of a chunk and of its
     list is the hash of their cases.
     """
+    if path.stat().st_size > memory():
+        raise CorruptFile(path, "it is larger than the memory")
     content = path.read_bytes()
     if hashlib.sha256(content[:-32]).digest() != content[-32:]:
         raise CorruptFile(path, "its content does not fit its checksum")
     with netCDF4.Dataset(path.name, memory=content[:-32]) as file:
+        if excess := too_large(file, len(content)):
+            raise CorruptFile(path, excess)
         file.set_auto_mask(False)
         cases: np.ndarray = np.ascontiguousarray(file["case"][:]).view("S32").reshape(-1)
         if chunk_name(cases) != path.stem:

@@ -1,0 +1,104 @@
+"""A small netCDF file that declares thousands of millions of values is refused in one line, and takes no memory."""
+
+from __future__ import annotations
+
+import hashlib
+import resource
+
+import fake_solver
+import netCDF4
+import numpy as np
+import pytest
+import xarray as xr
+from command_line import trackroller
+
+import trackroller as tr
+from trackroller.errors import InputError
+from trackroller.study.file.load import load_study
+from trackroller.study.run import run_study
+from trackroller.study.store import chunks, seal
+
+MANY = 4_000_000_000
+KINDS = {
+    "contiguous": {"contiguous": True},
+    "packed": {"zlib": True},
+    "bytes": {"datatype": "i1"},
+    "texts": {"datatype": str},
+}
+
+
+def write_bomb(path, kind="packed", dimensions=("case",), variable="peak_stress", size=MANY):
+    """Write a netCDF file of some kB that declares many values."""
+    with netCDF4.Dataset(path, "w") as file:
+        for name in dimensions:
+            file.createDimension(name, round(size ** (1 / len(dimensions))))
+        settings = {"datatype": "f8", **KINDS[kind]}
+        file.createVariable(variable, settings.pop("datatype"), dimensions, **settings)
+        file.study = "name: bomb\nfactors: {axial_force: {values: [1, 2]}}\n"
+        file.title = "a result"
+    assert path.stat().st_size < 100_000
+    return path
+
+
+@pytest.fixture(autouse=True)
+def little_memory():
+    """Let an attempt to read the values fail at once."""
+    before = resource.getrlimit(resource.RLIMIT_AS)
+    resource.setrlimit(resource.RLIMIT_AS, (12_000_000_000, before[1]))
+    yield
+    resource.setrlimit(resource.RLIMIT_AS, before)
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_every_reader_refuses_it(tmp_path, kind):
+    path = write_bomb(tmp_path / "study.nc", kind)
+    write_bomb(tmp_path / "sensitivity.nc", kind)
+    for read in (seal.read_result, tr.open_study, lambda path: tr.open_study(path.parent)):
+        with pytest.raises(InputError, match="4,000,000,000 values") as caught:
+            read(path)
+        assert len(str(caught.value).splitlines()) == 1
+
+
+@pytest.mark.parametrize("dimensions", [("case",), ("y", "x"), ("a", "b", "c", "d")])
+def test_a_coordinate_or_a_field_of_many_values_is_refused(tmp_path, dimensions):
+    path = write_bomb(tmp_path / "study.nc", dimensions=dimensions, variable=dimensions[0])
+    with pytest.raises(InputError, match="declares"):
+        seal.read_result(path)
+
+
+def test_a_list_of_cases_and_a_chunk_are_called_corrupt(tmp_path):
+    path = write_bomb(tmp_path / "0123456789abcdef.nc", variable="case")
+    content = path.read_bytes()
+    path.write_bytes(content + hashlib.sha256(content).digest())
+    for read in (chunks.check, chunks.read, chunks.read_state):
+        with pytest.raises(chunks.CorruptFile, match="4,000,000,000 values"):
+            read(path)
+
+
+def test_commands_refuse_it_in_one_line(tmp_path):
+    bomb = write_bomb(tmp_path / "bomb.nc")
+    for words in (("explore", bomb), ("wear", "--to", "1km", "-o", bomb, "-q")):
+        line = trackroller(*words, cwd=tmp_path, code=2).stderr
+        assert "4,000,000,000 values" in line and len(line.splitlines()) <= 2 and "Traceback" not in line
+
+
+def test_a_large_file_that_holds_its_values_is_read(tmp_path, monkeypatch):
+    """Noise packs 1.1 times, whole numbers 1000 times: both are read where the file holds them."""
+    monkeypatch.setattr(seal, "ANY_BYTES", 100_000)
+    rows = np.random.default_rng(1).random(1_000_000)
+    ds = xr.Dataset({"stress": ("case", rows), "flag": ("case", np.zeros(rows.size, np.int8))})
+    ds.to_netcdf(tmp_path / "ds.nc", encoding={name: {"zlib": True} for name in ds})
+    assert seal.read_result(tmp_path / "ds.nc").equals(ds)
+    monkeypatch.setattr(seal, "memory", lambda: 1e6)
+    with pytest.raises(InputError, match="fits the memory"):
+        seal.read_result(tmp_path / "ds.nc")
+
+
+def test_a_study_with_a_bomb_among_its_chunks_solves_the_chunk_again(tmp_path):
+    study = load_study({"name": "two", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"})
+    folder = run_study(study, tmp_path, solver=fake_solver.solve).folder
+    chunk = folder.solved_files()[0]
+    content = write_bomb(tmp_path / "bomb.nc", variable="case").read_bytes()
+    chunk.write_bytes(content + hashlib.sha256(content).digest())
+    run_study(study, tmp_path, solver=fake_solver.solve)
+    assert tr.open_study(folder.root).data.sizes["axial_force"] == 2
