@@ -9,6 +9,13 @@ CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
+# Snakemake needs a home that can be written and the name of a user; a container or a cluster may give neither
+ifeq ($(shell [ -n "$$HOME" ] && [ -d "$$HOME" ] && [ -w "$$HOME" ] && echo yes),)
+export HOME := $(shell mktemp -d)
+$(info HOME cannot be written, so the caches of this run stand in $(HOME))
+endif
+export USER := $(or $(USER),$(LOGNAME),$(shell id -u))
+
 # an environment that forbids bytecode would have each process compile each module anew
 unexport PYTHONDONTWRITEBYTECODE
 

@@ -22,6 +22,7 @@ CALLS = {
 # file -> calls of it that a `hasattr` beside them guards
 GUARDED = {
     "trackroller/files.py": {"posix_fallocate", "setitimer", "SIGALRM", "ITIMER_REAL", "sched_getaffinity"},
+    "trackroller/environment.py": {"getuid"},
 }
 ALARM = {"SIGALRM", "ITIMER_REAL"}  # where `setitimer` is
 OPTIONAL = {"snakemake", "distributed"}  # of the extras `workflow` and `cluster`; the core runs without them

@@ -18,7 +18,7 @@ from trackroller.materials import (
     builtin_database,
     load_database,
 )
-from trackroller.materials.file import BUILTIN_FILE, ENVIRONMENT, build_database
+from trackroller.materials.file import BUILTIN_FILE, MATERIALS, build_database
 from trackroller.materials.properties import OF_LIMITS, REQUIRED
 from trackroller.materials.tables import friction_rows, material_details, material_rows
 from trackroller.roller.case import Case, to_table
@@ -58,7 +58,7 @@ def db():
 @pytest.fixture
 def user(tmp_path, monkeypatch):
     """Write a user's file and return its path; no file of the machine is read."""
-    monkeypatch.delenv(ENVIRONMENT, raising=False)
+    monkeypatch.delenv(MATERIALS, raising=False)
     monkeypatch.chdir(tmp_path)
 
     def write(text):
@@ -206,7 +206,7 @@ def test_user_file_is_found_by_argument_variable_and_folder(user, tmp_path, monk
     assert strength() == 80
     file("config/materials.yaml", 81)
     assert strength() == 81
-    monkeypatch.setenv(ENVIRONMENT, str(file("variable.yaml", 82)))
+    monkeypatch.setenv(MATERIALS, str(file("variable.yaml", 82)))
     assert strength() == 82
     assert load_database(file("argument.yaml", 83)).material("POM").tensile_strength == 83
 
@@ -355,8 +355,8 @@ def test_a_bad_file_is_refused_with_file_field_and_remedy(user, text, parts):
 def test_a_missing_file_is_named(user, monkeypatch):
     with pytest.raises(InputError, match=r"nowhere\.yaml"):
         load_database("nowhere.yaml")
-    monkeypatch.setenv(ENVIRONMENT, "gone.yaml")
-    with pytest.raises(InputError, match=f"{ENVIRONMENT}.*gone.yaml"):
+    monkeypatch.setenv(MATERIALS, "gone.yaml")
+    with pytest.raises(InputError, match=f"{MATERIALS}.*gone.yaml"):
         load_database()
 
 

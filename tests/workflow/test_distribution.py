@@ -13,7 +13,7 @@ from workflow_place import ROOT
 def test_the_container_copies_files_that_exist_and_starts_the_workflow():
     lines = re.sub(r"\\\n", " ", (ROOT / "Dockerfile").read_text()).splitlines()
     told = [line.split() for line in lines if line and not line.startswith("#")]
-    assert {words[0] for words in told} <= {"FROM", "COPY", "RUN", "WORKDIR", "ENTRYPOINT", "CMD"}
+    assert {words[0] for words in told} <= {"FROM", "ENV", "COPY", "RUN", "WORKDIR", "ENTRYPOINT", "CMD"}
     copied = [name for words in told if words[0] == "COPY" for name in words[1:-1]]
     assert copied and all((ROOT / name).exists() for name in copied)
     needed = {"requirements.lock", "pyproject.toml", "Snakefile", "trackroller", "workflow", "config", "profiles"}

@@ -6,6 +6,11 @@ import os
 import sys
 from pathlib import Path
 
+from trackroller.environment import forget_working_folder
+
+if __name__ == "__main__":
+    forget_working_folder()
+
 from trackroller.cli import ALLOW_CODE, INTERRUPTED, STOPPED
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files

@@ -62,7 +62,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     Comments, order and all other entries of the file are kept. The new text is checked and written to a temporary file,
     which then replaces the old file in one step.
     """
-    path = Path(os.path.realpath(Path(path).expanduser()))
+    path = Path(os.path.realpath(os.path.expanduser(path)))
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "it must be a text that is not empty")
     check_names(f"material '{name}': field", values, FIELDS)

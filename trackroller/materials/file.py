@@ -9,14 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import Collector, InputError, check_names
-from trackroller.files import read_text
+from trackroller.files import MATERIALS, read_text
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.entries import EntryParser
 from trackroller.yaml_file import errors_by_line, parse_yaml
 
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
-ENVIRONMENT = "TRACKROLLER_MATERIALS"
 BUILTIN = "built-in"
 SECTIONS: dict[str, type] = {"sources": dict, "materials": dict, "friction": list, "wear": list}
 
@@ -40,12 +39,12 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
     InputError
         If the argument or the environment variable names a file that does not exist.
     """
-    named = argument if argument is not None else os.environ.get(ENVIRONMENT) or None
+    named = argument if argument is not None else os.environ.get(MATERIALS) or None
     if named is None:
         return DEFAULT_USER_FILE.resolve() if DEFAULT_USER_FILE.is_file() else None
-    path = Path(named).expanduser()
+    path = Path(os.path.expanduser(named))
     if not path.is_file():
-        field = "materials file" if argument is not None else ENVIRONMENT
+        field = "materials file" if argument is not None else MATERIALS
         remedy = "Correct the path, or leave it out to use the built-in materials."
         raise InputError(field, str(named), "the path of a YAML file that exists", remedy)
     return path.resolve()

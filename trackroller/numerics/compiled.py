@@ -11,18 +11,21 @@ of their first caller. Functions with `FAST` arithmetic therefore use products a
 from __future__ import annotations
 
 import contextlib
+import os
+import warnings
 from pathlib import Path
 from typing import Any
 
+import numba
 from numba import njit
 from numba.extending import register_jitable
+from numba.misc.appdirs import AppDirs
+
+from trackroller.environment import is_writable, temporary_cache
 
 FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keeps NaN and inf
 _PLAIN: dict[str, Any] = {"error_model": "numpy", "fastmath": False}
 _FAST: dict[str, Any] = {"error_model": "numpy", "fastmath": FAST}
-_CACHED: dict[str, Any] = {"cache": True, "nogil": True, "forceinline": False}
-# of functions that only compiled functions call: always inlined, without the wrappers for callers in Python
-_INNER: dict[str, Any] = {"cache": True, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 
 def forget_stale(package: Path) -> None:
@@ -42,7 +45,44 @@ def forget_stale(package: Path) -> None:
                 path.unlink(missing_ok=True)
 
 
-forget_stale(Path(__file__).parents[1])
+def can_cache(package: Path) -> bool:
+    """Return whether numba can keep what it compiles, after a temporary folder was named for it where needed.
+
+    numba keeps the compiled functions of a file beside the file, or in the cache folder of the user. If it can write
+    neither, it refuses to compile.
+
+    Parameters
+    ----------
+    package : pathlib.Path
+        Folder of the files with compiled functions.
+
+    Returns
+    -------
+    bool
+        False if the temporary folder cannot be written either.
+    """
+    given, users = os.environ.get("NUMBA_CACHE_DIR"), AppDirs("numba", appauthor=False).user_cache_dir
+    beside = {file.parent / "__pycache__" for file in package.rglob("*.py")}
+    if is_writable(given) if given else all(map(is_writable, beside)) or is_writable(users):
+        return True
+    place = temporary_cache("NUMBA_CACHE_DIR", "numba", given or users)
+    if place is None:
+        warnings.warn(
+            "no folder for compiled functions can be written, so this run compiles them anew, which takes a minute. "
+            "Set NUMBA_CACHE_DIR to a folder that can be written.",
+            stacklevel=3,
+        )
+        return False
+    vars(numba.config)["CACHE_DIR"] = str(place)  # the environment was read when numba was imported
+    return True
+
+
+PACKAGE = Path(__file__).parents[1]
+forget_stale(PACKAGE)
+CACHE = can_cache(PACKAGE)
+_CACHED: dict[str, Any] = {"cache": CACHE, "nogil": True, "forceinline": False}
+# of functions that only compiled functions call: always inlined, without the wrappers for callers in Python
+_INNER: dict[str, Any] = {"cache": CACHE, "forceinline": True, "no_cpython_wrapper": True, "no_cfunc_wrapper": True}
 
 compiled: Any = njit(**_PLAIN, **_CACHED)
 fast: Any = njit(**_FAST, **_CACHED)

@@ -5,12 +5,14 @@ from __future__ import annotations
 import contextlib
 import json
 import math
+import os
 from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from trackroller.environment import SAFE_PATH
 from trackroller.errors import InputError, WorkError
 from trackroller.files import cores
 from trackroller.study.cost import rate
@@ -55,6 +57,7 @@ def _client(scheduler: str) -> Any:
         raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
     if scheduler == "local":
+        os.environ[SAFE_PATH] = "1"  # the workers inherit it
         return Client(n_workers=cores(), threads_per_worker=1, dashboard_address=None)  # type: ignore[no-untyped-call]
     try:
         return Client(scheduler, timeout="10s")  # type: ignore[no-untyped-call]
