@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -31,10 +32,12 @@ chunk_size: 60
 class LivePage:
     """`trackroller app FOLDER` in a process of its own."""
 
-    def __init__(self, folder: Path, *options: str) -> None:
-        command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), "--no-browser", *options]
+    def __init__(self, folder: Path, *options: str, browser: str = "", **where: Any) -> None:
+        command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), *options]
+        command += [] if browser else ["--no-browser"]
         self.folder = folder
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        where["env"] = {**os.environ, **where.get("env", {}), **({"BROWSER": browser} if browser else {})}
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **where)
         assert self.process.stdout is not None
         self.line = self.process.stdout.readline()
         self.address = next((word for word in self.line.split() if word.startswith("http://")), "")

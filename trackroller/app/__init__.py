@@ -9,11 +9,13 @@ import atexit
 import subprocess
 import sys
 import urllib.parse
+from collections.abc import Iterable
 from html import escape
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from trackroller.environment import python
 from trackroller.errors import WorkError
 
 
@@ -33,7 +35,13 @@ class Frame:
         return f'<iframe src="{escape(self.address)}" title="trackroller" allow="clipboard-write" {style}></iframe>'
 
 
-def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Frame:
+def frame(
+    case: Any = None,
+    folder: Path | str = ".",
+    height: int = 820,
+    port: int | None = None,
+    allow_hosts: Iterable[str] = (),
+) -> Frame:
     """Show the live page of one roller in a notebook.
 
     Parameters
@@ -44,6 +52,10 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
         The folder in which the page keeps studies and results.
     height : int
         Height of the frame [px].
+    port : int, optional
+        Port on 127.0.0.1, such as one that is forwarded; any free one if not given.
+    allow_hosts : iterable of str
+        Hosts, with their ports, of a forwarded port under which the page may be asked for.
 
     Returns
     -------
@@ -70,7 +82,8 @@ def frame(case: Any = None, folder: Path | str = ".", height: int = 820) -> Fram
 
     checked = case if isinstance(case, Case) else Case.from_dict(case or {})
     words = {name: setting_text(value) for name, value in given_inputs(checked).items()}
-    command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), "--no-browser"]
+    options = [f"--port={port}"] * (port is not None) + [f"--allow-host={host}" for host in allow_hosts]
+    command = python("trackroller.cli", "app", str(folder), "--no-browser", *options)
     process = subprocess.Popen(command, stdout=subprocess.PIPE, text=True, stdin=subprocess.DEVNULL)
     atexit.register(process.terminate)
     line = process.stdout.readline() if process.stdout else ""

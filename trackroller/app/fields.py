@@ -26,7 +26,7 @@ def all_fields() -> dict[str, Any]:
         "materials": material_rows(load_database()),
         "bodies": list(MATERIAL_FIELDS),
         "first": {name: value if isinstance(value, str) else f"{value:g}" for name, value in LASTING.items()},
-        "files": sorted(path.as_posix() for pattern in ("*.csv", "*/*.csv") for path in Path().glob(pattern)),
+        "files": sorted(p.as_posix() for pattern in ("*.csv", "*/*.csv") for p in Path().glob(pattern) if _is_own(p)),
         "mappings": [{"name": name, "meaning": meaning} for name, meaning in MAPPING_FIELDS.items()],
         "options": [
             {"name": o.name, "value": o.default, "meaning": o.meaning, "values": o.values, "kind": o.kind}
@@ -34,6 +34,11 @@ def all_fields() -> dict[str, Any]:
         ],
         "designs": list(METHODS),
     }
+
+
+def _is_own(path: Path) -> bool:
+    """Return whether a file lies in this folder, not behind a link, and has a name that a study file can hold."""
+    return path.as_posix().isprintable() and path.resolve().is_relative_to(Path.cwd().resolve())
 
 
 def _parameter(parameter: Parameter) -> dict[str, Any]:

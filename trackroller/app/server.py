@@ -1,7 +1,8 @@
 """The server of the live page, on 127.0.0.1 only.
 
 Whoever wants an answer has to know the token, which is the first part of every path. Requests of another site are
-refused by the headers `Host`, `Origin` and `Sec-Fetch-Site`. A page runs only the script of this server, and can reach
+refused by the headers `Host`, `Origin` and `Sec-Fetch-Site`: a site whose name leads to this machine has another host.
+Behind a forwarded port the user names the hosts that may ask. A page runs only the script of this server, and can reach
 no other host.
 """
 
@@ -15,7 +16,7 @@ import math
 import secrets
 import threading
 import traceback
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module, resources
 from typing import Any
 
@@ -29,11 +30,12 @@ from trackroller.errors import InputError, WorkError
 from trackroller.files import MAX_BYTES
 
 HOST = "127.0.0.1"
+USUAL = 80  # the port of http
 LARGEST = 300_000  # bytes of a request; a study file with a table of cases names the table
 FRAMES = "http://127.0.0.1:* http://localhost:*"  # a notebook on this machine may show the page
 OWN = (
     "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data:; connect-src 'self'; "
-    f"base-uri 'none'; form-action 'none'; frame-ancestors {FRAMES}"
+    f"base-uri 'none'; form-action 'none'; frame-ancestors {FRAMES}"  # and the origins of forwarded ports
 )
 # a sheet has its styles inside, a report its scripts too; `sandbox` keeps them away from this server
 SHEET = "default-src 'none'; style-src 'unsafe-inline'; img-src data:; base-uri 'none'; form-action 'none'; sandbox"
@@ -91,7 +93,7 @@ class _Handler(tornado.web.RequestHandler):
 
     def set_default_headers(self) -> None:
         for name, text in {
-            "Content-Security-Policy": OWN,
+            "Content-Security-Policy": " ".join((OWN, *self.settings["server"].forwarded)),
             "X-Content-Type-Options": "nosniff",
             "Referrer-Policy": "no-referrer",
             "Cache-Control": "no-store",
@@ -102,16 +104,18 @@ class _Handler(tornado.web.RequestHandler):
 
     def prepare(self) -> None:
         """Refuse who does not know the token, who asks under another name of this machine, and other sites."""
-        server, headers = self.settings["server"], self.request.headers
-        if self.request.host != server.host:
-            raise Refused(403, f"This server answers at {server.host} only.")
+        server, headers, host = self.settings["server"], self.request.headers, self.request.host.lower()
+        if host not in server.hosts:
+            where = " and ".join(sorted(server.hosts))
+            way = "Forward the same port number, or start the page with --allow-host and the host of the address line"
+            raise Refused(403, f"This server answers at {where} only, not at {host[:80]}. {way}.")
         if not hmac.compare_digest(str(self.path_args[0]).encode(), server.token.encode()):
             raise Refused(
                 403, "The token in the address is missing or wrong. Open the address that the terminal shows."
             )
-        own = f"http://{self.request.host}"
         foreign = headers.get("Sec-Fetch-Site", "none") not in ("none", "same-origin")
-        if self.request.method == "POST" and (foreign or headers.get("Origin", own) != own):
+        own = {f"http://{host}", *server.forwarded}  # a proxy may change the host, and the protocol
+        if self.request.method == "POST" and (foreign or headers.get("Origin", f"http://{host}").lower() not in own):
             raise Refused(403, "Another site asked. Only the page of this server may.")
 
     async def answered(self, question: str, newest_of: str = "", /, **arguments: Any) -> Any:
@@ -193,6 +197,15 @@ class Server:
     ----------
     port : int
         The port; 0 takes a free one.
+    allow_hosts : iterable of str
+        Hosts, with their ports, under which a forwarded port is asked for.
+
+    Attributes
+    ----------
+    hosts : set of str
+        What the header `Host` may hold: this machine's name and address with the port, and the allowed hosts.
+    forwarded : list of str
+        The origins of the allowed hosts.
 
     Raises
     ------
@@ -200,15 +213,19 @@ class Server:
         If another program has the port.
     """
 
-    def __init__(self, port: int = 0) -> None:
+    def __init__(self, port: int = 0, allow_hosts: Iterable[str] = ()) -> None:
         self.token = secrets.token_urlsafe(24)
         self.solver, self.files = Lane("solver"), Lane("files")
         try:
             sockets = tornado.netutil.bind_sockets(port, HOST)
         except OSError as exc:
             raise WorkError(f"port {port} is not free ({exc.strerror}). Give another number with --port.") from None
-        self.host = f"{HOST}:{sockets[0].getsockname()[1]}"
-        self.address = f"http://{self.host}/{self.token}/"
+        number, further = sockets[0].getsockname()[1], list(allow_hosts)
+        self.hosts = {*further, *(f"{name}:{number}" for name in (HOST, "localhost"))}
+        if number == USUAL:  # browsers leave it out
+            self.hosts |= {HOST, "localhost"}
+        self.forwarded = [f"{protocol}://{host}" for host in further for protocol in ("http", "https")]
+        self.address = f"http://{HOST}:{number}/{self.token}/"
         application = tornado.web.Application(
             [
                 (r"/([^/]*)/sheet", _Sheet),

@@ -13,7 +13,6 @@ import math
 import os
 import shutil
 import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -21,8 +20,9 @@ from typing import Any
 from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.analysis.table import StudyView
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
+from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, find_beside, write_text
+from trackroller.files import files_beside, find_beside, read_text, refuse_links, write_text
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
@@ -39,15 +39,25 @@ from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 TEXTS, RESULTS = Path("studies"), Path("results")
 MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
 PAGES = ("report.html", "explorer.html")
+_REFUSED: dict[str, Any] = {  # what the list shows of a study with a link in its folder
+    **dict.fromkeys(("question", "step", "date"), ""),
+    **dict.fromkeys(("total", "done", "failed")),
+    **{"state": "stopped", "bytes": 0, "pages": []},
+}
 _running: dict[str, subprocess.Popen[bytes]] = {}  # the studies that this server started
 
 
 def folder_of(name: Any) -> StudyFolder:
     """Return the folder of a study; refuse names and links that lead out of the results folder."""
     root = RESULTS / check_name(name)
-    if root.is_symlink() or RESULTS.is_symlink():
+    if _is_link(root):
         raise InputError("name", name, "a folder of this place; this one is a link", "Copy the folder here.")
+    refuse_links(root, "results")
     return StudyFolder(root)
+
+
+def _is_link(root: Path) -> bool:
+    return root.is_symlink() or RESULTS.is_symlink()
 
 
 def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dict[str, Any]:
@@ -116,7 +126,7 @@ def start(text: str) -> dict[str, Any]:
         (folder.root / file).unlink(missing_ok=True)
     with open(folder.root / "page.log", "ab") as log:
         _running[name] = subprocess.Popen(
-            [sys.executable, "-m", "trackroller.app.worker", name],
+            python("trackroller.app.worker", name),
             stdin=subprocess.DEVNULL,
             stdout=log,
             stderr=subprocess.STDOUT,
@@ -170,7 +180,13 @@ def listing() -> list[dict[str, Any]]:
 
 
 def _entry(name: str) -> dict[str, Any] | None:
-    folder = folder_of(name)
+    """Return what the list shows of a study; None for a folder of something else."""
+    try:
+        folder = folder_of(name)
+    except InputError as exc:
+        if _is_link(RESULTS / check_name(name)):
+            return None
+        return _REFUSED | {"name": name, "error": str(exc)}
     progress: dict[str, Any] = {}
     with contextlib.suppress(OSError, ValueError):
         progress = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
@@ -218,7 +234,7 @@ def text_of(name: str) -> dict[str, Any]:
     """Return the file of a study, as it was written or as it was stored with the results."""
     for path in (TEXTS / f"{check_name(name)}.yaml", folder_of(name).study_file):
         if path.is_file():
-            return {"text": path.read_text(encoding="utf-8")}
+            return {"text": read_text(path, "study file")}
     raise InputError("name", name, "a study of this folder", "Choose one of the list.")
 
 

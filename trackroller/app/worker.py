@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import interrupts_wait_for_files, try_lock, write_text
+from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, write_text
 from trackroller.study.store.folder import wait_for_lock
 
 LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
@@ -72,6 +72,7 @@ def run(name: str) -> None:
         Name of the study, whose file is `studies/NAME.yaml`.
     """
     root = Path("results", name)
+    refuse_links(root, "results")
     root.mkdir(parents=True, exist_ok=True)
     with open(root / LOCK, "ab") as lock:
         wait_for_lock(lock)  # a look at the lock holds it for a moment
@@ -109,4 +110,5 @@ def _work(name: str, progress: Progress) -> None:
 
 if __name__ == "__main__":
     signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell may start the server with SIGINT ignored
+    confine(Path.cwd())
     run(sys.argv[1])

@@ -216,11 +216,14 @@ def live_page(
     port: Annotated[
         int | None, typer.Option(min=1, max=65_535, help="port on 127.0.0.1; a free one if not given")
     ] = None,
+    allow_host: Annotated[
+        list[str] | None, typer.Option(help="HOST[:PORT] of a forwarded port that may ask too; may be repeated")
+    ] = None,
 ) -> None:
     """Open the live page of a roller in the browser: sliders, pictures, variants, studies; Ctrl-C ends it."""
     from trackroller.app.start import serve
 
-    serve(folder, port, not no_browser)
+    serve(folder, port, not no_browser, allow_host or ())
     os._exit(0)  # Python aborts if it is torn down while a thread of the solver is inside compiled code
 
 
