@@ -4,11 +4,18 @@ Study files use these texts for derived factors (``-ratio * guide_profile_radius
 Pareto set (``max_pressure[1] < 1500 and regime != full_slip``) and for `stop_if` (``peak_stress > R_m``).
 Python parses the text to a syntax tree. Only the nodes listed here are evaluated, on whole columns at once.
 An `InputError` names any other node with its position.
+
+NaN stands for a value that is not known, and whatever needs it is not known either: a function or an operation on
+NaN gives NaN, a comparison with NaN is undecided, and so are `and`, `or` and `not` of something undecided. As a number
+an undecided comparison is NaN; ``where`` of it is NaN; as a condition it does not hold.
 """
 
 from __future__ import annotations
 
 import ast
+import math
+import re
+import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache, reduce
@@ -25,7 +32,7 @@ _ONE_ARGUMENT = "abs sqrt exp log log10 sin cos tan radians degrees sign round".
 FUNCTIONS: dict[str, tuple[Any, int]] = {name: (getattr(np, name), 1) for name in _ONE_ARGUMENT} | {
     "min": (np.minimum, 2),
     "max": (np.maximum, 2),
-    "where": (np.where, 3),
+    "where": (None, 3),  # `_Evaluation.chosen`
 }
 CONSTANTS = {"pi": np.pi, "inf": np.inf}
 _BINARY: dict[type, Any] = {
@@ -41,10 +48,23 @@ _COMPARE: dict[type, tuple[str, Any]] = {
     ast.LtE: ("<=", np.less_equal),
     ast.Gt: (">", np.greater),
     ast.GtE: (">=", np.greater_equal),
-    ast.Eq: ("==", lambda a, b: np.asarray(a == b)),
-    ast.NotEq: ("!=", lambda a, b: np.asarray(a != b)),
+    ast.Eq: ("==", np.equal),
+    ast.NotEq: ("!=", np.not_equal),
 }
 _REMEDY = "Use numbers, names, + - * / % **, comparisons, and, or, not and the functions " + ", ".join(FUNCTIONS) + "."
+
+
+@dataclass(frozen=True)
+class _Truth:
+    """Where a comparison holds, and where it is decided, two arrays of bool that broadcast."""
+
+    holds: np.ndarray
+    known: np.ndarray
+
+    @property
+    def number(self) -> np.ndarray:
+        """Return 1 where the comparison holds, 0 where it does not, and NaN where it is undecided."""
+        return np.where(self.known, self.holds, np.nan)
 
 
 @dataclass(frozen=True)
@@ -109,7 +129,7 @@ def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") ->
     Returns
     -------
     numpy.ndarray of float, shape (n,) or ()
-        Value of the expression; a single number if all values are numbers.
+        Value of the expression; a single number if all values are numbers. NaN where a value that it needs is NaN.
 
     Raises
     ------
@@ -120,12 +140,13 @@ def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") ->
     --------
     >>> evaluate("-ratio * r", {"ratio": np.array([1.1, 1.2]), "r": 6.0})
     array([-6.6, -7.2])
+    >>> evaluate("where(n > 1, 1, 0)", {"n": np.array([2.0, 1.0, np.nan])})
+    array([ 1.,  0., nan])
     """
-    result = _Evaluation(text, field, values).value(_parse(text, field))
-    try:
-        return np.asarray(result, dtype=float)
-    except (TypeError, ValueError):
-        raise InputError(field, text, "the result is a text, not a number", "Compare texts with == or !=.") from None
+    number = _number(_Evaluation(text, field, values).value(_parse(text, field)))
+    if number is None:
+        raise InputError(field, text, "the result is a text, not a number", "Compare texts with == or !=.")
+    return number
 
 
 def condition(text: str, values: Mapping[str, Any], field: str = "constraints") -> np.ndarray:
@@ -143,22 +164,17 @@ def condition(text: str, values: Mapping[str, Any], field: str = "constraints") 
     Returns
     -------
     numpy.ndarray of bool
-        True where the condition holds; False where a value of the condition is NaN, also for ``!=``.
+        True where the condition holds; False where a value that it compares is NaN, also for ``!=`` and `not`.
 
     Raises
     ------
     InputError
         As in `evaluate`, or if the text is not a comparison.
     """
-    tree = _parse(text, field)
-    result = np.asarray(_Evaluation(text, field, values).value(tree))
-    if result.dtype != bool:
+    result = _truth(_Evaluation(text, field, values).value(_parse(text, field)))
+    if result is None:
         raise InputError(field, text, "a comparison is wanted, such as 'max_pressure < 1500'")
-    for name in _names(tree):
-        column = np.asarray(values[name])
-        if column.dtype.kind == "f":
-            result = result & ~np.isnan(column)
-    return result
+    return np.asarray(result.holds & result.known)
 
 
 def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
@@ -204,7 +220,9 @@ def _tree(text: str, field: str) -> ast.expr:
     if len(text) > MAX_LENGTH:
         raise InputError(field, text[:40] + "...", f"an expression has at most {MAX_LENGTH} characters")
     try:
-        tree = ast.parse(text.strip(), mode="eval").body
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", SyntaxWarning)  # about nodes that are refused anyway, such as 2(x)
+            tree = ast.parse(text.strip(), mode="eval").body
         check_tree(tree, text, field)
         return tree
     except InputError:
@@ -233,9 +251,30 @@ def _names(node: ast.AST) -> set[str]:
     return set().union(*map(_names, children))
 
 
+def _number(value: Any) -> np.ndarray | None:
+    """Return a value of an expression as floats, None for a text or a column that holds texts."""
+    if isinstance(value, _Truth):
+        return value.number
+    array = np.asarray(value)
+    if array.dtype.kind in "SU" or (array.dtype.kind == "O" and any(isinstance(one, str) for one in array.flat)):
+        return None
+    try:
+        return array.astype(float)  # None in a column stands for a value that is not given
+    except (TypeError, ValueError):  # a pair of materials
+        return None
+
+
+def _truth(value: Any) -> _Truth | None:
+    """Return a comparison, also one that a column of bool holds; None for any other value."""
+    if isinstance(value, _Truth):
+        return value
+    array = np.asarray(value)
+    return _Truth(array, np.ones(array.shape, dtype=bool)) if array.dtype == bool else None
+
+
 @dataclass(frozen=True)
 class _Evaluation:
-    """Values of the nodes of one expression."""
+    """Values of the nodes of one expression: numbers, texts, columns of them, and comparisons as `_Truth`."""
 
     text: str
     field: str
@@ -245,8 +284,8 @@ class _Evaluation:
         match node:
             case ast.Constant(value=bool()):
                 raise self.refused(node, "a truth value")
-            case ast.Constant(value=int() | float() as number):
-                return float(number)  # powers of whole numbers could fill the memory
+            case ast.Constant(value=int() | float()):
+                return self.constant(node)
             case ast.Constant(value=str() as word):
                 return word
             case ast.Name() | ast.Subscript():
@@ -256,26 +295,44 @@ class _Evaluation:
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return self.applied(np.negative, [operand], node)
             case ast.UnaryOp(op=ast.UAdd(), operand=operand):
-                return self.value(operand)
+                return self.applied(np.positive, [operand], node)
             case ast.Call(func=ast.Name(id=name), args=args, keywords=[]) if name in FUNCTIONS:
                 function, arity = FUNCTIONS[name]
                 if len(args) != arity or any(isinstance(arg, ast.Starred) for arg in args):
                     raise self.refused(node, f"{name} with {len(args)} arguments (it takes {arity})")
-                return self.applied(function, args, node)
+                return self.applied(function, args, node) if function else self.chosen(args, node)
         return self.logic(node)
 
-    def logic(self, node: ast.AST) -> np.ndarray:
+    def constant(self, node: ast.Constant) -> float:
+        """Return a number of the text as a float: powers of whole numbers could fill the memory."""
+        try:
+            number = float(node.value)
+        except OverflowError:  # a whole number of hundreds of digits
+            number = math.inf
+        written = ast.get_source_segment(self.text.strip(), node) or ""
+        if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", written)[0])):
+            size = "large" if number else "small"
+            raise self.refused(node, f"a number too {size} for the computer", "Write inf for infinity." * bool(number))
+        return number
+
+    def logic(self, node: ast.AST) -> _Truth:
         match node:
             case ast.UnaryOp(op=ast.Not(), operand=operand):
-                return np.asarray(np.logical_not(self.truth(operand)))
+                truth = self.truth(operand)
+                return _Truth(~truth.holds, truth.known)
             case ast.BoolOp(op=op, values=parts):
                 join = np.logical_and if isinstance(op, ast.And) else np.logical_or
-                return reduce(join, [self.truth(part) for part in parts])
+                return self.joined(join, [self.truth(part) for part in parts])
             case ast.Compare(left=left, ops=ops, comparators=rest) if all(type(op) in _COMPARE for op in ops):
-                sides = [np.asarray(self.value(part)) for part in (left, *rest)]
+                sides = [self.value(part) for part in (left, *rest)]
                 held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
-                return np.asarray(reduce(np.logical_and, held))  # a part of constants has another shape
+                return self.joined(np.logical_and, held)  # a part of constants has another shape
         raise self.refused(node, type(node).__name__.lower())
+
+    def joined(self, join: Any, parts: list[_Truth]) -> _Truth:
+        """Return several comparisons joined; they are decided where each of them is."""
+        known = reduce(np.logical_and, [part.known for part in parts])
+        return _Truth(np.asarray(reduce(join, [part.holds for part in parts])), np.asarray(known))
 
     def named(self, node: ast.Name | ast.Subscript) -> Any:
         name = _name(node)
@@ -286,28 +343,48 @@ class _Evaluation:
             raise self.refused(node, "a subscript that does not name the part of a variable")
         raise unknown_name(f"{self.field} (character {node.col_offset + 1})", name, list(self.values))
 
-    def applied(self, function: Any, parts: list[ast.expr], node: ast.AST) -> Any:
-        args = [self.value(part) for part in parts]
-        if function is np.where:
-            return np.where(np.asarray(args[0], dtype=bool), *args[1:])
-        try:
-            with np.errstate(all="ignore"):  # the caller reports NaN with its row
-                return function(*[np.asarray(arg, dtype=float) for arg in args])
-        except (TypeError, ValueError):
-            raise self.refused(node, "arithmetic with a text") from None
+    def applied(self, function: Any, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
+        """Return a function of numbers, NaN wherever an argument is NaN, as in nan ** 0."""
+        args = [_number(self.value(part)) for part in parts]
+        if any(arg is None for arg in args):
+            raise self.refused(node, "arithmetic with a text")
+        with np.errstate(all="ignore"):  # the caller reports NaN with its row
+            result = function(*args)
+        return np.where(reduce(np.logical_or, map(np.isnan, args)), np.nan, result)
 
-    def compared(self, op: ast.cmpop, one: np.ndarray, other: np.ndarray, node: ast.AST) -> np.ndarray:
-        texts = {side.dtype.kind in "OSU" for side in (one, other)}
-        if len(texts) > 1 or (True in texts and not isinstance(op, (ast.Eq, ast.NotEq))):
+    def chosen(self, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
+        """Return ``where(condition, one, other)``: numbers, NaN where the condition is undecided, or texts."""
+        decider, *both = (self.value(part) for part in parts)
+        truth, numbers = _truth(decider), [_number(one) for one in both]
+        if truth is None:
+            number = _number(decider)
+            if number is None:
+                raise self.refused(node, "where with a text as its condition")
+            truth = _Truth(number != 0, ~np.isnan(number))
+        if numbers[0] is not None and numbers[1] is not None:
+            return np.where(truth.known, np.where(truth.holds, *numbers), np.nan)
+        if numbers[0] is not None or numbers[1] is not None:
+            raise self.refused(node, "where with a text beside a number")
+        texts = np.where(truth.holds, *(np.asarray(one, dtype=object) for one in both))
+        return np.where(truth.known, texts, None)
+
+    def compared(self, op: ast.cmpop, one: Any, other: Any, node: ast.AST) -> _Truth:
+        compare, numbers = _COMPARE[type(op)][1], [_number(side) for side in (one, other)]
+        if numbers[0] is not None and numbers[1] is not None:
+            known = ~(np.isnan(numbers[0]) | np.isnan(numbers[1]))
+            return _Truth(np.asarray(compare(*numbers)), np.asarray(known))
+        if numbers[0] is not None or numbers[1] is not None or not isinstance(op, (ast.Eq, ast.NotEq)):
             raise self.refused(node, "ordering a text, or comparing it with a number,")
-        return np.asarray(_COMPARE[type(op)][1](one, other), dtype=bool)
+        texts = [np.asarray(side, dtype=object) for side in (one, other)]
+        known = np.not_equal(texts[0], None).astype(bool) & np.not_equal(texts[1], None).astype(bool)
+        return _Truth(np.asarray(compare(*texts)).astype(bool), np.asarray(known))
 
-    def truth(self, node: ast.AST) -> np.ndarray:
-        value = np.asarray(self.value(node))
-        if value.dtype != bool:
+    def truth(self, node: ast.AST) -> _Truth:
+        truth = _truth(self.value(node))
+        if truth is None:
             raise self.refused(node, "something other than a comparison beside and, or, not")
-        return value
+        return truth
 
-    def refused(self, node: ast.AST, what: str) -> InputError:
+    def refused(self, node: ast.AST, what: str, remedy: str = _REMEDY) -> InputError:
         at = getattr(node, "col_offset", 0) + 1
-        return InputError(self.field, self.text, f"{what} at character {at} is not allowed", _REMEDY)
+        return InputError(self.field, self.text, f"{what} at character {at} is not allowed", remedy or _REMEDY)

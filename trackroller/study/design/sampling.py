@@ -17,7 +17,7 @@ import numpy as np
 
 from trackroller.errors import InputError, check_names, unknown_name
 from trackroller.methods import METHODS, Design, those_that_take, those_with
-from trackroller.methods.factor import Factor, parse
+from trackroller.methods.factor import Factor, parse, readable
 from trackroller.methods.grid import MAX_ROWS
 from trackroller.methods.table import of_columns
 from trackroller.parameters import PARAMETERS, expressions
@@ -126,7 +126,7 @@ def _derived(
     """Evaluate the expressions, each after the expressions that it needs."""
     texts = {name: f.text for name, f in parsed.items() if f.kind == "expression"}
     defaults = {name: p.default for name, p in PARAMETERS.items()}
-    known = {name: value for name, value in {**defaults, **base, **columns}.items() if name not in texts}
+    known = {name: _compared(value) for name, value in {**defaults, **base, **columns}.items() if name not in texts}
     needs = graphlib.TopologicalSorter({name: expressions.names(text) & {*texts} for name, text in texts.items()})
     out: dict[str, np.ndarray] = {}
     try:
@@ -142,6 +142,12 @@ def _derived(
             allowed = f"it is not a number in {bad} of {rows} rows"
             raise InputError(f"factors.{name}.expression", texts[name], allowed)
     return out
+
+
+def _compared(value: Any) -> Any:
+    """Return a column for expressions, in which a pair of materials is the text 'roller / guide'."""
+    pairs = isinstance(value, np.ndarray) and value.dtype == object and any(isinstance(v, tuple) for v in value)
+    return readable(value) if pairs else value
 
 
 def _check_bounds(columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor]) -> None:
