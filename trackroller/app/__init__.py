@@ -80,7 +80,7 @@ def frame(
     from trackroller.roller.case import Case  # the worker of a study starts faster without the solver
     from trackroller.roller.record import given_inputs, setting_text
 
-    checked = case if isinstance(case, Case) else Case.from_dict(case or {})
+    checked = case if isinstance(case, Case) else Case.from_dict({} if case is None else case)
     words = {name: setting_text(value) for name, value in given_inputs(checked).items()}
     options = [f"--port={port}"] * (port is not None) + [f"--allow-host={host}" for host in allow_hosts]
     command = python("trackroller.cli", "app", str(folder), "--no-browser", *options)

@@ -14,6 +14,8 @@ logspace         ``[first, last, how many]`` (the values themselves, not exponen
 expression       arithmetic over other factors and base values, e.g. ``"-1.2 * guide_profile_radius"``
 ================ =====================================================================
 
+Listed values are those that a person writes, 0.15 and not 0.15000000000000002; see `numerics.numbers.written`.
+
 `weights` may stand beside a list: one positive number a value. A random sample draws the values in their proportion.
 
 In an inner/outer array design (`inner_outer`), `scatter: true | false` may stand beside the key. Without it,
@@ -30,6 +32,9 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
+from trackroller.numerics.numbers import written
+from trackroller.numerics.plain import how_to_write
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters import expressions
 
 DISTRIBUTIONS = {"uniform": 2, "loguniform": 2, "normal": 2, "truncnormal": 4, "triangular": 3}
@@ -188,7 +193,8 @@ def parse(name: str, spec: Any) -> Factor:
     field = f"factors.{name}"
     if not isinstance(spec, Mapping):
         allowed = f"a factor is a dictionary with one of {', '.join(KINDS)}"
-        raise InputError(field, spec, allowed, "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.")
+        example = f"Write {{values: {spec}}}." if isinstance(spec, (list, tuple)) else ""
+        raise InputError(field, spec, allowed, example or "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.")
     scatter = spec.get("scatter")
     if not (scatter is None or isinstance(scatter, bool)):
         raise InputError(f"{field}.scatter", scatter, "true or false")
@@ -204,7 +210,7 @@ def parse(name: str, spec: Any) -> Factor:
         expressions.names(value, where)
         return Factor(name, kind, text=value)
     if not isinstance(value, (list, tuple)) or not value:
-        raise InputError(where, value, "a list that is not empty")
+        raise InputError(where, value, "a list that is not empty", how_to_write(value))
     if kind in DISTRIBUTIONS:
         return Factor(name, kind, _distribution(kind, value, where), scatter=scatter is not False)
     levels = _levels(kind, list(value), where)
@@ -228,8 +234,10 @@ def _is_number(value: Any) -> bool:
 
 def _numbers(values: Any, count: int, where: str) -> tuple[float, ...]:
     if len(values) != count or not all(_is_number(v) and math.isfinite(v) for v in values):
-        text = any(isinstance(v, str) for v in values)
-        remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression." if text else ""
+        texts = [v for v in values if isinstance(v, str)]
+        remedy = "Sample a fraction in [0, 1] and write the dependent range as an expression." if texts else ""
+        if any(map(split_quantity, texts)):
+            remedy = "Only parameters take units: write the numbers of a factor of your own without them."
         remedy = "Write [first, last, number of values]." if where.endswith("space") else remedy
         raise InputError(where, values, f"{count} finite numbers", remedy)
     return tuple(float(v) for v in values)
@@ -256,7 +264,7 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
         if any(_is_number(v) and math.isnan(v) for v in levels):
             raise InputError(where, value, "numbers or names, but not NaN", "Write null for 'not given'.")
         if all(_is_number(v) for v in levels):
-            levels = [float(v) for v in levels]
+            levels = written([float(v) for v in levels])
     else:
         first, last, count = _numbers(value, 3, where)
         if count != int(count) or count < 1:
@@ -264,7 +272,7 @@ def _levels(kind: str, value: list[Any], where: str) -> tuple[Any, ...]:
         if kind == "logspace" and first * last <= 0:
             raise InputError(where, value, "first and last of one sign, not 0")
         space = np.linspace if kind == "linspace" else np.geomspace
-        levels = [float(v) for v in space(first, last, int(count))]
+        levels = written([float(v) for v in space(first, last, int(count))])
     if len({repr(v) for v in levels}) < len(levels):
         raise InputError(where, value, "each value once", "Remove the repeated value.")
     return tuple(levels)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import re
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -173,6 +174,45 @@ def rounded_up(value: float) -> float:
     """Return a number > 0 rounded up to two figures."""
     unit = 10.0 ** (math.floor(math.log10(value)) - 1)
     return float(f"{math.ceil(value / unit - 1e-9) * unit:.3g}")
+
+
+def written(values: list[float]) -> list[float]:
+    """Return computed values as a person writes them: 0.15 for 0.15000000000000002.
+
+    Parameters
+    ----------
+    values : list of float
+        Such as the levels of `numpy.linspace`, `numpy.arange` or `numpy.geomspace`, or a list that a person wrote.
+
+    Returns
+    -------
+    list of float
+        Values that differ from the given ones by rounding errors only, a few in the last digit. Evenly spaced values
+        follow exactly from the first, the last and their number; other values get 12 digits if the difference is a
+        rounding error.
+
+    Examples
+    --------
+    >>> written(np.arange(-0.3, 0.2, 0.1).tolist()), written([0.1 + 0.2, 1 / 3])
+    ([-0.3, -0.2, -0.1, 0.0, 0.1], [0.3, 0.3333333333333333])
+    """
+    n = len(values)
+    if n > 2 and all(map(math.isfinite, values)):
+        # the error of a step, at most one unit in the last place of the largest value, counts in each step
+        error = 2 * n * math.ulp(max(map(abs, values)))
+        ends = [Fraction(repr(_written(end, error))) for end in (values[0], values[-1])]
+        below = ends[0].denominator * ends[1].denominator * (n - 1)
+        first, step = int(ends[0] * below), int((ends[1] - ends[0]) * (below // (n - 1)))
+        even = [(first + i * step) / below for i in range(n)]
+        if all(abs(one - value) <= error for one, value in zip(even, values, strict=True)):
+            return even
+    return [_written(value, 16 * math.ulp(value)) if math.isfinite(value) else value for value in values]
+
+
+def _written(value: float, error: float) -> float:
+    """Return a number with 12 digits if it is the same within an error, otherwise as it is."""
+    short = float(f"{value:.12g}")
+    return short if abs(short - value) <= error else value
 
 
 def rounded(values: np.ndarray) -> np.ndarray:

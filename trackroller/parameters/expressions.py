@@ -24,6 +24,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, unknown_name
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters.syntax_checks import check_tree
 
 MAX_LENGTH = 500  # characters; a longer calculation belongs in a script
@@ -264,6 +265,13 @@ def _number(value: Any) -> np.ndarray | None:
         return None
 
 
+def _parted(values: list[Any]) -> tuple[list[np.ndarray], list[Any]]:
+    """Return those of some values that are numbers, as floats, and the others, which are texts."""
+    numbers = [_number(value) for value in values]
+    texts = [value for value, number in zip(values, numbers, strict=True) if number is None]
+    return [number for number in numbers if number is not None], texts
+
+
 def _truth(value: Any) -> _Truth | None:
     """Return a comparison, also one that a column of bool holds; None for any other value."""
     if isinstance(value, _Truth):
@@ -306,7 +314,7 @@ class _Evaluation:
     def constant(self, node: ast.Constant) -> float:
         """Return a number of the text as a float: powers of whole numbers could fill the memory."""
         try:
-            number = float(node.value)
+            number = float(node.value)  # type: ignore[arg-type]  # `value` passes numbers only
         except OverflowError:  # a whole number of hundreds of digits
             number = math.inf
         written = ast.get_source_segment(self.text.strip(), node) or ""
@@ -345,45 +353,50 @@ class _Evaluation:
 
     def applied(self, function: Any, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
         """Return a function of numbers, NaN wherever an argument is NaN, as in nan ** 0."""
-        args = [_number(self.value(part)) for part in parts]
-        if any(arg is None for arg in args):
-            raise self.refused(node, "arithmetic with a text")
+        values = [self.value(part) for part in parts]
+        numbers, texts = _parted(values)
+        if texts:
+            raise self.with_text(node, texts[0])
         with np.errstate(all="ignore"):  # the caller reports NaN with its row
-            result = function(*args)
-        return np.where(reduce(np.logical_or, map(np.isnan, args)), np.nan, result)
+            result = function(*numbers)
+        return np.where(reduce(np.logical_or, [np.isnan(one) for one in numbers]), np.nan, result)
 
     def chosen(self, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
         """Return ``where(condition, one, other)``: numbers, NaN where the condition is undecided, or texts."""
         decider, *both = (self.value(part) for part in parts)
-        truth, numbers = _truth(decider), [_number(one) for one in both]
+        truth, (numbers, texts) = _truth(decider), _parted(both)
         if truth is None:
             number = _number(decider)
             if number is None:
                 raise self.refused(node, "where with a text as its condition")
-            truth = _Truth(number != 0, ~np.isnan(number))
-        if numbers[0] is not None and numbers[1] is not None:
-            return np.where(truth.known, np.where(truth.holds, *numbers), np.nan)
-        if numbers[0] is not None or numbers[1] is not None:
+            truth = _Truth(np.asarray(number != 0), ~np.isnan(number))
+        if numbers and texts:
             raise self.refused(node, "where with a text beside a number")
-        texts = np.where(truth.holds, *(np.asarray(one, dtype=object) for one in both))
-        return np.where(truth.known, texts, None)
+        one, other = numbers or [np.asarray(text, dtype=object) for text in texts]
+        chosen = np.where(truth.holds, one, other)
+        chosen[~np.broadcast_to(truth.known, chosen.shape)] = np.nan if numbers else None
+        return chosen
 
     def compared(self, op: ast.cmpop, one: Any, other: Any, node: ast.AST) -> _Truth:
-        compare, numbers = _COMPARE[type(op)][1], [_number(side) for side in (one, other)]
-        if numbers[0] is not None and numbers[1] is not None:
-            known = ~(np.isnan(numbers[0]) | np.isnan(numbers[1]))
-            return _Truth(np.asarray(compare(*numbers)), np.asarray(known))
-        if numbers[0] is not None or numbers[1] is not None or not isinstance(op, (ast.Eq, ast.NotEq)):
+        compare, (numbers, texts) = _COMPARE[type(op)][1], _parted([one, other])
+        if texts and (numbers or not isinstance(op, (ast.Eq, ast.NotEq))):
             raise self.refused(node, "ordering a text, or comparing it with a number,")
-        texts = [np.asarray(side, dtype=object) for side in (one, other)]
-        known = np.not_equal(texts[0], None).astype(bool) & np.not_equal(texts[1], None).astype(bool)
-        return _Truth(np.asarray(compare(*texts)).astype(bool), np.asarray(known))
+        sides = numbers or [np.asarray(text, dtype=object) for text in texts]
+        given = [~np.isnan(side) if numbers else np.asarray(side != np.array(None), dtype=bool) for side in sides]
+        return _Truth(np.asarray(compare(*sides), dtype=bool), np.asarray(given[0] & given[1]))
 
     def truth(self, node: ast.AST) -> _Truth:
         truth = _truth(self.value(node))
         if truth is None:
             raise self.refused(node, "something other than a comparison beside and, or, not")
         return truth
+
+    def with_text(self, node: ast.AST, value: Any) -> InputError:
+        """Return the error for arithmetic with a text; it names the text."""
+        word = next((one for one in np.asarray(value, dtype=object).flat if isinstance(one, str)), None)
+        told = "" if word is None else f" ('{word}')"
+        units = "Only parameters take units: write the numbers of a factor of your own without them."
+        return self.refused(node, f"arithmetic with a text{told}", units if split_quantity(word) else _REMEDY)
 
     def refused(self, node: ast.AST, what: str, remedy: str = _REMEDY) -> InputError:
         at = getattr(node, "col_offset", 0) + 1

@@ -3,32 +3,37 @@
 from __future__ import annotations
 
 import functools
+import inspect
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Set
 from contextlib import suppress
 from dataclasses import dataclass, field, fields, make_dataclass
 from typing import Any, ClassVar
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, check_names
+from trackroller.errors import Collector, InputError, check_names, raise_all, unknown_name
 from trackroller.materials import Material, MaterialDatabase, load_database
+from trackroller.numerics.plain import how_to_write, mapping_of, plain, rows_of
 from trackroller.numerics.rows import once_each
+from trackroller.numerics.units import in_unit
 from trackroller.parameters import (
     FRICTION_LEVELS,
     MAPPING_FIELDS,
     MATERIAL_FIELDS,
     MECHANICAL_MAPPINGS,
     OF_LIMITS,
+    OPTIONS,
     PARAMETERS,
 )
 from trackroller.parameters.example import EXAMPLE, Default, DefaultName
-from trackroller.roller.aliases import RADII, renamed, with_axis_distance
+from trackroller.roller.aliases import ALIASES, RADII, renamed, with_axis_distance
 from trackroller.roller.fields import FIELDS, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.table import CaseTable, MaterialArrays
 
+STUDY = "study"  # attribute of a design and of results: the study file as YAML
 __all__ = ["FIELDS", "Case", "CaseTable", "MaterialArrays", "geometry_problem", "to_table"]
 
 
@@ -41,12 +46,13 @@ _Numbers: Any = make_dataclass(
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Case(_Numbers):
     """One locating-bearing track roller on its guideway.
 
     The defaults are the driven example of the publication. A plain mapping with the same keys is accepted wherever a
-    `Case` is.
+    `Case` is. Instead of `friction_coefficient` a case also takes `mu`, and instead of `axis_distance` both
+    `outer_radius` and `groove_depth` of the roller [mm].
 
     Parameters
     ----------
@@ -123,9 +129,22 @@ class Case(_Numbers):
 
     not_given: ClassVar[tuple[str, ...]] = ()
 
-    def __post_init__(self) -> None:
+    def __init__(self, *values: Any, **named: Any) -> None:
+        if values and isinstance(values[0], (Mapping, Case)):
+            given = type(values[0]).__name__
+            raise InputError("case", given, "values by name, such as friction_coefficient=0.2", "Write Case(**values).")
+        super().__init__(*values, **_by_field(named))
+        self._check()
+
+    def _check(self) -> None:
+        """Check every field, and keep its value as it is computed with."""
         columns: dict[str, np.ndarray] = {}
         wrong = Collector()
+        for name, value in vars(self).copy().items():
+            if not isinstance(value, (Default, DefaultName)):
+                with wrong.part():
+                    object.__setattr__(self, name, plain(value, name))
+        wrong.check()
         if isinstance(self.friction_coefficient, Default):
             with suppress(InputError):  # a wrong law is refused below
                 object.__setattr__(self, "friction_coefficient", own_friction(self.friction_law))
@@ -145,6 +164,9 @@ class Case(_Numbers):
     def _checked_number(self, name: str) -> float:
         """Return a number of this case, which then stands as a float or None in its field; NaN if it is not given."""
         value, parameter = getattr(self, name), PARAMETERS[name]
+        if isinstance(value, list):
+            remedy = f"Solve a list of cases: [tr.Case({name}=value) for value in values]."
+            raise InputError(name, value, f"one number; {parameter.allowed()}", remedy)
         if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
             return math.nan
         if value is not None and isinstance(value, float) and math.isnan(value):
@@ -164,22 +186,34 @@ class Case(_Numbers):
         InputError
             For an unknown key, with the most similar known key, and for every value that `Case` refuses.
         """
+        values = mapping_of(values)
         if not isinstance(values, Mapping):
-            raise InputError("case", values, "a case is a mapping of parameter names to values")
-        wrong = Collector()
-        with wrong.part():
-            values = renamed(values)
-            values = with_axis_distance(values, number)
-        with wrong.part():
-            check_names("case field", map(str, values), (*FIELDS, *RADII))
-        with wrong.part():
-            case = cls(**{str(k): v for k, v in values.items() if str(k) in FIELDS})
-        wrong.check()
-        return case
+            several = isinstance(values, (list, tuple)) or hasattr(values, "columns")
+            remedy = "Give each of them alone; tr.solve takes several cases." if several else ""
+            raise InputError("case", type(values).__name__, "one case: parameter names and their values", remedy)
+        return cls(**{str(name): value for name, value in values.items()})
 
     def as_dict(self) -> dict[str, Any]:
         """Return the case as a plain mapping, one entry for each field."""
         return {field.name: getattr(self, field.name) for field in fields(self)}
+
+
+Case.__signature__ = inspect.signature(_Numbers)  # type: ignore[attr-defined]
+
+
+def _by_field(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of one case by the names of its fields; `InputError` names every other name."""
+    wrong, known = Collector(), {name: value for name, value in values.items() if name not in ALIASES}
+    with wrong.part():
+        known = renamed(values)
+        known = with_axis_distance(known, number)
+    with wrong.part():
+        check_names("case field", known, (*FIELDS, *RADII))
+    if wrong.errors:  # the errors of the other values belong to the same message
+        with wrong.part():
+            Case(**{name: value for name, value in known.items() if name in FIELDS})
+    wrong.check()
+    return known
 
 
 def _checked_word(name: str, value: Any) -> Any:
@@ -193,14 +227,42 @@ def _checked_word(name: str, value: Any) -> Any:
     return str(value) if isinstance(value, DefaultName) else value
 
 
+def is_single(cases: Any) -> bool:
+    """Return whether cases are one case: a `Case`, a mapping, or a row of a data frame."""
+    return isinstance(cases, Case) or isinstance(mapping_of(cases), Mapping)
+
+
+def _listed(cases: Any) -> list[Case]:
+    """Return cases of any form but a data set as a list; the first wrong case is refused with its number."""
+    allowed = "a Case, a mapping, a list or data frame of cases, or an xarray.Dataset"
+    if is_single(cases):
+        return [cases if isinstance(cases, Case) else Case.from_dict(cases)]
+    if hasattr(cases, "columns"):
+        cases = rows_of(cases, "cases")
+    elif hasattr(cases, "dims"):
+        raise InputError("cases", type(cases).__name__, allowed, "Write .to_dataset(), with a parameter as its name.")
+    elif isinstance(cases, Set):
+        raise InputError("cases", type(cases).__name__, allowed, how_to_write(cases))
+    elif not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)) or getattr(cases, "ndim", 1) != 1:
+        remedy = "Write a list of mappings, such as [{'axial_force': 30}, {'axial_force': 60}]."
+        raise InputError("cases", cases if np.isscalar(cases) else type(cases).__name__, allowed, remedy)
+    rows: list[Case] = []
+    for case in cases:
+        try:
+            rows.append(case if isinstance(case, Case) else Case.from_dict(case))
+        except InputError as error:
+            own = (
+                InputError(f"{one.field} (case {len(rows)})", one.value, one.allowed, one.remedy)
+                for one in error.errors
+            )
+            raise_all(own)
+    return rows
+
+
 def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return the raw values of cases, object arrays (n,), and their numbers, (n,), which each `Case` has checked."""
-    if isinstance(cases, (Case, Mapping)):
-        cases = [cases]
-    if not isinstance(cases, Iterable) or isinstance(cases, (str, bytes)) or getattr(cases, "ndim", 1) == 0:
-        raise InputError("cases", cases, "a Case, a mapping, a list of them or an xarray.Dataset")
-    rows = [c if isinstance(c, Case) else Case.from_dict(c) for c in cases]
     columns, numbers = {}, {}
+    rows = _listed(cases)
     for name in FIELDS:
         values = [getattr(row, name) for row in rows]
         if name in PARAMETERS:
@@ -214,18 +276,15 @@ def _of_cases(cases: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]
 def _of_dataset(design: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
     """Return the raw values of a design, object or float arrays (n,), and its checked numbers, (n,)."""
     n = design.sizes.get("case", 1)
+    design = _named(design)
     columns = {}
-    check_names("design variable", design.data_vars, FIELDS)
     default = Case().as_dict()
     for name in FIELDS:
-        if name in design.data_vars:
-            variable = design[name]
-            if set(variable.dims) - {"case"}:
-                raise InputError(name, tuple(variable.dims), "a design has the dimension 'case' only")
-            values = variable.values
+        if name in design.variables:
+            values = _in_own_unit(name, design[name])
         else:
             values = np.array(default[name], dtype=object)
-            if name == "friction_coefficient" and "friction_law" in design.data_vars:
+            if name == "friction_coefficient" and "friction_law" in design.variables:
                 values = own_frictions(design["friction_law"].values)
         columns[name] = np.broadcast_to(values if values.dtype == float else values.astype(object), (n,))
     numbers = _checked_numbers(columns, n)
@@ -233,6 +292,74 @@ def _of_dataset(design: Any) -> tuple[dict[str, np.ndarray], dict[str, np.ndarra
     if problem is not None:
         raise problem
     return columns, numbers
+
+
+def _named(design: Any) -> Any:
+    """Return a data set of cases with the names of parameters in place of aliases.
+
+    Every variable, coordinate and attribute that says something about the cases is a parameter along `case`, or an
+    option as a coordinate, or it is refused by name. A study's design has further coordinates of its own.
+    """
+    wrong, of_study = Collector(), STUDY in design.attrs
+    short = [name for name in ALIASES if name in design.variables]
+    with wrong.part():
+        renamed(dict.fromkeys(design.variables, "a variable"))
+        design = design.rename({name: ALIASES[name] for name in short})
+    design = design.drop_vars([name for name in short if name in design.variables])  # it is refused above
+    known = {*FIELDS, *(() if not of_study else design.coords)}
+    along = {"case", *(dim for name in FIELDS if name in design.variables for dim in design[name].dims)}
+    for name in map(str, design.variables):
+        with wrong.part():
+            if name in OPTIONS and name not in design.coords:
+                remedy = f"Write ds.set_coords('{name}'), or give {name} to tr.solve."
+                raise InputError(name, "a variable", "an option of each case is a coordinate along 'case'", remedy)
+            if name not in known and name not in OPTIONS and name not in along:
+                raise _unknown(name, "coordinate" if name in design.coords else "variable")
+            if name in FIELDS and set(design[name].dims) - {"case"}:
+                raise InputError(name, tuple(design[name].dims), *_along_case(design[name].dims))
+    for name in map(str, () if of_study else design.attrs):
+        with wrong.part():
+            if name in (*FIELDS, *ALIASES, *RADII, "material_pair"):
+                remedy = f"Write ds.assign({name}={design.attrs[name]!r})."
+                raise InputError(name, "an attribute", "a parameter is a variable of the data set", remedy)
+            if name in OPTIONS:
+                remedy = f"Give it to the call: tr.solve(ds, {name}={design.attrs[name]!r}), and remove the attribute."
+                raise InputError(name, "an attribute", "an argument of tr.solve", remedy)
+    wrong.check()
+    return design
+
+
+def _unknown(name: str, kind: str) -> InputError:
+    """Return the error for a variable or coordinate of a data set of cases that is no parameter."""
+    if name in RADII:
+        remedy = "Give axis_distance, or solve ds.to_dataframe(), whose rows may have both radii."
+        return InputError(name, f"a {kind}", "the axis distance in a data set", remedy)
+    if name == "material_pair":
+        return InputError(name, f"a {kind}", "the variables roller_material and guide_material", "Give both of them.")
+    error = unknown_name(f"design {kind}", name, (*FIELDS, *ALIASES))
+    drop = f"Remove a {kind} that is no parameter with ds.drop_vars('{name}')."
+    return InputError(error.field, name, error.allowed, f"{error.remedy} {drop}")
+
+
+def _along_case(dims: tuple[Any, ...]) -> tuple[str, str]:
+    """Return what is allowed instead of a variable along other dimensions, and what to do."""
+    names = [str(dim) for dim in dims if dim != "case"]
+    if "case" in dims:
+        remedy = f"Select one place along {names[0]}: ds.isel({names[0]}=0)."
+    elif len(names) == 1 and names[0] not in FIELDS:
+        remedy = f"Write ds.rename({names[0]}='case')."
+    else:
+        remedy = f"Write ds.stack(case={names})."
+    return "a design has the dimension 'case' only", remedy
+
+
+def _in_own_unit(name: str, variable: Any) -> np.ndarray:
+    """Return the values of a parameter in its unit; the attribute `units` may name another one."""
+    values, unit = variable.values, str(variable.attrs.get("units", "")).strip()
+    own = PARAMETERS.get(name)
+    if own is None or unit in ("", "1", "-", own.unit, own.units) or values.dtype.kind not in "fiu":
+        return np.asarray(values)
+    return np.array([in_unit(float(one), unit, own.unit, name) for one in np.ravel(values)]).reshape(values.shape)
 
 
 def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.ndarray]:
@@ -262,8 +389,9 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
 
     Parameters
     ----------
-    cases : Case, mapping, list of them, or xarray.Dataset
-        A data set has one variable for each parameter along the dimension `case`; other parameters take their default.
+    cases : Case, mapping, list or data frame of them, or xarray.Dataset
+        A data set has one variable or coordinate for each parameter along the dimension `case`, in the unit of its
+        attribute `units` if it has one. Parameters that it does not name take their default.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.
 

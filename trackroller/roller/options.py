@@ -11,6 +11,7 @@ import numpy as np
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.errors import Collector, InputError
+from trackroller.numerics.plain import plain
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import (
@@ -48,6 +49,7 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         wrong = Collector()
         for option in OPTIONS.values():
             with wrong.part():
+                object.__setattr__(self, option.name, plain(getattr(self, option.name), option.name))
                 # an accuracy may be an `Accuracy` or a number as text: `accuracy_settings` checks it
                 if option.kind != "accuracy" or isinstance(getattr(self, option.name), Mapping):
                     object.__setattr__(self, option.name, option.check(getattr(self, option.name)))

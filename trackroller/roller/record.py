@@ -15,7 +15,7 @@ from trackroller.errors import InputError
 from trackroller.materials import Material, load_database
 from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.case import Case
+from trackroller.roller.case import STUDY, Case
 from trackroller.roller.doubts import doubts_of_case
 
 if TYPE_CHECKING:
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-CASE, MATERIALS, STUDY = "case", "materials", "study"  # names of attributes: JSON, JSON, YAML
+CASE, MATERIALS = "case", "materials"  # names of attributes, JSON both
 NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given
 DOUBTS = "doubts"  # attribute: JSON list of sentences on unusual values
 

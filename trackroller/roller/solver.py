@@ -17,7 +17,7 @@ from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements, temperature
 from trackroller.roller.accuracy import Accuracy
 from trackroller.roller.blocks import Block, join
-from trackroller.roller.case import Case, CaseTable, to_table
+from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
@@ -76,9 +76,10 @@ def solve(
 
     Parameters
     ----------
-    cases : Case, mapping, list of them, or xarray.Dataset
-        What is solved. A list, and a data set with the dimension `case`, give results along `case`. The results of a
-        study's design can be analysed and reported: see `trackroller.open_study`.
+    cases : Case, mapping, list or data frame of them, or xarray.Dataset
+        What is solved. A list, a data frame with a case a row, and a data set with the dimension `case` give results
+        along `case`. Parameters of a data set are variables or coordinates; any other name is refused. The results of
+        a study's design can be analysed and reported: see `trackroller.open_study`.
     outputs : str or iterable of str
         Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life" (by
         default these four), "friction_work", "tractions", "subsurface", "limits", one a limit.
@@ -151,7 +152,7 @@ def solve(
     given = {name: value for name, value in locals().items() if name in OPTIONS and value is not None}
     if hasattr(cases, "data_vars"):
         return _solve_design(cases, given, database)
-    single = isinstance(cases, Case) or hasattr(cases, "keys")
+    single = is_single(cases)
     database = load_database() if database is None else database
     ds = _solve_table(to_table(cases, database), Options(**given), single)
     if not single:

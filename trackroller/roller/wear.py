@@ -10,9 +10,10 @@ import numpy as np
 
 from trackroller.contact.normal.measure import roughness
 from trackroller.damage.limit import variables
-from trackroller.errors import InputError
+from trackroller.errors import InputError, check_names
 from trackroller.materials import load_database
 from trackroller.numerics.numbers import number_in
+from trackroller.parameters import OPTIONS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES
 from trackroller.roller.groove import Groove, between, travel_to_depth
@@ -123,7 +124,8 @@ def wear(
     case = case if isinstance(case, Case) else Case.from_dict(case)
     allowed = "a travel > 0 km and at most 1e9 km, such as 500km"
     to = number_in(to, "to", allowed, np.nextafter(0.0, 1.0), FARTHEST, unit="km")
-    given = Options(**{"normal": "halfspace", "outputs": tuple(OUTPUTS if outputs is None else outputs)} | options)
+    check_names("option", options, OPTIONS)
+    given = Options(**{"normal": "halfspace", "outputs": OUTPUTS if outputs is None else outputs} | options)
     record = _Record(case, given, known, tell, to)
     return record.run(resume)
 

@@ -149,6 +149,8 @@ def _number(name: str, value: Any, where: str) -> Any:
     number = number_or_nan(value, parameter.unit, where)
     if math.isnan(number) or not parameter.accepts(number):
         remedy = parameter.remedy(number)
+        if isinstance(value, list):
+            remedy = f"Give several values under factors: {{{name}: {{values: {value}}}}}."
         if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
             remedy = f"Did you mean '{close}'?"
         raise InputError(where, value, parameter.allowed(), remedy)

@@ -15,6 +15,7 @@ from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
+from trackroller.numerics.plain import mapping_of
 from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import ALIASES, study_with_radii
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
@@ -67,6 +68,8 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
     for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):
         allowed = allowed.replace(f"valid {word}", plain)
     remedy = f"For example {where}: {EXAMPLES[where]}." if where in EXAMPLES else ""
+    if where == "table" and isinstance(detail.get("input"), (list, dict)):
+        remedy = "Write the table to a file, as frame.to_csv('cases.csv', index=False), and give the path: cases.csv."
     return InputError(where, detail.get("input"), allowed, remedy)
 
 
@@ -157,7 +160,7 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     Parameters
     ----------
     path : str, pathlib.Path or mapping
-        The YAML file, or a mapping with its keys.
+        The YAML file, or a mapping with its keys; arrays and columns of data frames count as lists.
     database : MaterialDatabase, optional
         Materials. Default: the built-in database, changed and extended by the user's own file.
     planned : bool
@@ -181,6 +184,7 @@ def load_study(path: str | Path | Mapping[str, Any], database: Any = None, plann
     >>> load_study("study.yaml").design().sizes["case"]
     2
     """
+    path = mapping_of(path)
     if isinstance(path, Mapping):
         return parse_study(path, None, database, planned)
     if not isinstance(path, (str, Path)):

@@ -31,6 +31,7 @@ from trackroller.damage.sn_curve import PROBABILITIES
 from trackroller.errors import Collector, InputError, check_names, nearest
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
+from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import OF_LIMITS, PARAMETERS
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.roller.aliases import ALIASES, renamed
@@ -128,7 +129,7 @@ class Spectrum:
         Parameters
         ----------
         values : mapping
-            Keys and values of a spectrum file.
+            Keys and values of a spectrum file; arrays count as lists, and `blocks` may be a data frame.
 
         Returns
         -------
@@ -140,6 +141,9 @@ class Spectrum:
         InputError
             If an entry is wrong; the error names block, field and value.
         """
+        values = mapping_of(values)
+        if not isinstance(values, Mapping):
+            raise InputError("spectrum", type(values).__name__, "a mapping with the keys of a spectrum file")
         wrong = Collector()
         found: dict[str, Any] = {}
         with wrong.part():
