@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 import re
 from pathlib import Path
 
@@ -105,6 +106,23 @@ def test_a_factor_cannot_have_a_name_of_the_results(name, tmp_path, monkeypatch,
 )
 def test_a_bad_setting_is_refused_in_one_line(word, capsys):
     assert word.partition("=")[0] in _refused(capsys, "solve", "--set", word)
+
+
+@pytest.mark.parametrize("name", ["x.csv", "x", "x.xlsx", "x.json", "x.nc.gz", ".nc"])
+def test_a_file_is_what_its_name_says(name, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("shift.yaml").write_text("blocks: [{distance: 10, radial_force: -200}]\n")
+    for words in (["solve"], ["spectrum", "shift.yaml"], ["wear"]):
+        assert "ends in .nc" in _refused(capsys, *words, "-o", name)
+    assert "ends in .html" in _refused(capsys, "explore", "study", "-o", name)
+    assert os.listdir() == ["shift.yaml"]
+
+
+def test_wear_does_not_go_on_from_another_file(tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    Path("notes.nc").write_text("no netCDF")
+    assert "give another name" in _refused(capsys, "wear", "-o", "notes.nc")
+    assert Path("notes.nc").read_text() == "no netCDF"
 
 
 @pytest.mark.parametrize("path", [".", "/dev/null", "missing/out.nc"])

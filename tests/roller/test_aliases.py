@@ -9,6 +9,7 @@ import pytest
 from command_line import trackroller
 
 import trackroller as tr
+from trackroller.cli.case import case_of
 from trackroller.parameters.expressions import evaluate
 from trackroller.roller.aliases import AXIS_DISTANCE, renamed
 
@@ -96,3 +97,48 @@ def test_files_and_set_take_the_names(tmp_path):
     (tmp_path / "cases.csv").write_text("mu\n0.1\n0.2\n")
     assert tr.load_study(tmp_path / "t.yaml").design()["friction_coefficient"].values.tolist() == [0.1, 0.2]
     assert renamed({"mu": 1}) == {"friction_coefficient": 1}
+
+
+FILES = {
+    "mu": "mu: 0.3\n",
+    "friction": "friction_coefficient: 0.3\n",
+    "both": "mu: 0.3\nfriction_coefficient: 0.3\n",
+    "radii": "outer_radius: 25\ngroove_depth: 1.5\n",
+    "axis": "axis_distance: 30\n",
+}
+
+
+@pytest.mark.parametrize(
+    ("file", "words", "wanted"),
+    [
+        ("mu", ["mu=0.12"], {"friction_coefficient": 0.12}),
+        ("mu", ["friction_coefficient=0.12"], {"friction_coefficient": 0.12}),
+        ("friction", ["mu=0.12"], {"friction_coefficient": 0.12}),
+        ("both", ["mu=0.12"], {"friction_coefficient": 0.12}),
+        ("radii", ["axis_distance=22"], {"axis_distance": 22}),
+        ("radii", ["outer_radius=26"], {"outer_radius": 26, "groove_depth": 1.5}),
+        ("axis", ["outer_radius=26", "groove_depth=1.5"], {"outer_radius": 26, "groove_depth": 1.5}),
+    ],
+)
+def test_a_setting_wins_over_the_file_whichever_word_it_uses(file, words, wanted, tmp_path):
+    path = tmp_path / "case.yaml"
+    path.write_text(FILES[file])
+    case, _, _ = case_of(path, words)
+    assert case == tr.Case.from_dict(wanted)
+
+
+@pytest.mark.parametrize(
+    ("file", "words", "says"),
+    [
+        ("friction", ["mu=9"], "^friction_coefficient = 9 "),  # no line of the file
+        ("mu", ["friction_coefficient=9"], "^friction_coefficient = 9 "),
+        ("axis", ["outer_radius=26"], "^outer_radius = 26 .* together with groove_depth"),
+        ("both", ["axial_force=1"], "^line 2: friction_coefficient = 0.3 .* another name"),
+        ("axis", ["mu=0.1", "friction_coefficient=0.2"], "^friction_coefficient = 0.1 .* another name"),
+    ],
+)
+def test_settings_that_contradict_each_other_are_refused(file, words, says, tmp_path):
+    path = tmp_path / "case.yaml"
+    path.write_text(FILES[file])
+    with pytest.raises(tr.InputError, match=says):
+        case_of(path, words)

@@ -12,7 +12,7 @@ from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import REGIMES
-from trackroller.roller.aliases import ALIASES
+from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.duty import with_duty
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 COMPLETE = ("forces", "contact", "peak_stress", "life")
 CHEAP = ("rating", "bearing", "limits")  # limits that cost nothing beside a complete case
+PRINTED = " --json prints the result as text, and --report writes a page."
 SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 
@@ -43,9 +44,10 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
 def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return the case, the options and the duty of a case file and of --set words."""
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
-    values = ({} if path is None else parse_mapping(text, "case file")) | given
-    with errors_by_line(text, given, aliases=ALIASES), files_beside(path):
-        return checked_case(values)
+    values = {} if path is None else parse_mapping(text, "case file")
+    named = {*given, *(ALIASES.get(name, name) for name in given)}
+    with errors_by_line(text, named, aliases=ALIASES), files_beside(path):
+        return checked_case(overridden(values, given))
 
 
 def tell_doubts(case: Case) -> None:
@@ -87,6 +89,18 @@ def writable(out: Path) -> Path:
     return target
 
 
+def writable_data(out: Path, otherwise: str = "") -> Path:
+    """Return the netCDF file to write for the path that a user gave; see `writable`.
+
+    Another ending than .nc is refused, because a file must be what its name says. `otherwise` says how to get the
+    result in another form.
+    """
+    if out.suffix.lower() != ".nc":
+        remedy = f"Write {out.stem or 'result'}.nc.{otherwise}"
+        raise InputError("--out", str(out), "a file whose name ends in .nc, because it is written as netCDF", remedy)
+    return writable(out)
+
+
 def writable_page(page: Path) -> Path:
     """Return the page to write for the path that a user gave, .html or .pdf; see `writable`."""
     from trackroller.report.html import check_page  # heavy: jinja2
@@ -122,7 +136,8 @@ def solve_and_tell(
 
     `limits` are names of limits, of which the margins alone are printed.
     """
-    target, page = None if out is None else writable(out), None if sheet is None else writable_page(sheet)
+    target = None if out is None else writable_data(out, PRINTED)
+    page = None if sheet is None else writable_page(sheet)
     plain = as_json or target is not None or "outputs" in case_of(case, settings)[1]
     groups, more = _groups(limits, page is not None, plain), {"shortcuts": False} if no_shortcuts else {}
     dataset = solve_case(case, settings, **more | ({"outputs": groups} if groups else {}))
@@ -151,7 +166,8 @@ def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | Non
 
     `out` receives netCDF, and `report` the page. `as_json` prints JSON; without it and `out`, tables are printed.
     """
-    target, page = None if out is None else writable(out), None if report is None else writable_page(report)
+    target = None if out is None else writable_data(out, PRINTED)
+    page = None if report is None else writable_page(report)
     from trackroller.report.pages import sheet_text
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.study.spectrum.file import load_spectrum
@@ -174,7 +190,8 @@ def run_wear(
     case: Path | None, to: str, settings: list[str] | None, out: Path | None, report: Path | None, quiet: bool
 ) -> None:
     """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
-    target, page = None if out is None else writable(out), None if report is None else writable_page(report)
+    target = None if out is None else writable_data(out)
+    page = None if report is None else writable_page(report)
     new, options, _ = case_of(case, settings)
     tell_doubts(new)
 

@@ -83,7 +83,7 @@ def solve(
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) instead")] = None,
     sheet: Annotated[Path | None, typer.Option("--report", help="write a sheet (.html or .pdf) as well")] = None,
     limits: Annotated[str | None, typer.Option(help="print limits in one table: all, or names with commas")] = None,
     no_shortcuts: NoShortcuts = False,
@@ -139,7 +139,7 @@ def best(
 def explore(
     study: Annotated[str, typer.Argument(help="results/NAME, NAME, or a study.nc", show_default=False)],
     results: Results = Path("results"),
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="file; beside study.nc if not given")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="file (.html); beside study.nc if not given")] = None,
 ) -> None:
     """Write the explorer of a study that was run as one page (HTML) that works without a network."""
 
@@ -181,7 +181,7 @@ def rerun(
 def spectrum(
     file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF instead")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) instead")] = None,
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
 ) -> None:
     """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
@@ -192,7 +192,9 @@ def wear(
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
     to: Annotated[str, typer.Option("--to", help="travel at which to end, such as 500km")] = "50km",
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="netCDF; a run goes on from what it holds")] = None,
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="netCDF (.nc); a run goes on from what it holds")
+    ] = None,
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
     quiet: Annotated[bool, typer.Option("--quiet", "-q", help="no line for each state")] = False,
 ) -> None:

@@ -91,8 +91,11 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
     from trackroller.solved import open_study
 
     path = Path(study) if Path(study).exists() else results / study
+    target = out if out is None else writable_page(out)
+    if target is not None and target.suffix.lower() == ".pdf":
+        raise InputError("--out", str(out), "a file whose name ends in .html; the explorer works in a browser")
     solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
-    print(solved.explore(out or place_of_pages(solved, folder) / "explorer.html"))
+    print(solved.explore(target or place_of_pages(solved, folder) / "explorer.html"))
 
 
 def print_best(study: str, results: Path, out: Path | None) -> None:

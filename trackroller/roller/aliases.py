@@ -40,6 +40,17 @@ def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
     return out
 
 
+def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values of a file with those of the command line in their place, whichever name each of them has.
+
+    An axis distance takes the place of both radii of the roller, and a radius that of the axis distance.
+    """
+    given = renamed(given)
+    instead = {*given, *(RADII if "axis_distance" in given else ())}
+    instead |= {"axis_distance"} if set(RADII) & set(given) else set()
+    return renamed({name: value for name, value in values.items() if ALIASES.get(name, name) not in instead}) | given
+
+
 def radius(name: str, value: Any, where: str = "") -> float:
     """Return an outer radius or the depth of a groove [mm]."""
     field, allowed = f"{where}{name}", f"a length > 0 in mm, the {name.replace('_', ' ')} of the roller"
