@@ -210,7 +210,7 @@ def run_wear(
 
     before = None
     if target is not None and target.exists():
-        before = read_netcdf(target, "--out", "Give another file: a run goes on from what the file holds.")
+        before = read_netcdf(target, "--out", "A run goes on from what the file holds: give another name.")
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
