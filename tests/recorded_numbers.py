@@ -15,7 +15,7 @@ import os
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 if __name__ == "__main__":  # one thread makes the order of every sum repeatable; tests have their own setting
     for _name in ("NUMBA_NUM_THREADS", "OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):
@@ -28,6 +28,8 @@ import yaml
 import trackroller as tr
 from trackroller.cli.main import app, run_app
 from trackroller.parameters import OPTIONS
+from trackroller.roller.case import to_table
+from trackroller.roller.differences import ROUNDING, SEARCH, allowed, scale
 
 FILE = Path(__file__).parent / "data" / "recorded_numbers.npz"
 MOST = 100  # values kept of one variable, evenly spaced: a wrong field is wrong at more than one point
@@ -36,8 +38,23 @@ COMPLETE = [*FORCES, "peak_stress", "life"]
 FIELDS = ["tractions", "subsurface"]
 LIMITS = [name for name in OPTIONS["outputs"].values if name not in (*COMPLETE, *FIELDS)]
 STEEL, HARD, ALUMINIUM = "1.7225-normalised", "1.7225-quenched-tempered", "EN AW-7075"
+LOADS = ("radial_force", "axial_force", "motor_force", "axis_distance")  # give the scales of forces and moments
 Cases = list[dict[str, Any]]
 Arrays = dict[str, np.ndarray]
+
+
+class Numbers(NamedTuple):
+    """Values of a variable (m,), their scale (m,), and the difference over it that rounding may cause [1].
+
+    Texts have no scale.
+    """
+
+    values: np.ndarray
+    scale: np.ndarray | None = None
+    allowed: float = 0.0
+
+
+Computed = dict[str, Numbers]
 
 # rollers as they are built: free, driven and braked, straight and curved, concave and convex profiles
 ORDINARY: Cases = [
@@ -187,7 +204,7 @@ def names() -> list[str]:
     return [*groups(), "user_tractions", *studies()]
 
 
-def compute(name: str) -> Arrays:
+def compute(name: str) -> Computed:
     """Return the numbers of one group by variable, computed by the version that Python imports.
 
     Parameters
@@ -197,7 +214,7 @@ def compute(name: str) -> Arrays:
 
     Returns
     -------
-    dict of str to ndarray
+    dict of str to Numbers
         One-dimensional arrays of at most `MOST` values. Flags and texts stand as words.
     """
     if name in studies():
@@ -205,41 +222,77 @@ def compute(name: str) -> Arrays:
     if name == "user_tractions":
         return _user_tractions()
     cases, options = groups()[name]
-    return _arrays(tr.solve(cases, **options), name)
+    table = to_table(cases)
+    return _results(
+        tr.solve(cases, **options).assign_coords({load: ("case", getattr(table, load)) for load in LOADS}), name
+    )
 
 
-def _study(name: str) -> Arrays:
+def _study(name: str) -> Computed:
     """Run a study and analyse it: the numbers of its design, its results and its indices."""
     study = studies()[name]
     with tempfile.TemporaryDirectory() as place, contextlib.chdir(place):
         Path("study.yaml").write_text(yaml.safe_dump(study, sort_keys=False), encoding="utf-8")
-        found = _arrays(tr.load_study("study.yaml").design(), f"{name}/design")
+        found = _results(tr.load_study("study.yaml").design(), f"{name}/design")
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             assert run_app(lambda: app(["run", "study.yaml", "-q"])) == 0
         gathered = Path("results") / study["name"] / "study.nc"
         with xr.open_dataset(gathered) as results:
-            found |= _arrays(results.load(), f"{name}/results")
-        return found | _arrays(tr.open_study(gathered).indices(), f"{name}/indices")
+            found |= _results(results.load(), f"{name}/results")
+        return found | _indices(tr.open_study(gathered).indices(), f"{name}/indices")
 
 
-def _user_tractions() -> Arrays:
-    """Return stresses under tractions that a user gives, by the public functions."""
+def _user_tractions() -> Computed:
+    """Return stresses under tractions that a user gives, by the public functions; their scale is the pressure."""
     axis = np.linspace(-1.0, 1.0, 15)
     height = np.sqrt(np.clip(1.0 - axis[:, None] ** 2 / 0.8 - axis[None, :] ** 2 / 0.6, 0.0, None))
     given = (axis, axis, 900.0 * height, 80.0 * height * axis, 120.0 * height**2)
     points = np.stack(np.meshgrid([-0.5, 0.0, 0.31], [-0.4, 0.2], [0.0, 0.07, 0.5], indexing="ij"), axis=-1)
     found: Arrays = {}
     for nu in (0.0, 0.3, 0.5):
-        found[f"user_tractions/grid_{nu}"] = _thin(tr.stress_on_grid(*given, [0.0, 0.1, 0.6], nu))
+        found[f"user_tractions/grid_{nu}"] = tr.stress_on_grid(*given, [0.0, 0.1, 0.6], nu)
         stress = tr.stress_from_tractions(*given, points, nu)
-        found[f"user_tractions/bilinear_{nu}"] = _thin(stress)
+        found[f"user_tractions/bilinear_{nu}"] = stress
         for function in (tr.von_mises, tr.principal_stresses, tr.max_shear):
-            found[f"user_tractions/{function.__name__}_bilinear_{nu}"] = _thin(function(stress))
+            found[f"user_tractions/{function.__name__}_bilinear_{nu}"] = function(stress)
+    return {key: _numbers(stress, np.full(stress.shape, 900.0), ROUNDING) for key, stress in found.items()}
+
+
+def _results(ds: xr.Dataset, where: str) -> Computed:
+    """Return the variables of a design or of results, with the scales that the program itself compares them by."""
+    return {
+        f"{where}/{name}": _numbers(_words(ds[name]), scale(ds, name), allowed(name))
+        if ds[name].dtype.kind == "f"
+        else Numbers(_thin(_words(ds[name])))
+        for name in map(str, ds.variables)
+        if name != "reason" and (name not in LOADS or where.count("/"))
+    }
+
+
+def _indices(ds: xr.Dataset, where: str) -> Computed:
+    """Return the variables of an analysis.
+
+    Shares and powers of ten are compared with 1, other effects with the largest effect on the same output.
+    """
+    found = {}
+    for name, array in ds.variables.items():
+        if array.dtype.kind != "f":
+            found[f"{where}/{name}"] = Numbers(_thin(_words(ds[name])))
+            continue
+        size = np.abs(ds[name])
+        against = size.max([dim for dim in size.dims if dim != "output"])
+        for units in ({"output_units", "scale"} & {*ds.coords}) if "output" in size.dims else ():
+            against = xr.where(ds[units].isin(["1", "log10"]), np.fmax(against, 1.0), against)
+        if array.attrs.get("units") == "1":
+            against = np.fmax(against, 1.0)
+        found[f"{where}/{name}"] = _numbers(
+            array.values, against.broadcast_like(size).transpose(*size.dims).values, SEARCH
+        )
     return found
 
 
-def _arrays(ds: xr.Dataset, where: str) -> Arrays:
-    return {f"{where}/{name}": _thin(_words(ds[name])) for name in ds.variables if name != "reason"}
+def _numbers(values: np.ndarray, scales: np.ndarray, most: float) -> Numbers:
+    return Numbers(_thin(values), _thin(scales), most)
 
 
 def _words(array: xr.DataArray) -> np.ndarray:
@@ -294,7 +347,7 @@ def main(wanted: list[str]) -> None:
     if wanted:
         kept = {key: values for key, values in load().items() if key.partition("/")[0] not in wanted}
     recorded = [compute(name) for name in wanted or names()]
-    arrays = kept | {key: values for found in recorded for key, values in found.items()}
+    arrays = kept | {key: numbers.values for found in recorded for key, numbers in found.items()}
     save(arrays)
     print(f"{FILE.name}: {len(arrays)} arrays, {FILE.stat().st_size / 1000:.0f} kB")
 

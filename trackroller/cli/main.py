@@ -159,7 +159,7 @@ def repeat(
     case: Annotated[int, typer.Argument(help="case number (variable `case` of study.nc)", show_default=False)],
     results: Results = Path("results"),
 ) -> None:
-    """Solve one case of a study again, compare the results, and print a command that solves this case alone."""
+    """Solve one case again, compare (exit 1 if a value differs by more than rounding), print a command for it alone."""
 
 
 @command("trackroller.cli.study", "print_verified")
@@ -174,7 +174,7 @@ def rerun(
     crate: Annotated[Path, typer.Argument(help="results/NAME, or a copy of it from elsewhere", show_default=False)],
     results: Annotated[Path, typer.Option("--results", help="folder for the repeated study")] = Path("rerun"),
 ) -> None:
-    """Solve a study again from its RO-Crate alone and compare; exit 1 if a value differs."""
+    """Solve a study again from its RO-Crate alone and compare; exit 1 if a value differs by more than rounding."""
 
 
 @command("trackroller.cli.case", "run_spectrum")

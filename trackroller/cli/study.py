@@ -17,6 +17,7 @@ from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report.tables.table import cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.roller.case import to_table
+from trackroller.roller.differences import Difference
 from trackroller.roller.explain import explain as stages_of
 from trackroller.roller.options import Options, options_of_cases
 from trackroller.study.cost import duration
@@ -163,16 +164,33 @@ def _print_left(status: Status) -> None:
 
 
 def print_repeat(study: str, case: int, results: Path) -> int:
-    """Solve a case again and compare; return the exit code, 0 if every number equals the stored one."""
+    """Solve a case again and compare; return the exit code, 0 if no result differs by more than rounding explains."""
     again = repeat_case(find_study(study, results), case, results)
     print(again.command())
-    if again.largest == 0.0:
-        print(f"case {case}: equal to the stored result in every number")
-        return 0
-    for variable, apart in again.differences.items():
-        if apart > 0:
-            print(f"{variable}: differs by {apart:.1e} (relative)")
-    return 1
+    differs = _print_differences(again.differences)
+    if not differs:
+        print(f"case {case}: equal to the stored result {_how_equal(again.differences)}")
+    return int(differs)
+
+
+def _print_differences(compared: Mapping[str, Difference]) -> bool:
+    """Print the variables that differ by more than rounding explains, and return whether there are any."""
+    found = {name: difference for name, difference in compared.items() if difference.found}
+    for name, (apart, allowed, scale) in found.items():
+        if apart < math.inf:
+            print(f"{name}: differs by {apart:.1e} of {scale}; rounding explains {allowed:.0e}")
+        else:
+            print(f"{name}: is missing now, or has other gaps or words")
+    return bool(found)
+
+
+def _how_equal(compared: Mapping[str, Difference]) -> str:
+    """Return how closely values agree that differ by no more than rounding explains."""
+    rounded = {name: difference for name, difference in compared.items() if difference.apart > 0}
+    if not rounded:
+        return "in every number"
+    name, (apart, _, scale) = max(rounded.items(), key=lambda item: item[1].apart)
+    return f"up to rounding; the largest difference is {apart:.1e} of {scale} ({name})"
 
 
 def print_verified(folder: Path) -> int:
@@ -195,16 +213,13 @@ def print_rerun(crate: Path, results: Path) -> int:
         raise InputError("--results", str(results), "another folder than that of the crate", "Choose a new folder.")
     plan = run_study(study, results)
     compared = compare_results(stored, plan.folder.gathered)
-    for name, apart in compared.items():
-        if apart > 0:
-            how = f"differs by {apart:.1e} (relative)" if apart < math.inf else "is missing now, or has other gaps"
-            print(f"{name}: {how}")
-    if new := [name for name, apart in compared.items() if math.isnan(apart)]:
+    differs = _print_differences(compared)
+    if new := [name for name, difference in compared.items() if math.isnan(difference.apart)]:
         print(f"not compared, because {stored} lacks them: {', '.join(new)}")
-    same = not any(apart > 0 for apart in compared.values())
-    if same:
-        print(f"{len(compared) - len(new)} variables have the same values as {stored}")
-    return int(not same)
+    if not differs:
+        same = len(compared) - len(new)
+        print(f"{same} variables have the same values as {stored}, equal {_how_equal(compared)}")
+    return int(differs)
 
 
 def print_plan(

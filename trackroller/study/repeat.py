@@ -6,11 +6,9 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-import xarray as xr
-
 from trackroller.errors import InputError, WorkError
 from trackroller.parameters import PARAMETERS
+from trackroller.roller.differences import Difference, compare
 from trackroller.roller.options import options_of_cases
 from trackroller.roller.record import solve_command
 from trackroller.study.design.build import case_columns
@@ -32,18 +30,13 @@ class Repeat:
         Values of the case.
     options : dict
         Keyword arguments of `solve`.
-    differences : dict
-        Largest relative difference to the stored result [1], by variable.
+    differences : dict of str to Difference
+        Difference to the stored result, by variable.
     """
 
     case: dict[str, Any]
     options: dict[str, Any]
-    differences: dict[str, float]
-
-    @property
-    def largest(self) -> float:
-        """Return the largest relative difference of all variables [1]."""
-        return max(self.differences.values(), default=0.0)
+    differences: dict[str, Difference]
 
     def command(self) -> str:
         """Return a command that solves the case without the study."""
@@ -89,32 +82,9 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     row = design.drop_vars(list(design.coords)).drop_attrs().isel(case=[number])
     solved = solve(row, database=study.materials, **options[group[number]])
     again = chunks.from_results(solved, state["case"].values)
-    differences = compare(before, chunks.join([before.isel(case=[]), again]))  # a failed case lacks results of others
+    again = chunks.join([before.isel(case=[]), again])  # a failed case lacks results of others
+    loads = {name: ("case", row[name].values) for name in row.data_vars if name not in before.variables}
+    differences = compare(before.assign_coords(loads), again.assign_coords(loads))
     case = {name: row[name].values[0] for name in case_columns(row)}
     case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
     return Repeat(case, dict(options[group[number]]), differences)
-
-
-def compare(one: xr.Dataset, two: xr.Dataset) -> dict[str, float]:
-    """Return the largest relative difference of each variable of two data sets.
-
-    0 is the same to the last bit; inf means that the second one lacks the variable, NaN that the first one does.
-    """
-    return {str(name): _difference(one, two, str(name)) for name in sorted({*one.variables, *two.variables}, key=str)}
-
-
-def _difference(one: xr.Dataset, two: xr.Dataset, name: str) -> float:
-    """Return the largest relative difference of a variable; NaN in one data set alone counts as inf."""
-    if name not in one.variables:
-        return np.nan
-    if name not in two.variables or one[name].shape != two[name].shape:
-        return np.inf
-    old, new = one[name].values, two[name].values
-    if old.dtype.kind not in "fc":
-        return 0.0 if np.array_equal(old, new) else np.inf
-    same = (old == new) | (np.isnan(old) & np.isnan(new))
-    if same.all():
-        return 0.0
-    scale = np.maximum(np.abs(old), np.abs(new))
-    apart = np.where(same, 0.0, np.abs(old - new) / np.where(scale > 0, scale, 1.0))
-    return float(np.where(np.isnan(apart), np.inf, apart).max())

@@ -21,7 +21,7 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.files import sha256, write_text
-from trackroller.study.repeat import compare
+from trackroller.roller.differences import Difference, compare
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.provenance import versions
@@ -181,6 +181,6 @@ def study_of_crate(root: Path | str) -> Study:
     return study_of_folder(StudyFolder(Path(root)))
 
 
-def compare_results(before: Path, after: Path) -> dict[str, float]:
-    """Return the largest relative difference of each variable of two `study.nc`, see `compare`."""
+def compare_results(before: Path, after: Path) -> dict[str, Difference]:
+    """Return the difference of each variable of two `study.nc`, see `compare`."""
     return compare(read_result(before), read_result(after))
