@@ -17,6 +17,7 @@ ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"
 # the top of the package holds public names and may import all rooms
 ORDER = (
+    "environment",
     "errors",
     "files",
     "yaml_file",

@@ -70,7 +70,7 @@ FORMULAS = {
         ("halfspace/test_halfspace_kernels.py",),
     ),
     "exponent": (
-        "materials/sn_curve.py",
+        "damage/sn_curve.py",
         "np.log(cycles) / np.log(stresses)",
         "np.log(cycles) * np.log(stresses)",
         ("materials/test_sn_curve.py", "damage/test_fatigue.py"),
@@ -111,7 +111,7 @@ DECISIONS = {
     "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("analysis/designs.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
     "median-case": ("analysis/designs.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
-    "beyond-data": ("analysis/lives.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
+    "beyond-data": ("analysis/table.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
     "class-of-a-value": ("analysis/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
     "target-met": ("analysis/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
     "all-targets": ("analysis/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),

@@ -93,7 +93,7 @@ def test_an_input_that_is_edited_between_load_and_plan_is_refused(home, name):
 
 GROWN = """
 name: grown
-design: lhs
+design: sobol
 samples: {samples}
 outputs: [forces]
 contact_model: sliding

@@ -94,7 +94,7 @@ def test_a_study_of_another_solver_is_read_whole_and_says_so(sealed):
     before = forces(sealed)
     with pytest.warns(UserWarning, match=r"Another version of the solver .*`trackroller run`"):
         solved = tr.open_study(sealed)
-    with pytest.warns(UserWarning, match=r"Ignored: analysis\.measures and analysis\.resamples\."):
+    with pytest.warns(UserWarning, match=r"Ignored: analysis\.measures and analysis\.resamples, because"):
         assert tr.open_study(sealed).study.config.analysis.keep == ("rolling",)
     np.testing.assert_array_equal(solved.data["normal_force"].values, before)
     for words, page in ((("report", "sealed"), "report.html"), (("explore", "results/sealed"), "explorer.html")):
