@@ -119,13 +119,18 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     InputError
         If the file is missing, no regular file, too large, unreadable or neither UTF-8 nor UTF-16 with its mark.
     """
-    content = read_bytes(path, what, most)
+    return text_of(read_bytes(path, what, most), path, what)
+
+
+def text_of(content: bytes, path: Path | str, what: str) -> str:
+    """Return the text of the content of a user's file, see `read_text`."""
     utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))  # Excel's "Unicode text"
     try:
         text = content.decode("utf-16" if utf_16 else "utf-8-sig")
     except UnicodeDecodeError as exc:
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
-        raise InputError(what, str(path), f"{exc.encoding.upper()} text (byte {exc.start} is not)", remedy) from None
+        error = InputError(what, str(path), f"{exc.encoding.upper()} text (byte {exc.start} is not)", remedy)
+        raise (error if utf_16 else error.at(path, content.count(b"\n", 0, exc.start) + 1)) from None
     if "\0" in text:
         raise InputError(what, str(path), "a text; this file holds zero bytes", "Save the file as UTF-8.")
     return text
@@ -162,10 +167,15 @@ def find_beside(name: Any, field: str) -> Path:
     path = Path(str(name))
     if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
         raise InputError(field, str(name), "a relative path without '..'", remedy)
+    linked = None
     for folder in folders:
         here = folder / path
         if here.is_file() and here.resolve().is_relative_to(folder.resolve()):
             return here
+        linked = linked or (here if here.is_file() else None)
+    if linked is not None:
+        outside = f"a file {where}; this is a link that leads out of the folder to {linked.resolve()}"
+        raise InputError(field, str(name), outside, "Copy the file to the place of the link.")
     raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.")
 
 

@@ -191,7 +191,7 @@ def test_a_table_of_blocks_names_all_its_errors_in_order(tmp_path):
     assert starts_of(lines(trackroller("spectrum", "s.yaml", cwd=tmp_path, code=2).stderr)) == [
         "line 2: critical_damage = 0",
         "b.csv, line 2: block 'a'.radial_force = '0.2 kN'",
-        "b.csv, line 4: block 'b'.distance = 'x km'",
+        "b.csv, line 4: block 'b'.distance = 'x'",
         "b.csv, line 5: blocks = 'c, 1'",
     ]
 

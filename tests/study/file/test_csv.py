@@ -5,20 +5,20 @@ import pytest
 import trackroller as tr
 from trackroller.errors import Collector
 from trackroller.study.design.read_table import table
-from trackroller.study.file.csv import read_rows
+from trackroller.study.file.user_table import read_table
 
 
 def test_cells_stand_by_the_number_of_their_line(tmp_path):
     """Empty lines, lines of empty cells, and a cell over two lines count as an editor counts them."""
-    (tmp_path / "t.csv").write_text('\n# a , b\n\n 1 , 2\n,\n"3\n3",4\n')
-    names, head, lines = read_rows(tmp_path / "t.csv", "table", "case", Collector())
-    assert names == ["# a", "b"] and head == 2 and lines == {4: ["1", "2"], 7: ["3\n3", "4"]}
+    (tmp_path / "t.csv").write_text('\n a , b\n\n 1 , 2\n,\n"3\n3",4\n')
+    table = read_table(tmp_path / "t.csv", "table", "case", Collector())
+    assert table.names == ["a", "b"] and table.head == 2 and table.lines == {4: ["1", "2"], 7: ["3\n3", "4"]}
 
 
 @pytest.mark.parametrize(
     ("text", "line", "why"),
     [
-        ("a,b\n\n\n1,2\n\n3\n", 6, "2 cells; there are 1"),
+        ("a,b\n\n\n1,2\n\n3\n", 6, "2 cells, one for each name; there are 1"),
         ("axial_force,velocity\n\n10,20\n\n30,\n", 5, "the cell is empty"),
     ],
 )

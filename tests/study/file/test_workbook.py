@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import io
 import sys
 import zipfile
 
@@ -13,7 +14,8 @@ from command_line import trackroller
 import trackroller as tr
 from trackroller.errors import Collector
 from trackroller.report.workbook import write_cases
-from trackroller.study.file.csv import column_names, read_rows
+from trackroller.study.design.read_table import table
+from trackroller.study.file.user_table import column_names, read_table
 from trackroller.study.spectrum.file import load_spectrum
 
 openpyxl = pytest.importorskip("openpyxl")
@@ -44,7 +46,7 @@ def test_a_design_is_read_from_a_workbook(tmp_path):
 
 
 def test_blocks_are_read_from_a_workbook(tmp_path):
-    save(tmp_path / "b.xlsx", notes=[["of 2026"]], blocks=[["name", "distance [km]", "velocity"], ["a", 1.5, None]])
+    save(tmp_path / "b.xlsx", notes=[["of 2026"]], blocks=[["name", "distance [km]", None], ["a", 1.5, None]])
     (tmp_path / "s.yaml").write_text("blocks: b.xlsx\n")
     (block,) = load_spectrum(tmp_path / "s.yaml").blocks
     assert block.distance == 1500.0 and block.case.velocity == 60.0
@@ -53,9 +55,9 @@ def test_blocks_are_read_from_a_workbook(tmp_path):
 def test_cases_that_the_program_wrote_are_read_again(tmp_path):
     table = pd.DataFrame({"axial_force": [0.1, 1e-3], "roller_material": ["PA6", "POM"]})
     write_cases(table, tmp_path / "out.xlsx")
-    names, head, lines = read_rows(tmp_path / "out.xlsx", "table", "case", Collector())
-    assert names == [*table.columns] and head == 1
-    assert [[float(a), b] for a, b in lines.values()] == table.to_numpy().tolist()
+    read = read_table(tmp_path / "out.xlsx", "table", "case", Collector())
+    assert read.names == [*table.columns] and read.head == 1
+    assert [[float(a), b] for a, b in read.lines.values()] == table.to_numpy().tolist()
 
 
 def test_errors_name_the_row_of_the_sheet(tmp_path):
@@ -98,6 +100,163 @@ def test_a_file_that_is_no_workbook_is_refused(tmp_path):
 def test_without_openpyxl_the_message_says_what_to_install(tmp_path, monkeypatch):
     save(tmp_path / "cases.xlsx", a=[["mu"], [0.1]])
     (tmp_path / "s.yaml").write_text(STUDY)
-    monkeypatch.setitem(sys.modules, "openpyxl", None)
+    for name in ("openpyxl", "openpyxl.reader.excel"):
+        monkeypatch.setitem(sys.modules, name, None)
     told = trackroller("plan", "s.yaml", cwd=tmp_path, code=2).stderr
     assert "Install it with `pip install openpyxl`, or save the table as CSV." in told
+
+
+def read(rows, folder, change=lambda sheet: None, patch=lambda name, content: content):
+    """Return the columns of the sheet of a workbook whose sheet and parts were changed."""
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.active.append(row)
+    change(book.active)
+    stream = io.BytesIO()
+    book.save(stream)
+    with zipfile.ZipFile(stream) as old, zipfile.ZipFile(folder / "t.xlsx", "w", zipfile.ZIP_DEFLATED) as new:
+        for name in old.namelist():
+            new.writestr(name, patch(name, old.read(name)))
+    return {name: values.tolist() for name, values in table(folder / "t.xlsx").items()}
+
+
+ROWS = [["radial_force", "part"], [-200, "a"], [-300, "b"]]
+
+
+def formula(value, computed_on_load=True):
+    """Return a patch that stores a value for each formula."""
+
+    def patch(name, content):
+        if name.endswith("sheet1.xml"):
+            return content.replace(b"<v></v>", value).replace(b"<v />", value)
+        return content if computed_on_load else content.replace(b' fullCalcOnLoad="1"', b"")
+
+    return patch
+
+
+def test_formulas_without_values_are_refused(tmp_path):
+    """Without a value, or with the 0 that XlsxWriter stores for all of them."""
+    rows = [["radial_force", "axial_force"], [-200, 0], ["=-1*300", "=2*10"]]
+    for value in (b"", b"<v/>", b"<v>0</v>"):
+        with pytest.raises(tr.InputError, match=r"line 3: radial_force = '=-1.*Open the workbook in Excel"):
+            read(rows, tmp_path, patch=formula(value))
+    assert read(rows, tmp_path, patch=formula(b"<v>-7</v>"))["radial_force"] == [-200.0, -7.0]
+    rows = [["radial_force", "axial_force"], [-200, "=1-1"]]
+    assert read(rows, tmp_path, patch=formula(b"<v>0</v>", False))["axial_force"] == [0.0]
+
+
+def test_a_formula_that_sums_up_its_column_is_no_case(tmp_path):
+    rows = [["radial_force", "part"], [-100, "a"], [-100, "b"], ["=SUM(A2:A3)", "c"]]
+    with pytest.raises(tr.InputError, match=r"line 4: radial_force = '=SUM.*sums up the lines above"):
+        read(rows, tmp_path, patch=formula(b"<v>-200</v>"))
+
+
+def test_what_a_sheet_hides_or_merges_is_refused(tmp_path):
+    def hide_row(sheet):
+        sheet.row_dimensions[3].hidden = True
+
+    def hide_column(sheet):
+        sheet.column_dimensions["B"].hidden = True
+
+    def hide_nothing_that_counts(sheet):
+        sheet.row_dimensions[9].hidden = sheet.column_dimensions["Z"].hidden = True
+
+    for change, why in [
+        (hide_row, "line 3: table = 'row 3'.*hidden and filtered rows.*clear the filter"),
+        (hide_column, "table = 'column B'.*hidden columns"),
+        (lambda sheet: sheet.merge_cells("B2:B3"), "line 2: table = 'cells B2:B3'.*Split the cells"),
+    ]:
+        with pytest.raises(tr.InputError, match=why):
+            read(ROWS, tmp_path, change)
+    assert len(read(ROWS, tmp_path, hide_nothing_that_counts)["part"]) == 2
+
+
+def test_the_sheet_that_a_person_sees_is_read(tmp_path):
+    def hidden(title):
+        def change(sheet):
+            other = sheet.parent.create_sheet(title)
+            other.append(["radial_force"])
+            other.sheet_state = "hidden"
+
+        return change
+
+    for change in (hidden("old"), lambda sheet: sheet.parent.create_sheet("Tabelle2")):
+        assert read(ROWS, tmp_path, change)["radial_force"] == [-200.0, -300.0]
+    with pytest.raises(tr.InputError, match=r"sheet 'cases'.*this one is hidden"):
+        read(ROWS, tmp_path, hidden("cases"))
+    with pytest.raises(tr.InputError, match=r"sheets Sheet, x of .*one visible sheet"):
+        read(ROWS, tmp_path, lambda sheet: sheet.parent.create_sheet("x").append([1]))
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "shown"),
+    [
+        (-1.125, "General", -1.125),
+        (-0.2, '0.0" kN"', -200.0),
+        (-0.2, '0.0\\ "kN"', -200.0),
+        (-200, "#,##0.00;[Red]-#,##0.00", -200.0),
+        (-1200, "0.0,", "the format of this cell hides it"),
+        (-200, "0;0", "the format of this cell hides it"),
+        (-200, ";;;", "the format of this cell hides it"),
+        (-0.3, "0%", "radial_force = '%'"),
+        (-200, '#,##0.00\\ "€"', "radial_force = '-200 €'"),
+        (-200, "yyyy-mm-dd", "the sheet holds a date"),
+        (True, "General", "radial_force = 'TRUE'"),
+        ("#DIV/0!", "General", "the formula of this cell has an error"),
+        ("-1.200", "@", "Write -1200 or -1.2000"),
+        ("\u22120,2 kN", "@", -200.0),
+    ],
+)
+def test_a_number_is_what_the_format_of_its_cell_shows(value, code, shown, tmp_path):
+    def change(sheet):
+        sheet["A2"].number_format = code
+
+    rows = [["radial_force", "part"], [value, "a"]]
+    if isinstance(shown, float):
+        assert read(rows, tmp_path, change)["radial_force"] == [shown]
+        return
+    with pytest.raises(tr.InputError, match=rf"t\.xlsx, line 2: .*{shown}"):
+        read(rows, tmp_path, change)
+
+
+@pytest.mark.parametrize(
+    ("value", "code", "shown"),
+    [
+        (123, "00000", "00123"),
+        (0.5, "0%", "50 %"),
+        (3e5, "0E+0", 3e5),
+        ("00123", "General", "00123"),
+        (7, "General", 7.0),
+    ],
+)
+def test_a_label_is_what_the_format_of_its_cell_shows(value, code, shown, tmp_path):
+    def change(sheet):
+        sheet["B2"].number_format = code
+
+    assert read([["radial_force", "part"], [-200, value]], tmp_path, change)["part"] == [shown]
+
+
+SHEET = (
+    '<worksheet xmlns="http://schemas.openxmlformats.org/spreadsheetml/2006/main"><sheetData>{}</sheetData></worksheet>'
+)
+ROW = "<row>" + "<c><v>1</v></c>" * 10 + "</row>"
+
+
+@pytest.mark.parametrize(
+    ("part", "content", "why"),
+    [
+        ("sheet1.xml", (ROW, 400_000), "unpacks to at most 50 MB"),
+        ("sheet1.xml", (ROW, 60_000), "about 500,000 cells"),
+        ("sheet1.xml", ("<row/>", 2_100_000), "about 500,000 cells"),
+        ("sheet1.xml", ('<row><c r="XFD1"><v>1</v></c></row>', 1), "1,000 columns"),
+        ("sheet1.xml", ('<row r="99999999"><c><v>1</v></c></row>', 1), "500,000 cells"),
+        ("styles.xml", ("<xf/>", 200_000), "500,000 cells; xl/styles.xml is larger"),
+        ("workbook.xml", ('<!DOCTYPE a [<!ENTITY b "c">]><a>&b;</a>', 1), "without a document type definition"),
+    ],
+)
+def test_a_workbook_is_limited_as_it_is_unpacked(part, content, why, tmp_path):
+    """A zip of 300 kB may hold gigabytes; the limits hold before anything is parsed."""
+    piece, times = content
+    text = SHEET.format(piece * times)
+    with pytest.raises(tr.InputError, match=why):
+        read(ROWS, tmp_path, patch=lambda name, old: text if name.endswith(part) else old)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Collection, Mapping
 from typing import Any
 
@@ -14,6 +15,7 @@ from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIE
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
+from trackroller.study.outputs import DEFAULTS
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 OPTION_FACTORS = {option.name: option.values for option in OPTIONS.values() if option.factor}
@@ -33,21 +35,37 @@ RESERVED = frozenset(  # names of the data set of a study that a factor of its o
         "level",
     )
 )
+_PART_OF_RESULT = re.compile(r"(?:(?:roller|guide)_)?(\w+?)(?:_roller|_guide|_[12])*")  # of a contact or a body
+_NAME = re.compile(r"[^\x00-/:-@\[-^`{-\x7f][^\x00-\x1f/\x7f\x85\u2028\u2029]*")
+MAX_NAME = 200  # bytes; netCDF allows 255
 MAX_LEVELS = 1_000_000
 FACTOR_NAMES = (*CASE_FIELDS, "material_pair", *OPTION_FACTORS)
 
 
 def check_own_name(name: str, where: str) -> None:
-    """Refuse a name of a study's own factor that the data set of results uses for something else.
+    """Refuse a name of a study's own factor that the data set of results cannot have, or uses for something else.
 
     Raises
     ------
     InputError
-        If `name` is no factor of the program and stands in the results.
+        If `name` is no factor of the program, and is the name of a result or none that netCDF files allow.
     """
-    if name not in FACTOR_NAMES and name in RESERVED:
+    if name in FACTOR_NAMES:
+        return
+    part = _PART_OF_RESULT.fullmatch(name)
+    if name in RESERVED or name in DEFAULTS or (part and part[1] in VARIABLES):
         allowed = "a name that the results do not use for something else"
         raise InputError(where, name, allowed, f"Rename it, for example {name}_factor.")
+    try:
+        size = len(name.encode())
+    except UnicodeEncodeError:
+        size = 0
+    if not 0 < size <= MAX_NAME or not _NAME.fullmatch(name):
+        allowed = (
+            f"a name that results can have: at most {MAX_NAME} bytes, without '/' and line breaks, and a letter, "
+            "a figure or '_' at its beginning"
+        )
+        raise InputError(where, name if len(name) < MAX_NAME else f"{name[:40]}...", allowed, "Rename it.")
 
 
 def choice(value: Any, where: str, options: Collection[str]) -> str:

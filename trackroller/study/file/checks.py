@@ -22,11 +22,11 @@ from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.read_table import table_lines
 from trackroller.study.design.roles import check_roles
 from trackroller.study.file.correlations import check_design
-from trackroller.study.file.csv import column_names, read_rows
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import check_first_look, check_until
+from trackroller.study.file.user_table import column_names, read_table
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
@@ -208,9 +208,9 @@ def check_cells(study: Study) -> None:
     with wrong.part():
         _ = study.drawn  # names and numbers
     if set(known) & set(column_names(study.table_path, "table")):
-        names, _, lines = read_rows(study.table_path, "table", "case", Collector(), most=math.inf)
-        for name in (name for name in names if name in known):
-            cells = {line: row[names.index(name)] for line, row in lines.items()}
+        table = read_table(study.table_path, "table", "case", Collector(), math.inf)
+        for name in (name for name in table.names if name in known):
+            cells = {line: row[table.names.index(name)] for line, row in table.lines.items()}
             for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():  # its first line
                 for material in filter(None, map(str.strip, cell.split("/") if name == "material_pair" else [cell])):
                     try:

@@ -20,11 +20,11 @@ from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import ALIASES, study_with_radii
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
-from trackroller.study.file.csv import column_names
 from trackroller.study.file.goals import Analysis, check_analysed
 from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
+from trackroller.study.file.user_table import column_names
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 EXAMPLES = {  # of keys that are mappings or lists

@@ -19,7 +19,7 @@ from __future__ import annotations
 import math
 import sys
 from collections import Counter
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -39,12 +39,13 @@ from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
-from trackroller.study.file.csv import read_rows
+from trackroller.study.file.user_table import UserTable, read_table
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 # what the use of the roller sets; placeholders and worn profiles are the same in all blocks
 LOAD_FIELDS = tuple(n for n, p in PARAMETERS.items() if p.role == "condition" and n not in OF_LIMITS)
 BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
+OPTIONAL = ("name", "guide_overrollings")  # of a block; an empty load would be that of the paper's example
 OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
 FILE_FIELDS = (
     "name",
@@ -193,11 +194,9 @@ def load_spectrum(path: Path | str) -> Spectrum:
 def _blocks(given: Any, base: Any) -> tuple[Block, ...]:
     """Return the checked blocks; raise the errors of all of them, and of `base`, together."""
     wrong = Collector()
-    table = find_beside(given, "blocks") if isinstance(given, str) else None
-    rows = None if table is None else read_rows(table, "blocks", "block", wrong)
-    blocks = given
-    if rows is not None:  # empty cells are left out
-        blocks = [{n: c for n, c in zip(rows.names, line, strict=True) if c} for line in rows.lines.values()]
+    path = find_beside(given, "blocks") if isinstance(given, str) else None
+    table = None if path is None else read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
+    blocks = given if table is None else _entries(table, path, wrong)
     if not isinstance(blocks, list) or not blocks:
         example = "Write - {name: loaded, distance: 4000, radial_force: -300}."
         raise InputError("blocks", blocks, "a list of blocks that is not empty, or the name of a table", example)
@@ -215,7 +214,7 @@ def _blocks(given: Any, base: Any) -> tuple[Block, ...]:
         except InputError as error:
             for one in error.errors:
                 one.path = ("blocks", str(i))
-                wrong.errors.append(one if rows is None else one.at(table, list(rows.lines)[i]))
+                wrong.errors.append(one if table is None else one.at(path, list(table.lines)[i]))
     wrong.check()
     names = Counter(block.name for block in made).most_common(1)
     if names[0][1] > 1:
@@ -225,18 +224,40 @@ def _blocks(given: Any, base: Any) -> tuple[Block, ...]:
     return tuple(made)
 
 
+def _entries(table: UserTable, path: Path | None, wrong: Collector) -> list[dict[str, str]]:
+    """Return the lines of a table as entries of `blocks`; columns that no block can have are left out as errors."""
+    heads = Collector()
+    for name in table.names:
+        with heads.part():
+            _check_fields([name], "blocks", {name: "a column"})
+    wrong.errors += [error.at(path, table.head) for error in heads.errors]
+    told = {error.line for error in wrong.errors}  # cells that are empty or not clear
+    if table.head in told or told >= {*table.lines}:
+        wrong.check()
+    table.lines = {number: line for number, line in table.lines.items() if number not in told}
+    return [{n: c for n, c in zip(table.names, line, strict=True) if c} for line in table.lines.values()]
+
+
+def _check_fields(names: Iterable[Any], where: str, values: Mapping[str, Any]) -> None:
+    """Refuse fields that a block cannot have."""
+    wrong = Collector()
+    of_roller = [key for key in names if key in FIELDS and key not in BLOCK_FIELDS]
+    for key in of_roller:
+        allowed = "a load, because the roller is the same in all blocks of a spectrum"
+        wrong.errors.append(InputError(f"{where}.{key}", values.get(key), allowed, "Give this field under `base`."))
+    with wrong.part():
+        check_names(f"{where}: field", (key for key in names if key not in of_roller), BLOCK_FIELDS)
+    wrong.check()
+
+
 def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     if not isinstance(entry, Mapping):
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     entry = renamed(entry)
     name = str(entry.get("name") or f"block {number}")
     where, wrong = f"block '{name}'", Collector()
-    of_roller = [key for key in entry if key in FIELDS and key not in BLOCK_FIELDS]
-    for key in of_roller:
-        allowed = "a load, because the roller is the same in all blocks of a spectrum"
-        wrong.errors.append(InputError(f"{where}.{key}", entry[key], allowed, "Give this field under `base`."))
     with wrong.part():
-        check_names(f"{where}: field", (key for key in entry if key not in of_roller), BLOCK_FIELDS)
+        _check_fields(list(entry), where, entry)
     made: dict[str, Any] = {"name": name}
     with wrong.part():
         if "distance" not in entry and not any(nearest(key, BLOCK_FIELDS) == "distance" for key in entry):
