@@ -119,7 +119,7 @@ def test_what_a_person_would_ask_about_is_refused(line, why, tmp_path):
         ("radial_force;;part\n-200;7;a\n", "column 2 with these cells has none. Name it"),
         ("radial_force;radial_force\n-200;-300\n", "a different name for each column"),
         ("mu;friction_coefficient\n0.1;0.2\n", "a different name for each column"),
-        ("Load cases\nradial_force;part\n-200;a\n", "stand in line 2. Remove the lines above"),
+        ("Load cases;\nradial_force;part\n-200;a\n", "stand in line 2. Remove the lines above"),
         ("radial_force axial_force\n-200 30\n", "Separate the columns"),
         ("radial_force\n-200,5\n", "line 2: .*Write decimal points"),
         ("radial_force [kg];part\n-2;a\n", "line 1: radial_force = 'kg'"),

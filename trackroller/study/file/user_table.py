@@ -47,7 +47,9 @@ _SUMS = (
     "sums? totals? sub-?totals? summen? gesamt gesamtsumme zwischensumme insgesamt ergebnis gesamtergebnis somme "
     "totale suma Σ ∑"
 )
-_SUM = re.compile(r"\W*(?:{0})(?!\w).*|.*(?<!\w)(?:{0})\W*".format("|".join(_SUMS.split())), re.IGNORECASE | re.DOTALL)
+_SUM = re.compile(
+    r"\W*(?:{0})(?![\w-]).*|.*(?<!\w)(?:{0})\W*".format("|".join(_SUMS.split())), re.IGNORECASE | re.DOTALL
+)
 _STATISTICS = (
     "mean average avg mittel mittelwert durchschnitt ø moyenne media median min minimum max maximum sd std stdev "
     "stddev standardabweichung count anzahl"
@@ -130,6 +132,8 @@ def read_table(
         raise_all(one.at(path, head) for one in error.errors)
     table = UserTable(names, head, found)
     _read_units(table, units, used, path)
+    if not found:
+        raise InputError(field, str(path), f"a table with at least one {what} below the units", "Add a line.")
     numbers = [j for j, name in enumerate(names) if name in UNITS or (name in used and table.all(j, is_number))]
     _read_numbers(table, numbers, units)
     _check_totals(table, numbers, path, field, what, wrong)
