@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import codecs
 import contextlib
 import errno
@@ -36,10 +37,14 @@ _confined: list[Path] = []  # what this process may read and write; everything i
 def confine(folder: Path) -> None:
     """Let this process read users' files and write files below one folder only, and read the user's materials.
 
-    Links are followed before the check, so a link that leads out of the folder is refused.
+    Links are followed before the check, so a link that leads out of the folder is refused. Temporary files, such as
+    the figures of a sheet before they stand in its page, have a folder that is deleted with the process.
     """
-    materials = os.environ.get(MATERIALS)
-    _confined[:] = [folder.resolve(), *([Path(os.path.expanduser(materials)).resolve()] if materials else [])]
+    materials, own = os.environ.get(MATERIALS), tempfile.mkdtemp(prefix="trackroller-")
+    atexit.register(shutil.rmtree, own, ignore_errors=True)
+    tempfile.tempdir = own
+    places = [folder, Path(own), *([Path(os.path.expanduser(materials))] if materials else [])]
+    _confined[:] = [place.resolve() for place in places]
 
 
 def _check_confined(path: Path, what: str) -> None:
