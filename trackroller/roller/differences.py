@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -110,13 +110,20 @@ def allowed(name: str) -> float:
 
 def scale(ds: xr.Dataset, name: str) -> np.ndarray:
     """Return the scale of each value of a variable, in its shape and unit; the value itself is the least scale."""
-    own = np.abs(ds[name])
-    return np.fmax(own, _kind(name)[2](ds, name)).transpose(*own.dims).values
+    own = abs(ds[name])
+    return _larger(own, _kind(name)[2](ds, name)).transpose(*own.dims).values
+
+
+def _larger(one: xr.DataArray, two: xr.DataArray) -> xr.DataArray:
+    """Return the larger value of two arrays; a NaN counts as no value."""
+    larger: Any = np.fmax  # its stubs do not know labelled arrays
+    found: xr.DataArray = larger(one, two)
+    return found
 
 
 def _inside(ds: xr.Dataset, name: str, dims: tuple[str, ...]) -> xr.DataArray:
     """Return the largest magnitude of a variable in each case, and in each contact if this is one of `dims`."""
-    values, keep = np.abs(ds[name]), {"contact"} & {*dims}
+    values, keep = abs(ds[name]), {"contact"} & {*dims}
     return values.max([dim for dim in values.dims if dim in VARIABLES[name].dims and dim not in keep])
 
 
@@ -125,24 +132,24 @@ def _dims(name: str) -> tuple[str, ...]:
 
 
 def _own(ds: xr.Dataset, name: str) -> xr.DataArray:
-    return np.abs(ds[name])
+    return abs(ds[name])
 
 
 def _one(ds: xr.Dataset, name: str) -> xr.DataArray:
-    return 1.0 + 0.0 * np.abs(ds[name])
+    return 1.0 + 0.0 * abs(ds[name])
 
 
 def _load(ds: xr.Dataset, name: str) -> xr.DataArray:
     """Return the applied forces, and those that the contacts carry [N]: a flat contact angle multiplies the loads."""
-    loads = [np.abs(ds[load]) for load in ("radial_force", "axial_force", "motor_force") if load in ds.variables]
+    loads = [abs(ds[load]) for load in ("radial_force", "axial_force", "motor_force") if load in ds.variables]
     if "normal_force" in ds.variables:
         loads.append(ds["normal_force"].sum("contact"))
-    return sum(loads, 0.0 * np.abs(ds[name]).fillna(0.0))
+    return sum(loads, 0.0 * abs(ds[name]).fillna(0.0))
 
 
 def _axis(ds: xr.Dataset) -> xr.DataArray | float:
     """Return the distance of the roller's axis [mm], NaN if the data set does not hold the parameters."""
-    return np.abs(ds["axis_distance"]) if "axis_distance" in ds.variables else np.nan
+    return abs(ds["axis_distance"]) if "axis_distance" in ds.variables else np.nan
 
 
 def _moment(ds: xr.Dataset, name: str) -> xr.DataArray:
@@ -157,16 +164,16 @@ def _patch(ds: xr.Dataset, name: str) -> xr.DataArray:
     along = [axis for axis in ("lateral", "rolling") if name.endswith((axis, "_x" if axis == "lateral" else "_y"))]
     sides = [f"semi_axis_{axis}" for axis in along or ("lateral", "rolling")]
     if not all(side in ds.variables for side in sides):
-        return 0.01 * _axis(ds) + 0.0 * np.abs(ds[name]).fillna(0.0)
+        return 0.01 * _axis(ds) + 0.0 * abs(ds[name]).fillna(0.0)
     first, *more = (_inside(ds, side, _dims(name)) for side in sides)
-    return np.fmax(first, more[0]) if more else first
+    return _larger(first, more[0]) if more else first
 
 
 def _creepage(ds: xr.Dataset, name: str) -> xr.DataArray:
     """Return by how much the creepage differs in the patch [1], about its semi-axis over the roller's radius."""
     if name == "slip":
         return _patch(ds, name) / _axis(ds)
-    return np.fmax(*(_inside(ds, field, ("contact",)) for field in ("slip_lateral", "slip_rolling")))
+    return _larger(*(_inside(ds, field, ("contact",)) for field in ("slip_lateral", "slip_rolling")))
 
 
 def _stress(ds: xr.Dataset, name: str) -> xr.DataArray:
