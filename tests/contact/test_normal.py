@@ -196,7 +196,7 @@ def test_ridges_beside_a_flat_get_the_elements_that_they_need(radius, load):
         middle = node.shares[11:13].mean(axis=0) * load / (hx * hy)
         off.append(abs(middle.max() / rounded_punch(middle.sum() * hx, 0.2, radius) - 1.0))
     assert factor > 1 and off[1] < 5e-3
-    # where the blend is as wide as an element, rounding decides on which side of the ridge the square elements lie
+    # for 2 mm, square elements missed by 0.5 % on one processor and by more than 4 % on others
     assert radius == 2.0 or off[0] > 0.04
 
 
