@@ -11,6 +11,10 @@ import warnings
 from pathlib import Path
 
 OWN = Path(__file__).resolve().parents[1]  # the folder that this package was imported from
+try:  # before a page takes a temporary folder of its own, which is deleted at its end
+    TEMPORARY: Path | None = Path(tempfile.gettempdir())
+except OSError:
+    TEMPORARY = None
 SAFE_PATH = "PYTHONSAFEPATH"  # Python puts neither the working folder nor the folder of a script on its path
 
 
@@ -107,15 +111,16 @@ def _temporary_folder() -> Path | None:
     Caches hold compiled code, so a folder that another user prepared under this name is not taken. The working folder,
     which Python takes where the system has no temporary folder, may hold files of other people.
     """
+    if TEMPORARY is None:
+        return None
     with contextlib.suppress(OSError):
-        parent = Path(tempfile.gettempdir())
-        if parent.resolve() == Path.cwd().resolve() and not parent.stat().st_mode & stat.S_ISVTX:
+        if TEMPORARY.resolve() == Path.cwd().resolve() and not TEMPORARY.stat().st_mode & stat.S_ISVTX:
             return None
         user = os.getuid() if hasattr(os, "getuid") else None
-        place = parent / f"trackroller-{'cache' if user is None else user}"
+        place = TEMPORARY / f"trackroller-{'cache' if user is None else user}"
         with contextlib.suppress(FileExistsError):
             place.mkdir(mode=0o700)
         seen = place.lstat()
         own = stat.S_ISDIR(seen.st_mode) and (user is None or (seen.st_uid == user and not seen.st_mode & 0o022))
-        return place if own and is_writable(place) else Path(tempfile.mkdtemp(prefix="trackroller-"))
+        return place if own and is_writable(place) else Path(tempfile.mkdtemp(prefix="trackroller-", dir=TEMPORARY))
     return None
