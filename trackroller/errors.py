@@ -9,7 +9,7 @@ from typing import Any
 
 
 class InputError(ValueError):
-    """Bad input: names the field, the value, what is allowed and what to do.
+    """Bad input: says what is wrong with which value of which field, what is allowed, and what to do.
 
     Parameters
     ----------
@@ -21,24 +21,31 @@ class InputError(ValueError):
         Values that are allowed, in words.
     remedy : str
         What the user can do about it.
+    wrong : str
+        What is wrong with the value, as the end of a sentence that begins with field and value; by default that it is
+        not usable, or missing if the value is None.
 
     Examples
     --------
     >>> print(InputError("slip", -1, "a number >= 0", "Leave slip out."))
-    slip = -1 is not usable: a number >= 0. Leave slip out.
+    slip = -1 is not usable. Allowed: a number >= 0. Leave slip out.
+    >>> print(InputError("case file", "x.yaml", "the path of a file", "Check the path.", wrong="does not exist"))
+    case file = 'x.yaml' does not exist. Allowed: the path of a file. Check the path.
     """
 
-    def __init__(self, field: str, value: object, allowed: str, remedy: str = "") -> None:
+    def __init__(self, field: str, value: object, allowed: str, remedy: str = "", wrong: str = "") -> None:
         self.field = field
         self.value = value
         self.allowed = allowed
         self.remedy = remedy
+        self.wrong = wrong
         self.file: str | None = None  # a file that another file or the command names
         self.line: int | None = None  # of the file, the first line being 1
         self.path: tuple[str, ...] = ()  # of the entry in the file, as far as `field` does not say it
-        wrong = "is missing or empty" if value is None else f"= {value!r} is not usable"
-        text = f"{field} {wrong}: {allowed}"
-        super().__init__(f"{text}. {remedy}" if remedy else text)
+        why = wrong or ("is missing or empty" if value is None else "is not usable")
+        what = f"{field} {why}" if value is None else f"{field} = {value!r} {why}"
+        label = "Needed" if value is None else "Allowed"
+        super().__init__(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy))))
 
     @property
     def errors(self) -> tuple[InputError, ...]:
@@ -50,6 +57,10 @@ class InputError(ValueError):
         """Return the messages to print, one a line."""
         return [str(self)]
 
+    def named(self, field: str) -> InputError:
+        """Return this error with another name of the field."""
+        return type(self)(field, self.value, self.allowed, self.remedy, self.wrong)
+
     def at(self, file: object, line: int) -> InputError:
         """Return this error after noting the file and the line in which the value stands."""
         self.file, self.line = str(file), line
@@ -59,8 +70,8 @@ class InputError(ValueError):
         where = ", ".join(filter(None, (self.file, f"line {self.line}" if self.line else None)))
         return f"{where}: {super().__str__()}" if where else super().__str__()
 
-    def __reduce__(self):  # another process rebuilds the error from its four parts
-        parts = (self.field, self.value, self.allowed, self.remedy)
+    def __reduce__(self):  # another process rebuilds the error from its parts
+        parts = (self.field, self.value, self.allowed, self.remedy, self.wrong)
         return type(self), parts, {"file": self.file, "line": self.line, "path": self.path}
 
 
@@ -73,7 +84,7 @@ class InputErrors(InputError):
     def __init__(self, errors: Iterable[InputError]) -> None:
         self._errors = tuple(errors)
         first = self._errors[0]
-        super().__init__(first.field, first.value, first.allowed, first.remedy)
+        super().__init__(first.field, first.value, first.allowed, first.remedy, first.wrong)
 
     @property
     def errors(self) -> tuple[InputError, ...]:
@@ -231,10 +242,11 @@ def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterab
     options = list(options)
     close, akin = nearest(name, options), likeliest(name, [*options, *elsewhere])
     short = len(options) <= MOST_LISTED
-    allowed = "known names are " + ", ".join(map(str, options)) if short else "this name is not known"
+    allowed = ", ".join(map(str, options)) if short else ""
     remedy = "Use one of these names." if short else "The page 'Parameters, options and results' lists the names."
     remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else remedy
-    return InputError(kind, name, allowed, f"Did you mean '{close}'?" if close else remedy)
+    remedy = f"Did you mean '{close}'?" if close else remedy
+    return InputError(kind, name, allowed, remedy, wrong="is not known")
 
 
 def listing(words: Sequence[str], last: str = "and") -> str:

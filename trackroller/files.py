@@ -50,8 +50,18 @@ def confine(folder: Path) -> None:
 def _check_confined(path: Path, what: str) -> None:
     """Refuse a path outside the folder that `confine` names."""
     if _confined and not any(path.resolve().is_relative_to(place) for place in _confined):
-        allowed = f"a file below {_confined[0]}; this path or a link in it leads out of this folder"
-        raise InputError(what, str(path), allowed, "Copy the file into the folder.")
+        wrong = "leads out of the folder of the page, by itself or by a link in it"
+        raise InputError(what, str(path), f"a file below {_confined[0]}", "Copy the file into the folder.", wrong)
+
+
+def check_utf_8(path: Path | str, what: str) -> None:
+    """Refuse a path whose bytes are not UTF-8: neither netCDF, YAML nor a page can hold such a name."""
+    try:
+        str(path).encode()
+    except UnicodeEncodeError:
+        shown = os.fsencode(path).decode("utf-8", "replace")
+        remedy = "Rename the file or folder, or a folder above it."
+        raise InputError(what, shown, "names in UTF-8", remedy, "has a name that is not UTF-8") from None
 
 
 def refuse_links(root: Path, what: str) -> None:
@@ -59,7 +69,8 @@ def refuse_links(root: Path, what: str) -> None:
     for place, folders, names in os.walk(root):
         for path in (Path(place), *(Path(place, name) for name in (*folders, *names))):
             if path.is_symlink():
-                raise InputError(what, str(path), "a file or folder of this place; this is a link", "Remove the link.")
+                remedy = "Remove the link, or replace it by what it leads to."
+                raise InputError(what, str(path), "files and folders without links", remedy, "is a link")
 
 
 @contextmanager
@@ -78,17 +89,19 @@ def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
     """Return the content of a user's file, see `read_text`, and note its digest for `noted_reads`."""
     path = Path(path)
     try:
+        check_utf_8(path, what)
         _check_confined(path, what)
         if path.is_dir():
-            raise InputError(what, str(path), "a file; this is a folder", "Give the path of a file.")
+            raise InputError(what, str(path), "a file", "Give the path of a file.", "is a folder")
         if path.exists() and not path.is_file():
-            raise InputError(what, str(path), "a regular file; this is a device or a pipe", "Give the path of a file.")
+            raise InputError(what, str(path), "a regular file", "Give the path of a file.", "is a device or a pipe")
         if path.stat().st_size > most:
             raise InputError(
                 what,
                 str(path),
                 f"a file of at most {MAX_BYTES // 1_000_000} MB",
                 "Put many cases into a CSV file and use design: table.",
+                f"has {path.stat().st_size / 1e6:,.0f} MB",
             )
         content = path.read_bytes()
         if (noted := _noted.get()) is not None:
@@ -97,9 +110,11 @@ def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
     except InputError:
         raise
     except FileNotFoundError:
-        raise InputError(what, str(path), "a file that exists", "Check the path.") from None
+        raise InputError(what, str(path), "the path of a file", "Check the path.", "does not exist") from None
     except (OSError, ValueError) as exc:
-        raise InputError(what, str(path), f"a readable file ({exc})", "Check path and rights.") from None
+        why = exc.strerror if isinstance(exc, OSError) and exc.strerror else exc
+        wrong = f"cannot be read ({why})"
+        raise InputError(what, str(path), "a file that can be read", "Check path and rights.", wrong) from None
 
 
 def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
@@ -134,10 +149,11 @@ def text_of(content: bytes, path: Path | str, what: str) -> str:
         text = content.decode("utf-16" if utf_16 else "utf-8-sig")
     except UnicodeDecodeError as exc:
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
-        error = InputError(what, str(path), f"{exc.encoding.upper()} text (byte {exc.start} is not)", remedy)
+        wrong = f"is not {exc.encoding.upper()} text at byte {exc.start}"
+        error = InputError(what, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong)
         raise (error if utf_16 else error.at(path, content.count(b"\n", 0, exc.start) + 1)) from None
     if "\0" in text:
-        raise InputError(what, str(path), "a text; this file holds zero bytes", "Save the file as UTF-8.")
+        raise InputError(what, str(path), "a text", "Save the file as UTF-8.", "holds zero bytes, so it is no text")
     return text
 
 
@@ -171,7 +187,8 @@ def find_beside(name: Any, field: str) -> Path:
     remedy = f"Put the file {where} and give its path from there."
     path = Path(str(name))
     if not isinstance(name, (str, Path)) or path.is_absolute() or ".." in path.parts or not str(name).strip():
-        raise InputError(field, str(name), "a relative path without '..'", remedy)
+        wrong = "is not a path within the folder"
+        raise InputError(field, str(name), "a relative path without '..'", remedy, wrong)
     linked = None
     for folder in folders:
         here = folder / path
@@ -179,13 +196,17 @@ def find_beside(name: Any, field: str) -> Path:
             return here
         linked = linked or (here if here.is_file() else None)
     if linked is not None:
-        outside = f"a file {where}; this is a link that leads out of the folder to {linked.resolve()}"
-        raise InputError(field, str(name), outside, "Copy the file to the place of the link.")
-    raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.")
+        wrong = f"is a link that leads out of the folder, to {linked.resolve()}"
+        raise InputError(field, str(name), f"a file {where}", "Copy the file to the place of the link.", wrong)
+    raise InputError(field, str(name), f"a file {where}", "Check its name, or put it there.", "is not there")
+
+
+FAILED_WRITES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # no other system call fails for these reasons
 
 
 def disk_error(exc: OSError, path: Path) -> WorkError:
     """Return the message for a failed write, with the remedy."""
+    exc = _true_cause(exc, path)
     if exc.errno in (errno.ENOSPC, errno.EDQUOT):
         what, remedy = "the disk is full", "Free some space"
     elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
@@ -193,6 +214,20 @@ def disk_error(exc: OSError, path: Path) -> WorkError:
     else:
         what, remedy = f"writing failed ({exc.strerror or exc})", "Repair the folder or the disk"
     return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
+
+
+def _true_cause(exc: OSError, path: Path) -> OSError:
+    """Return why a file could not be written: a library may report a full disk as a lack of rights."""
+    if exc.errno in (errno.EACCES, errno.EPERM):
+        folder = next((place for place in path.parents if place.is_dir()), Path())
+        try:
+            with tempfile.TemporaryFile(dir=folder) as probe:
+                probe.write(bytes(1_000_000))
+                probe.flush()
+                os.fsync(probe.fileno())
+        except OSError as cause:
+            return cause
+    return exc
 
 
 def write_whole(path: Path, write: Callable[[Path], object]) -> None:
@@ -212,6 +247,7 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
     WorkError
         If the operating system or the netCDF library cannot write.
     """
+    check_utf_8(path, "file to write")
     _check_confined(path.parent, "file to write")
     beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
     try:
@@ -265,6 +301,7 @@ def whole_folder(path: Path) -> Iterator[Path]:
     WorkError
         If the folder cannot be written.
     """
+    check_utf_8(path, "folder to write")
     _check_confined(path.parent, "folder to write")
     path.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent) as scratch:

@@ -149,7 +149,7 @@ def parse_yaml(text: str, what: str) -> Any:
         return loader.load(io.StringIO(text))
     except InputError as exc:
         if exc.field.startswith("line"):
-            raise InputError(f"{what}, {exc.field}", exc.value, exc.allowed, exc.remedy) from None
+            raise exc.named(f"{what}, {exc.field}") from None
         raise
     except MarkedYAMLError as exc:
         mark = exc.problem_mark or exc.context_mark
@@ -157,13 +157,16 @@ def parse_yaml(text: str, what: str) -> Any:
         reason = " ".join(str(exc.problem or exc).split())
         if isinstance(exc, DuplicateKeyError):
             raise InputError(
-                f"{what}, {where}", reason, "each key once; it stands twice", "Remove one of the two lines."
+                f"{what}, {where}", reason, "each key once", "Remove one of the two lines.", "holds a key twice"
             ) from None
-        allowed = f"one document of plain YAML, without tags; this is not YAML of that kind: {reason}"
-        raise InputError(what, where, allowed, "Mend the line; texts with ': ' or ' #' need quotes.") from None
+        allowed, remedy = (
+            "one document of plain YAML, without tags",
+            "Mend the line; texts with ': ' or ' #' need quotes.",
+        )
+        raise InputError(f"{what}, {where}", None, allowed, remedy, f"is not YAML: {reason}") from None
     except (YAMLError, ValueError, RecursionError) as exc:
         reason = " ".join(str(exc).split())[:200]
-        raise InputError(what, "the file", f"YAML: {reason}", "Save it as plain UTF-8 text.") from None
+        raise InputError(what, None, "YAML", "Save it as plain UTF-8 text.", f"is not YAML: {reason}") from None
 
 
 def lines_of(text: str) -> dict[tuple[str, ...], int]:

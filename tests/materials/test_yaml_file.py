@@ -132,7 +132,7 @@ def test_what_is_written_is_read_back_as_it_was(value):
 
 
 def test_only_a_regular_file_is_read(tmp_path):
-    for path, told in ((tmp_path, "folder"), (tmp_path / "none.yaml", "exists"), ("/dev/zero", "regular file")):
+    for path, told in ((tmp_path, "folder"), (tmp_path / "none.yaml", "does not exist"), ("/dev/zero", "regular file")):
         with pytest.raises(InputError, match=told):
             read_text(path, "study file")
     (tmp_path / "latin.yaml").write_bytes("a: é".encode("latin-1"))

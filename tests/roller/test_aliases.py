@@ -53,7 +53,7 @@ def test_a_groove_as_wide_as_the_guide_has_the_guide_in_its_bottom():
         ({"outer_radius": 20, "groove_depth": 0.1}, "lies below the outer radius"),
         ({"outer_radius": "20 N", "groove_depth": 4}, "converted to mm"),
         ({"outer_radius": -20, "groove_depth": 4}, "a length > 0"),
-        ({"mu": 0.1, "friction_coefficient": 0.1}, "another name of friction_coefficient"),
+        ({"mu": 0.1, "friction_coefficient": 0.1}, "stands beside mu, which is another name"),
     ],
 )
 def test_ambiguous_radii_and_names_are_refused(values, words):

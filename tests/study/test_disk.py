@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import os
 import resource
 import subprocess
+import sys
 
 import pytest
 import xarray as xr
@@ -104,3 +106,27 @@ def test_results_that_are_a_file_are_bad_input(study, tmp_path):
     (tmp_path / "r").write_text("precious")
     assert str(tmp_path / "r") in run(study, tmp_path / "r", code=2)
     assert (tmp_path / "r").read_text() == "precious"
+
+
+def test_a_full_disk_is_not_called_a_lack_of_rights(study, disk):
+    """The netCDF library says 'Permission denied' where it cannot create a file on a full disk."""
+    place = disk("size=64k")
+    case = study.parent / "case.yaml"
+    case.write_text("contact_model: sliding\noutputs: [forces]\n")
+    with contextlib.suppress(OSError), open(place / "filler", "wb", buffering=0) as filler:
+        while True:
+            filler.write(bytes(4096))
+    for words in (("solve", case, "-o", place / "x.nc"), ("plot", case, "-o", place / "p")):
+        line = trackroller(*words, cwd=study.parent, code=1).stderr
+        assert "the disk is full" in line and "ermission" not in line
+    entry = ("materials", "add", "x", "--set", "like=PA6", "--set", "tensile_strength=70", "--file", place / "m.yaml")
+    assert "the disk is full" in trackroller(*entry, cwd=study.parent, code=2).stderr
+
+
+def test_a_full_device_for_the_output_is_named(tmp_path):
+    if not os.path.exists("/dev/full"):
+        pytest.skip("this system has no full device")
+    words = [sys.executable, "-m", "trackroller.cli", "materials", "list"]
+    with open("/dev/full", "w") as full:
+        done = subprocess.run(words, cwd=tmp_path, stdout=full, stderr=subprocess.PIPE, text=True)
+    assert done.returncode == 1 and "the disk is full" in done.stderr and "Traceback" not in done.stderr

@@ -51,7 +51,7 @@ def quantity_of(
     except InputError as error:
         close = nearest(name, REGIMES)
         remedy = f"Did you mean '{close}'?" if close else error.remedy
-        raise InputError("pareto or constraints", name, error.allowed, remedy) from None
+        raise InputError("pareto or constraints", name, error.allowed, remedy, error.wrong) from None
     return output.values, output.units, output.long_name
 
 

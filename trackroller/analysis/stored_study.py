@@ -100,7 +100,7 @@ def _gathered(path: Path) -> xr.Dataset | None:
     planned = StudyFolder(path).record().get("study") if path.is_dir() else None
     if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
-        raise InputError("study", str(path), allowed, "Run the study to its end first.")
+        raise InputError("study", str(path), allowed, "Run the study to its end first.", "holds no results")
     data = read_result(file) if file.is_file() else None
     return data if data is not None and planned in (None, data.attrs.get("study")) else None
 
@@ -111,8 +111,8 @@ def _read_unfinished(folder: StudyFolder) -> StudyResults:
     design, inventory, place = locate(study, folder)
     rows = np.flatnonzero(place >= 0)
     if len(rows) in (0, len(place)):
-        state = "every case is solved, but not gathered into study.nc" if len(rows) else "no case is solved yet"
-        raise InputError("study", str(folder.root), f"a study with results; {state}", "Run the study to its end first.")
+        state = "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
+        raise InputError("study", str(folder.root), "a study with results", "Run the study to its end first.", state)
     drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
     data = labelled(study, drawn, cases, collect(inventory, place[rows], folder.root)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
@@ -133,9 +133,8 @@ def _checked_version(data: xr.Dataset) -> dict[str, str]:
         return {}
     if written != STORE_FORMAT:
         name = f"study.nc of {data.attrs.get('study_name')}"
-        raise InputError(
-            name, f"format {written}", f"results in format {STORE_FORMAT}; another version wrote it", _REMEDY
-        )
+        allowed, wrong = f"results in format {STORE_FORMAT}", "is that of another version"
+        raise InputError(name, f"format {written}", allowed, _REMEDY, wrong)
     warnings.warn(_EARLIER, stacklevel=3)
     return {NOTICE: _EARLIER}
 
@@ -148,8 +147,8 @@ def _study(data: xr.Dataset) -> Study:
     stored = without_former(parse_mapping(text, "stored study file"))
     study = Study(checked_keys(stored))
     if changed := _changed(stored, study.as_dict()):
-        allowed = f"a study file that is read as it was written; {changed} has another meaning in this version"
-        raise InputError("study", str(stored.get("name", "")), allowed, _REMEDY)
+        allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"
+        raise InputError("study", str(stored.get("name", "")), allowed, _REMEDY, wrong)
     return study
 
 

@@ -15,7 +15,7 @@ from pathlib import Path
 
 from trackroller.environment import import_nothing_from
 from trackroller.errors import InputError, WorkError
-from trackroller.files import confine, refuse_links, try_lock, write_private
+from trackroller.files import check_utf_8, confine, refuse_links, try_lock, write_private
 
 PLACE = Path(".trackroller")  # in the folder that the page works in
 ADDRESS, OPENS = PLACE / "address.json", PLACE / "open.html"
@@ -66,7 +66,9 @@ def serve(folder: Path, port: int | None = None, browser: bool = True, allow_hos
         If the port is taken, or Tornado is missing.
     """
     if not folder.is_dir():
-        raise InputError("folder", str(folder), "a folder that exists", "Create it first, or give another one.")
+        wrong = "is a file" if folder.exists() else "does not exist"
+        raise InputError("folder", str(folder), "a folder", "Create it first, or give another one.", wrong)
+    check_utf_8(folder.absolute(), "folder")
     hosts = [checked_host(name) for name in allow_hosts]
     import_nothing_from(folder)
     confine(folder)

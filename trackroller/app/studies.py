@@ -51,7 +51,7 @@ def folder_of(name: Any) -> StudyFolder:
     """Return the folder of a study; refuse names and links that lead out of the results folder."""
     root = RESULTS / check_name(name)
     if _is_link(root):
-        raise InputError("name", name, "a folder of this place; this one is a link", "Copy the folder here.")
+        raise InputError("name", name, "a folder of this place", "Copy the folder here.", "is a link")
     refuse_links(root, "results")
     return StudyFolder(root)
 
@@ -156,7 +156,8 @@ def delete(name: str, confirm: str = "") -> None:
     if _works(name, folder):
         raise WorkError(f"The study '{name}' runs. Pause it first.")
     if not folder.root.is_dir():
-        raise InputError("name", name, "a study of this folder", "It may be deleted already.")
+        remedy = "It may be deleted already."
+        raise InputError("name", name, "a study of this folder", remedy, "is not there")
     shutil.rmtree(folder.root)
 
 
@@ -235,7 +236,7 @@ def text_of(name: str) -> dict[str, Any]:
     for path in (TEXTS / f"{check_name(name)}.yaml", folder_of(name).study_file):
         if path.is_file():
             return {"text": read_text(path, "study file")}
-    raise InputError("name", name, "a study of this folder", "Choose one of the list.")
+    raise InputError("name", name, "a study of this folder", "Choose one of the list.", "is not there")
 
 
 def page_of(name: str, page: str) -> Path:

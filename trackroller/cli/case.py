@@ -85,7 +85,8 @@ def writable(out: Path) -> Path:
     if target.exists() and not target.is_file():
         raise InputError("--out", str(out), "the path of a regular file", "Give the name of a file to write.")
     if not target.parent.is_dir():
-        raise InputError("--out", str(out), "a file in a folder that exists", f"Create the folder {target.parent}.")
+        wrong = "stands in a folder that does not exist"
+        raise InputError("--out", str(out), "a file in a folder", f"Create the folder {target.parent}.", wrong)
     return target
 
 

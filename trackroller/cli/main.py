@@ -27,7 +27,7 @@ from trackroller.cli import INTERRUPTED, STOPPED
 from trackroller.cli.materials import materials
 from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
-from trackroller.files import interrupts_wait_for_files
+from trackroller.files import FAILED_WRITES, check_utf_8, disk_error, interrupts_wait_for_files
 from trackroller.numerics.threads import check_threads
 from trackroller.parameters import options_text
 
@@ -250,6 +250,8 @@ def main() -> None:
 def run_app(command: Callable[[], object]) -> int:
     """Call a command, print every error in one line on stderr, and return the exit code."""
     try:
+        for word in sys.argv[1:]:
+            check_utf_8(word, "argument")
         check_threads()
         with interrupts_wait_for_files():
             command()
@@ -266,7 +268,9 @@ def run_app(command: Callable[[], object]) -> int:
         sys.stderr.close()
         return 1
     except OSError as exc:
-        # a failed write has its own message: this file could not be read
+        if exc.errno in FAILED_WRITES:
+            return _tell(str(disk_error(exc, Path(exc.filename or "the output"))), 1)
+        # other failed writes have their own messages: this file could not be read
         return _tell(f"{exc.filename or 'a file'} cannot be read ({exc.strerror or exc}). Repair or replace it.", 1)
     except Exception as exc:
         return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
@@ -294,7 +298,11 @@ def _tell(line: str, code: int) -> int:
 
 def _log(exc: Exception) -> str:
     """Write the traceback into a log file and return its path."""
-    with tempfile.NamedTemporaryFile("w", prefix="trackroller-", suffix=".log", delete=False, encoding="utf-8") as file:
-        file.write(f"trackroller {__version__}: {' '.join(sys.argv)}\n\n")
-        file.writelines(traceback.format_exception(exc))
-    return file.name
+    trace = traceback.format_exception(exc)
+    try:
+        handle, name = tempfile.mkstemp(prefix="trackroller-", suffix=".log")
+        with open(handle, "w", encoding="utf-8", errors="backslashreplace") as file:  # names may not be UTF-8
+            file.writelines([f"trackroller {__version__}: {' '.join(sys.argv)}\n\n", *trace])
+    except OSError as why:
+        return f"that could not be written ({why.strerror}): {''.join(trace[-2:])}"
+    return name

@@ -15,7 +15,7 @@ from typing import Any, TextIO
 from trackroller.analysis.deciding import decides
 from trackroller.cli import tell_stopped
 from trackroller.errors import InputError, WorkError, unknown_name
-from trackroller.files import interrupts_wait_for_files
+from trackroller.files import check_utf_8, interrupts_wait_for_files
 from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
@@ -63,6 +63,7 @@ def workflow_config(config: Mapping[str, Any], source: Path, *, strict: bool = T
     if not Path(study).exists() and (source / study).is_file():
         study = str(source / study)
     for key, path in (("study", study), ("results", results)):
+        check_utf_8(path, key)
         _check_braces(key, path)
     return {"study": study, "results": results}
 

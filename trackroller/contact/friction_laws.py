@@ -288,5 +288,5 @@ def canonical(value: Mapping[str, Any], field: str = "friction_law") -> dict[str
         law = law_of(value)
     except InputError as error:
         name = field + error.field.removeprefix("friction_law")
-        raise InputError(name, error.value, error.allowed, error.remedy) from None
+        raise error.named(name) from None
     return {} if law.is_constant else law.as_dict()

@@ -118,5 +118,5 @@ def contact_model(
         return CLASSES[name](given, settings)
     on_patches = CLASSES[name].on_solved_patches
     if on_patches is None:
-        raise InputError("normal", "halfspace", f"contact_model: {name} takes hertz only")
+        raise InputError("normal", "halfspace", f"hertz only, with contact_model: {name}")
     return on_patches(given, patches)

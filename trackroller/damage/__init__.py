@@ -36,8 +36,8 @@ def add_own() -> None:
         for kind in ("name", "group", "parameters", "materials", "mappings"):
             clash = _names(limit, kind) & {taken for known in LIMITS.values() for taken in _names(known, kind)}
             if clash:
-                words = f"new {kind}: another limit has these"
-                raise InputError("limits", ", ".join(sorted(clash)), words, "Choose another name.")
+                wrong = f"belongs to another limit, as its {kind}"
+                raise InputError("limits", ", ".join(sorted(clash)), "", "Choose another name.", wrong)
         LIMITS[name] = limit
 
 

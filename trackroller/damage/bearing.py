@@ -148,8 +148,8 @@ def check(given: dict[str, Any]) -> None:
         raise InputError("bearing.rows", given["rows"], "1 or 2")
     carries = "permissible_moment" if given["rows"] == 1 else "row_distance"
     if carries not in given:
-        allowed = f"a bearing with rows: {given['rows']:g} needs {carries}, because the roller loads it with moments"
-        raise InputError("bearing", given, allowed, f"Add {carries}, or take another number of rows.")
+        wrong = f"lacks {carries}, because the roller loads it with moments"
+        raise InputError("bearing", given, "", f"Add {carries}, or take another number of rows.", wrong)
 
 
 FIELD = MappingField(

@@ -50,8 +50,8 @@ class MappingField:
         check_names(f"{self.name}: key", value, keys)
         missing = [key for key in keys if value.get(key) is None and key not in self.may_miss]
         if missing:
-            lacks = f"the mapping lacks {', '.join(missing)}"
-            raise InputError(f"{self.name}.{missing[0]}", None, lacks, "Add these values.")
+            lacks = f"is missing: the mapping lacks {', '.join(missing)}"
+            raise InputError(f"{self.name}.{missing[0]}", None, "", "Add these values.", lacks)
         given: dict[str, Any] = {}
         wrong = Collector()
         for key, allowed in self.words.items():

@@ -30,7 +30,7 @@ def block_damage(applied: ArrayLike, bearable: ArrayLike) -> np.ndarray:
     """
     n, life = np.broadcast_arrays(np.asarray(applied, dtype=float), np.asarray(bearable, dtype=float))
     if np.any(n < 0):
-        raise InputError("cycles", float(np.nanmin(n)), "a block's cycles must be >= 0")
+        raise InputError("cycles", float(np.nanmin(n)), "cycles of a block >= 0")
     with np.errstate(divide="ignore", invalid="ignore"):
         return np.where(n == 0, 0.0, n / life)
 
@@ -56,6 +56,6 @@ def repetitions_to_failure(damage: ArrayLike, critical_damage: float = 1.0) -> n
         If the critical damage is not positive.
     """
     if not critical_damage > 0:
-        raise InputError("critical_damage", critical_damage, "it must be > 0", "1 is Miner's own.")
+        raise InputError("critical_damage", critical_damage, "a number > 0", "1 is Miner's own.")
     with np.errstate(divide="ignore"):
         return critical_damage / np.asarray(damage, dtype=float)

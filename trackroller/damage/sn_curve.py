@@ -93,16 +93,16 @@ class SNCurve:
         strength, limit, first, knee = self._points
         if not np.all((limit > 0) & (strength > limit) & (first > 0) & (knee > first)):
             given = "R_m, sigma_D, N_Rm, N_k"
-            allowed = "it must fall: R_m > sigma_D > 0 and N_k > N_Rm > 0"
+            allowed = "a curve that falls: R_m > sigma_D > 0 and N_k > N_Rm > 0"
             raise InputError("S-N curve", given, allowed, "Correct the material.")
         for name, value in (("scatter_in_cycles", self.scatter_cycles), ("scatter_in_stress", self.scatter_stress)):
             if np.any(_known(value) < 1):
-                allowed = "the scatter is the larger over the smaller value, >= 1"
+                allowed = "the larger over the smaller value, >= 1"
                 raise InputError(name, value, allowed, "Give its inverse.")
         p = np.asarray(self.failure_probability, dtype=float)
         if not np.all((p > 0) & (p < 1)):
             value = np.ravel(p)[0] if p.size == 1 else p.tolist()
-            raise InputError("failure_probability", value, "it must lie between 0 and 1", "Give 0.1 for 10 %.")
+            raise InputError("failure_probability", value, "a number between 0 and 1", "Give 0.1 for 10 %.")
 
     @classmethod
     def of(cls, material: Any, rule: str = "elementary") -> SNCurve:

@@ -151,7 +151,7 @@ def stress_on_grid(
     q = grid_tractions(xa, ya, pressure, shear_lateral, shear_rolling)
     z = np.atleast_1d(read_array(depths, "depths", "depths are numbers >= 0 [mm]"))
     if z.ndim != 1:
-        raise InputError("depths", z.shape, "depths have shape (nz,)")
+        raise InputError("depths", z.shape, "depths of shape (nz,)")
     check_depth("depths", z)
     poisson_ratio = number_in(poisson_ratio, "poisson_ratio", "0 <= poisson_ratio <= 0.5", 0.0, 0.5)
     steps = (xa[-1] - xa[0]) / (xa.size - 1), (ya[-1] - ya[0]) / (ya.size - 1)

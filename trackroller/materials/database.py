@@ -184,8 +184,8 @@ class MaterialDatabase:
         for body in names:
             if body[-1] not in self.families() and (close := nearest(body[-1], self.families())):
                 remedy += f" Did you mean the family '{close}'?"
-        allowed = f"the friction table has no {level} value for it; it has the pairs {known}"
-        return InputError("friction_coefficient of the pair", "-".join(label), allowed, remedy)
+        allowed, wrong = f"the pairs {known}", f"has no {level} value in the friction table"
+        return InputError("friction_coefficient of the pair", "-".join(label), allowed, remedy, wrong)
 
 
 @functools.lru_cache(maxsize=256)

@@ -62,14 +62,18 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     Comments, order and all other entries of the file are kept. The new text is checked and written to a temporary file,
     which then replaces the old file in one step.
     """
-    path = Path(os.path.realpath(os.path.expanduser(path)))
+    expanded = os.path.expanduser(path)
+    if expanded.startswith("~"):  # a folder of this name would be made
+        remedy, wrong = "Write the whole path.", "names a home that this machine does not know"
+        raise InputError("materials file", str(path), "the path of a YAML file", remedy, wrong)
+    path = Path(os.path.realpath(expanded))
     if not isinstance(name, str) or not name.strip():
-        raise InputError("material name", name, "it must be a text that is not empty")
+        raise InputError("material name", name, "a text that is not empty")
     check_names(f"material '{name}': field", values, FIELDS)
     values = {key: _plain(f"material '{name}': {key}", value) for key, value in values.items() if value is not None}
     if not values:
         remedy = f"Give one of {', '.join(PROPERTIES)}."
-        raise InputError(f"material '{name}'", None, "it must have at least one value", remedy)
+        raise InputError(f"material '{name}'", None, "at least one value", remedy)
     text = read_text(path, "materials file") if path.exists() else HEADER
     builtin = read_database(None)
     build_database(text, str(path), over=builtin)  # raises an error if the file is wrong before the change
@@ -167,6 +171,6 @@ def _write(path: Path, text: str) -> None:
     try:
         write_whole(path, save)
     except WorkError as error:
-        allowed = f"a file in a folder that can be written ({error.__cause__})"
-        remedy = "Give another path, or allow writing to this folder."
-        raise InputError("materials file", str(path), allowed, remedy) from None
+        remedy = "Give another path, or make it possible to write here."
+        wrong = f"cannot be written: {str(error).removeprefix(f'{path}: ').partition('. ')[0]}"
+        raise InputError("materials file", str(path), "a file in a folder that can be written", remedy, wrong) from None

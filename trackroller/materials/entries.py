@@ -74,13 +74,13 @@ class EntryParser:
         check_names(f"{field}: key", entry, VALUE_KEYS)
         if "value" not in entry:
             remedy = f"Write {{value: ..., unit: {prop.unit}}}."
-            raise InputError(field, dict(entry), "it must hold a `value`", remedy)
+            raise InputError(field, dict(entry), "a mapping with a `value`", remedy)
         unit = str(entry.get("unit", prop.unit))
         if "unit" in entry and split_quantity(entry["value"]):
             raise InputError(f"{field}.unit", unit, f"one unit; the value {entry['value']} has its own", "Remove one.")
         placeholder = entry.get("placeholder", False)
         if not isinstance(placeholder, bool):
-            raise InputError(f"{field}.placeholder", placeholder, "it must be true or false")
+            raise InputError(f"{field}.placeholder", placeholder, "true or false")
         number = check_number(prop, entry["value"], where, unit)
         source = self.source(str(entry["source"])) if entry.get("source") else "not given"
         note = str(entry.get("note") or "")
@@ -92,9 +92,7 @@ class EntryParser:
         if given is None:
             return None
         if not isinstance(given, (list, tuple)) or len(given) != 2:
-            raise InputError(
-                f"{where}.{prop.name}.range", given, "it must be [lowest, highest] in the unit of the value"
-            )
+            raise InputError(f"{where}.{prop.name}.range", given, "[lowest, highest] in the unit of the value")
         low, high = (check_number(prop, end, where, unit) for end in given)
         if not low <= number <= high:
             allowed = f"a range that holds the value {number:g}"
@@ -126,10 +124,10 @@ class EntryParser:
         """
         if not isinstance(name, str) or not name.strip():
             remedy = f'Put it in quotes: "{name}".'
-            raise InputError("name of a material", name, "a material's name must be a text", remedy)
+            raise InputError("name of a material", name, "a text", remedy)
         where = f"{self.prefix}{name}"
         if not isinstance(entry, Mapping):
-            raise InputError(where, entry, f"it must be a mapping with {', '.join(REQUIRED)}")
+            raise InputError(where, entry, f"a mapping with {', '.join(REQUIRED)}")
         given = self._given(where, entry, known)
         like = entry.get("like")
         base = known.get(name if like is None else like)
@@ -141,7 +139,8 @@ class EntryParser:
         if missing:
             remedy = "Give these values, or write `like: NAME` to take them from another material."
             given_names = ", ".join(map(str, entry)) or "nothing"
-            raise InputError(where, given_names, f"it lacks {', '.join(missing)}", remedy)
+            wrong = f"lacks {', '.join(missing)}"
+            raise InputError(where, given_names, "", remedy, wrong)
         numbers = {key: value.value for key, value in records.items()}
         numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
         for key in contradictions(numbers).keys() - given.keys():  # inherited, but a given value excludes it
@@ -162,7 +161,7 @@ class EntryParser:
             return Material(**fields)
         except InputError as error:
             field = error.field.removeprefix(f"material '{name}'")
-            raise InputError(f"{where}{field}", error.value, error.allowed, error.remedy) from None
+            raise error.named(f"{where}{field}") from None
 
     def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
         """Return the numbers that an entry gives; raise the errors of all its fields together."""
@@ -171,7 +170,7 @@ class EntryParser:
             check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS, FIELD))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
-                wrong.errors.append(InputError(f"{where}.{key}", entry[key], "it must be a text", "Put it in quotes."))
+                wrong.errors.append(InputError(f"{where}.{key}", entry[key], "a text", "Put it in quotes."))
         with wrong.part():
             if isinstance(like := entry.get("like"), str) and like not in known:
                 if like in self.wrong:
@@ -201,10 +200,10 @@ class EntryParser:
         """Return the pair of names of an entry, and its values by `keys`, of which at least one must be given."""
         where = section
         if not isinstance(entry, Mapping):
-            raise InputError(where, entry, f"an entry must look like {{pair: [metal, PA6], {keys[0]}: NUMBER}}")
+            raise InputError(where, entry, f"an entry such as {{pair: [metal, PA6], {keys[0]}: NUMBER}}")
         pair = entry.get("pair")
         if not isinstance(pair, list) or len(pair) != 2 or not all(isinstance(p, str) and p for p in pair):
-            allowed = "it must be a list of two families or material names"
+            allowed = "a list of two families or material names"
             raise InputError(f"{where}.pair", pair, allowed, "Write pair: [metal, PA6].")
         where = f"{where}.{'-'.join(pair)}"
         given = {key: value for key, value in entry.items() if key != "pair"}
@@ -216,7 +215,7 @@ class EntryParser:
                 levels[key] = self.value(prop, given[key], f"{where}.{key}")
         wrong.check()
         if not levels:
-            raise InputError(where, dict(entry), f"it must give one of {', '.join(keys)}")
+            raise InputError(where, dict(entry), f"one of {', '.join(keys)}")
         return (pair[0], pair[1]), levels
 
 

@@ -46,7 +46,7 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
     if not path.is_file():
         field = "materials file" if argument is not None else MATERIALS
         remedy = "Correct the path, or leave it out to use the built-in materials."
-        raise InputError(field, str(named), "the path of a YAML file that exists", remedy)
+        raise InputError(field, str(named), "the path of a YAML file", remedy, "does not exist or is no file")
     return path.resolve()
 
 
@@ -124,7 +124,7 @@ def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:
     """Return the sections of a file; a missing or wrong section is empty."""
     data = {} if data is None else data
     if not isinstance(data, dict):
-        allowed = f"its top level must be a mapping with {', '.join(SECTIONS)}"
+        allowed = f"a mapping with {', '.join(SECTIONS)}"
         raise InputError("materials file", file, allowed)
     with wrong.part():
         check_names("section", data, SECTIONS)
@@ -134,5 +134,5 @@ def _sections(data: Any, file: str, wrong: Collector) -> dict[str, Any]:
         result[section] = given if isinstance(given, kind) else kind()
         if given is not None and not isinstance(given, kind):
             form = "a list of pairs" if kind is list else "a mapping from names"
-            wrong.errors.append(InputError(section, given, f"it must be {form}"))
+            wrong.errors.append(InputError(section, given, form))
     return result

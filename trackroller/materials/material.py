@@ -109,7 +109,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             raise InputError(
                 f"{where}.cycles_at_tensile_strength",
                 self.cycles_at_tensile_strength,
-                f"N_Rm must lie below N_k = {self.cycles_at_fatigue_limit:g}",
+                f"N_Rm below N_k = {self.cycles_at_fatigue_limit:g}",
                 "Give the lower number of cycles to the tensile strength.",
             )
 

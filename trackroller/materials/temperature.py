@@ -99,7 +99,7 @@ def read_table(given: Any, values: Mapping[str, float], where: str) -> Temperatu
         raise InputError(field, given, f"a mapping with the lists {', '.join(lists)}")
     check_names(f"{field}: key", given, (*lists, "source", "placeholder", "note"))
     if "temperature" not in given or not any(name in given for name in TABLED):
-        raise InputError(field, ", ".join(given) or "nothing", f"it must hold temperature and {' or '.join(TABLED)}")
+        raise InputError(field, ", ".join(given) or "nothing", f"temperature and {' or '.join(TABLED)}")
     numbers = {name: _numbers(name, given[name], field, given["temperature"]) for name in lists if name in given}
     if not all(low < high for low, high in zip(numbers["temperature"], numbers["temperature"][1:], strict=False)):
         raise InputError(f"{field}.temperature", given["temperature"], "rising temperatures", "Sort the rows.")
@@ -108,7 +108,7 @@ def read_table(given: Any, values: Mapping[str, float], where: str) -> Temperatu
             allowed = f"a table that holds the material's own value, {values[name]:g} MPa"
             raise InputError(f"{field}.{name}", given[name], allowed, f"Correct the table, or give {name} as well.")
     if not isinstance(given.get("placeholder", False), bool):
-        raise InputError(f"{field}.placeholder", given["placeholder"], "it must be true or false")
+        raise InputError(f"{field}.placeholder", given["placeholder"], "true or false")
     texts = {key: str(given[key]) for key in ("source", "note") if given.get(key)}
     fields: dict[str, Any] = {**numbers, **texts, "placeholder": given.get("placeholder", False)}
     return TemperatureTable(**fields)

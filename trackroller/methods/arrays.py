@@ -116,7 +116,7 @@ class PlackettBurman(Coded):
         """Return codes of all factors."""
         for name, factor in free.items():
             if factor.discrete and len(factor.levels) != 2:
-                allowed = "plackett_burman takes two values a factor"
+                allowed = "two values a factor, with plackett_burman"
                 raise InputError(f"factors.{name}", factor.levels, allowed, "Give two values, or choose morris.")
         coded = plackett_burman(len(free))
         return coded, {"runs": len(coded), "crossed": []}

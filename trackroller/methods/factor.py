@@ -192,7 +192,7 @@ def parse(name: str, spec: Any) -> Factor:
     """
     field = f"factors.{name}"
     if not isinstance(spec, Mapping):
-        allowed = f"a factor is a dictionary with one of {', '.join(KINDS)}"
+        allowed = f"a mapping with one of {', '.join(KINDS)}"
         example = f"Write {{values: {spec}}}." if isinstance(spec, (list, tuple)) else ""
         raise InputError(field, spec, allowed, example or "For example {uniform: [0.1, 0.3]} or {values: [1, 2]}.")
     scatter = spec.get("scatter")

@@ -30,7 +30,9 @@ class Grid(Method):
         for name, factor in free.items():
             if not factor.discrete and factor.kind != "expression":
                 remedy = "Or choose a sampled design (lhs, sobol, saltelli, morris)."
-                raise InputError(f"factors.{name}", factor.kind, "a grid needs values, linspace or logspace", remedy)
+                raise InputError(
+                    f"factors.{name}", factor.kind, "values, linspace or logspace, with design grid", remedy
+                )
 
     def draw(self, free: Factors, n: int, seed: int, settings: Settings) -> Drawn:
         """Return the index of each listed value, the last factor fastest."""

@@ -70,7 +70,7 @@ class Parameter:
         if self.nonzero:
             parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
         parts.append("finite or inf" if self.allow_infinite else "finite")
-        return f"{self.long_name} [{self.unit}] must be a number, " + ", ".join(parts)
+        return f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
 
     def remedy(self, value: float) -> str:
         """Return what to write instead of a value that only has the wrong sign; '' for any other value."""

@@ -148,7 +148,7 @@ class ModelDeclaration:
         allowed = self.normals if option == "normal" else self.slip_terms
         if value not in allowed:
             words = ", ".join(allowed) or "no word"
-            raise InputError(option, value, f"contact_model: {self.name} takes {words} only", self.remedy)
+            raise InputError(option, value, f"{words} only, with contact_model: {self.name}", self.remedy)
 
 
 # The costs of the built-in models are measured on random designs, see `validation.benchmarks.trade`.

@@ -146,7 +146,7 @@ def evaluate(text: str, values: Mapping[str, Any], field: str = "expression") ->
     """
     number = _number(_Evaluation(text, field, values).value(_parse(text, field)))
     if number is None:
-        raise InputError(field, text, "the result is a text, not a number", "Compare texts with == or !=.")
+        raise InputError(field, text, "a number", "Compare texts with == or !=.", "gives a text")
     return number
 
 
@@ -174,7 +174,7 @@ def condition(text: str, values: Mapping[str, Any], field: str = "constraints") 
     """
     result = _truth(_Evaluation(text, field, values).value(_parse(text, field)))
     if result is None:
-        raise InputError(field, text, "a comparison is wanted, such as 'max_pressure < 1500'")
+        raise InputError(field, text, "a comparison such as 'max_pressure < 1500'")
     return np.asarray(result.holds & result.known)
 
 
@@ -219,7 +219,7 @@ def _parse(text: str, field: str) -> ast.expr:
 @lru_cache(maxsize=256)
 def _tree(text: str, field: str) -> ast.expr:
     if len(text) > MAX_LENGTH:
-        raise InputError(field, text[:40] + "...", f"an expression has at most {MAX_LENGTH} characters")
+        raise InputError(field, text[:40] + "...", f"an expression of at most {MAX_LENGTH} characters")
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", SyntaxWarning)  # about nodes that are refused anyway, such as 2(x)
@@ -229,9 +229,9 @@ def _tree(text: str, field: str) -> ast.expr:
     except InputError:
         raise
     except SyntaxError as exc:
-        raise InputError(field, text, f"syntax error at character {exc.offset}", _REMEDY) from None
+        raise InputError(field, text, "", _REMEDY, f"has a syntax error at character {exc.offset}") from None
     except (RecursionError, MemoryError, ValueError):
-        raise InputError(field, text, "the brackets are too deep, or this is not a text", _REMEDY) from None
+        raise InputError(field, text, "", _REMEDY, "has too deep brackets, or is not a text") from None
 
 
 def _name(node: ast.AST) -> str | None:
@@ -400,4 +400,6 @@ class _Evaluation:
 
     def refused(self, node: ast.AST, what: str, remedy: str = _REMEDY) -> InputError:
         at = getattr(node, "col_offset", 0) + 1
-        return InputError(self.field, self.text, f"{what} at character {at} is not allowed", remedy or _REMEDY)
+        return InputError(
+            self.field, self.text, "", remedy or _REMEDY, f"holds {what} at character {at}, which is not allowed"
+        )

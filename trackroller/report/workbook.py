@@ -65,7 +65,7 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
         raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
     if len(table) > MOST_ROWS:
         remedy = "Write them as .csv."
-        raise InputError("cases", len(table), f"a workbook holds at most {MOST_ROWS:,} cases", remedy)
+        raise InputError("cases", len(table), f"at most {MOST_ROWS:,} cases in a workbook", remedy)
     sheet = Table("cases", "Cases", list(map(str, table.columns)), table.astype(object).to_numpy().tolist())
     write_whole(path, lambda beside: _save(beside, [sheet]))
     return path

@@ -264,7 +264,7 @@ def _for_tolerance(tolerance: float, contact_model: str, outputs: frozenset[str]
         raise InputError(
             "accuracy",
             tolerance,
-            f"{contact_model} keeps {finest:g} of mu F_N in 99 % of the cases",
+            f"{finest:g} or more, which {contact_model} keeps of mu F_N in 99 % of the cases",
             "Use a preset or a larger tolerance, or contact_model: kalker.",
         )
     wanted = (
@@ -303,8 +303,9 @@ def _beyond(tolerance: float, model: str, shares: Mapping[str, float], wanted: I
     return InputError(
         "accuracy",
         tolerance,
-        f"the finest tolerance that {model} reaches here is {reached:g}, by its {worst.replace('_', ' ')}",
+        "",
         "Use 'reference' for the finest settings, a larger tolerance, or only the outputs that you need.",
+        f"is too fine: the finest tolerance that {model} reaches here is {reached:g}, by its {worst.replace('_', ' ')}",
     )
 
 

@@ -35,7 +35,9 @@ def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
     for key, value in values.items():
         name = ALIASES.get(key, key)
         if name in out or (name != key and name in values):
-            raise InputError(name, value, f"one value; {key} is another name of {name}", "Remove one of the two.")
+            raise InputError(
+                name, value, "one value", "Remove one of the two.", f"stands beside {key}, which is another name of it"
+            )
         out[name] = value
     return out
 

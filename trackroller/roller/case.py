@@ -123,8 +123,8 @@ class Case(_Numbers):
     30.0
     >>> tr.Case(contact_angle=95)
     Traceback (most recent call last):
-    trackroller.errors.InputError: contact_angle = 95 is not usable: contact angle [deg] must be a number, \
->= 1e-06 deg, < 90 deg, finite
+    trackroller.errors.InputError: contact_angle = 95 is not usable. Allowed: a number for the contact \
+angle [deg], >= 1e-06 deg, < 90 deg, finite
     """
 
     not_given: ClassVar[tuple[str, ...]] = ()
@@ -222,7 +222,7 @@ def _checked_word(name: str, value: Any) -> Any:
         text = mapping_text(name, value)
         return json.loads(text) if text else None
     if not isinstance(value, (str, Mapping, Material)) or value == "":
-        allowed = "a material is a name of the database or a mapping with its values"
+        allowed = "a name of the database or a mapping with its values"
         raise InputError(name, value, allowed, "`trackroller materials list` shows the names.")
     return str(value) if isinstance(value, DefaultName) else value
 

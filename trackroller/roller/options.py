@@ -121,7 +121,7 @@ def options_of_cases(cases: xr.Dataset, given: Mapping[str, Any]) -> tuple[list[
         if name in given:
             levels = ", ".join(dict.fromkeys(map(str, np.atleast_1d(cases[name].values))))
             remedy = f"Leave {name} out, or choose the cases with one value of it."
-            raise InputError(name, given[name], f"the cases vary it themselves ({levels})", remedy)
+            raise InputError(name, given[name], f"the option of the cases, which vary it ({levels})", remedy)
     if not varying:
         return [stated], np.zeros(cases.sizes.get("case", 1), dtype=int)
     keys = list(zip(*[np.atleast_1d(cases[name].values).tolist() for name in varying], strict=True))

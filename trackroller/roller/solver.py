@@ -201,7 +201,7 @@ def _check_cases(table: CaseTable, options: Options) -> None:
     for name in ("guide_profile", "roller_profile"):
         if options.normal != "halfspace" and np.any(getattr(table, name) != ""):
             remedy = f"Set normal to halfspace, or remove {name}."
-            raise InputError("normal", options.normal, f"a case with a {name} needs normal: halfspace", remedy)
+            raise InputError("normal", options.normal, f"halfspace, for a case with a {name}", remedy)
 
 
 def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:

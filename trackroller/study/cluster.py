@@ -52,7 +52,9 @@ def _client(scheduler: str) -> Any:
         from distributed import Client
     except ImportError:
         remedy = "Install it: pip install 'trackroller[cluster]'."
-        raise InputError("--scheduler", scheduler, "possible with the package distributed only", remedy) from None
+        raise InputError(
+            "--scheduler", scheduler, "", remedy, "needs the package distributed, which is missing"
+        ) from None
     if scheduler != "local" and not scheduler.startswith(("tcp://", "tls://")):
         raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
@@ -62,9 +64,9 @@ def _client(scheduler: str) -> Any:
     try:
         return Client(scheduler, timeout="10s")  # type: ignore[no-untyped-call]
     except (OSError, ValueError) as exc:
-        why = f"no dask scheduler answers there ({exc})"
+        wrong = f"does not answer as a dask scheduler ({exc})"
         remedy = "Start one: dask scheduler, dask worker ADDRESS."
-        raise InputError("--scheduler", scheduler, why, remedy) from None
+        raise InputError("--scheduler", scheduler, "", remedy, wrong) from None
 
 
 def _solve(client: Any, cases: xr.Dataset, database: Any) -> Iterator[xr.Dataset]:

@@ -97,7 +97,7 @@ def find_study(study: str, results: Path | str = "results") -> Study:
         known = sorted(p.parent.name for p in Path(results).glob("*/plan.json"))
         close = nearest(study, known)
         allowed = f"a study file, or a study in {results}/: {', '.join(known) or 'none yet'}"
-        raise InputError("study", study, allowed, f"Did you mean '{close}'?" if close else "")
+        raise InputError("study", study, allowed, f"Did you mean '{close}'?" if close else "", "is not there")
     return study_of_folder(folder)
 
 

@@ -63,7 +63,9 @@ def _settings(tolerance: float, model: str) -> str:
     try:
         s = accuracy_settings(tolerance, model)
     except InputError as refusal:
-        hit = re.search(r"reaches here is ([\d.e-]+)|= [\d.e-]+ is not usable: ([\d.e-]+) or more", str(refusal))
+        hit = re.search(
+            r"reaches here is ([\d.e-]+)|= [\d.e-]+ is not usable. Allowed: ([\d.e-]+) or more", str(refusal)
+        )
         return "refused: " + (f"reaches {hit[1] or hit[2]}" if hit else "out of reach")
     if DECLARED[model].by_case:
         return f"{s.elements} to {2**s.doublings * s.elements} elements, by patch"

@@ -190,7 +190,7 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
     """
     if "case" in ds.dims:
         if ds.sizes["case"] != 1:
-            raise InputError("ds", f"{ds.sizes['case']} cases", "one case is drawn at a time", "Use ds.isel(case=i).")
+            raise InputError("ds", f"{ds.sizes['case']} cases", "one case at a time", "Use ds.isel(case=i).")
         ds = ds.isel(case=0)
     return style.draw_all(figures_of(ds), Path(out_dir))
 

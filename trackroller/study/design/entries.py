@@ -110,7 +110,7 @@ def base_value(key: Any, value: Any, section: str = "base") -> Any:
     known = (*CASE_FIELDS, "material_pair")
     if key in OPTIONS:
         remedy = f"Write {key}: {value} on a line of its own that is not indented."
-        raise InputError(f"{section}.{key}", value, f"parameters of the roller; {key} is a key of the study", remedy)
+        raise InputError(f"{section}.{key}", value, "parameters of the roller", remedy, "is a key of the study")
     if key not in known:
         raise unknown_name(section, str(key), (*known, *ALIASES, *RADII), OPTIONS)
     return field_value(key, value, f"{section}.{key}")
@@ -154,7 +154,7 @@ def _mapping(name: str, value: Any, where: str) -> str:
         return text
     except InputError as exc:
         field = exc.field.replace(name, where, 1) if exc.field.startswith(name) else f"{where}: {exc.field}"
-        raise InputError(field, exc.value, exc.allowed, exc.remedy) from None
+        raise exc.named(field) from None
 
 
 def _number(name: str, value: Any, where: str) -> Any:
@@ -200,7 +200,7 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
     checked = parse(key, spec)
     if not own and key not in PARAMETERS and checked.kind != "values":
-        raise InputError(where, checked.kind, "names are given as {values: [...]}")
+        raise InputError(where, checked.kind, "names as {values: [...]}")
     if key in PARAMETERS:
         for level in (*checked.levels, *(checked.numbers if checked.kind == "uniform" else ())):
             _number(key, level, f"{where}.{checked.kind}")

@@ -36,8 +36,9 @@ def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: st
     for name, role in given.items():
         where = f"roles.{name}"
         if name in OPTION_FACTORS:
-            allowed = "a factor of the roller or of its use; this is an option of the calculation"
-            raise InputError(where, role, allowed, "Remove the line: designs are compared with one model.")
+            remedy = "Remove the line: designs are compared with one model."
+            wrong = "is the role of an option of the calculation"
+            raise InputError(where, role, "a factor of the roller or of its use", remedy, wrong)
         if name not in factors:
             raise unknown_name(where, name, [n for n in factors if n not in OPTION_FACTORS])
         factor = factors[name]

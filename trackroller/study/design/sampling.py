@@ -69,13 +69,13 @@ def sample(
         meta: dict[str, Any] = {}
         parsed = {name: parse(name, spec) for name, spec in factors.items() if name not in columns}
         for name in (name for name, factor in parsed.items() if factor.kind != "expression"):
-            allowed = "a table has its factors as columns"
+            allowed = "factors as columns of the table"
             raise InputError(f"factors.{name}", factors[name], allowed, "Only expressions may stand beside a table.")
     else:
         parsed = {name: parse(name, spec) for name, spec in factors.items()}
         free = {k: f for k, f in parsed.items() if f.varies}
         if not free and not drawn_by.crossed:
-            raise InputError("factors", list(factors), "at least one factor must vary")
+            raise InputError("factors", list(factors), "at least one factor that varies")
         _check_weights(free, method)
         if drawn_by.sampled and int(n) < 1:
             raise InputError("samples", n, "a whole number >= 1")
@@ -133,14 +133,14 @@ def _derived(
         order = list(needs.static_order())
     except graphlib.CycleError as exc:
         name, *circle = exc.args[1]
-        allowed = "expressions must not need each other in a circle: " + ", ".join(circle)
+        allowed = "expressions that do not need each other in a circle: " + ", ".join(circle)
         raise InputError(f"factors.{name}.expression", texts[name], allowed) from None
     for name in order:
         value = expressions.evaluate(texts[name], known, f"factors.{name}.expression")
         known[name] = out[name] = np.broadcast_to(value, (rows,)).copy()
         if bad := int(np.isnan(out[name]).sum()):
-            allowed = f"it is not a number in {bad} of {rows} rows"
-            raise InputError(f"factors.{name}.expression", texts[name], allowed)
+            wrong = f"is not a number in {bad} of {rows} rows"
+            raise InputError(f"factors.{name}.expression", texts[name], "a number in each row", wrong=wrong)
     return out
 
 
@@ -162,5 +162,6 @@ def _check_bounds(columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor
         good = PARAMETERS[name].accepts(values)
         if not good.all():
             kind = parsed[name].kind if name in parsed else "table"
-            allowed = f"{PARAMETERS[name].allowed()} (outside: {int((~good).sum())} of {good.size} rows)"
-            raise InputError(f"factors.{name}", float(values[~good][0]), allowed, remedies.get(kind, ""))
+            wrong = f"lies outside, as {int((~good).sum())} of {good.size} rows do"
+            allowed = PARAMETERS[name].allowed()
+            raise InputError(f"factors.{name}", float(values[~good][0]), allowed, remedies.get(kind, ""), wrong)

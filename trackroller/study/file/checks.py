@@ -72,14 +72,16 @@ def cross_check(study: Study) -> None:
     config = study.config
     for name in OPTION_FACTORS:
         if name in config.factors and not isinstance(getattr(config, name), str):
-            raise InputError(name, getattr(config, name), f"{name} stands among the factors too", "Keep one.")
+            raise InputError(name, getattr(config, name), "", "Keep one.", wrong="stands among the factors too")
     both = {*study.factors, *config.base} & {"material_pair"}
     single = {*study.factors, *config.base} & set(MATERIAL_FIELDS)
     if both and single:
-        raise InputError("material_pair", sorted(single), "give the pair or the single materials, not both")
+        raise InputError("material_pair", sorted(single), "the pair or the single materials, not both")
     if doubled := set(config.base) & set(study.factors):
         name = min(doubled)
-        raise InputError(f"base.{name}", config.base[name], f"{name} is a factor too", "Remove one of them.")
+        raise InputError(
+            f"base.{name}", config.base[name], "", "Remove one of them.", wrong=f"stands beside a factor {name}"
+        )
     if not config.method.proposes and config.method.observed != (config.table is not None):
         remedy = "Write 'design: table' too." if config.table else "Write 'table: cases.csv' too, with your file."
         raise InputError("table", config.table, "design: table and the path of a CSV or Excel file together", remedy)
@@ -252,7 +254,7 @@ def check_geometry(study: Study) -> None:
         problem = geometry_problem({name: rows[:, i] for i, name in enumerate(_GEOMETRY)})
     if problem is not None:
         where = "factors" if problem.field in study.factors else "base"
-        raise InputError(f"{where}.{problem.field}", problem.value, problem.allowed, problem.remedy)
+        raise problem.named(f"{where}.{problem.field}")
 
 
 def _ends(study: Study, name: str) -> list[float]:
@@ -265,5 +267,5 @@ def _ends(study: Study, name: str) -> list[float]:
         return [factor.numbers[0]]
     low, high = factor.numbers[-2:] if factor.kind == "truncnormal" else (factor.numbers[0], factor.numbers[-1])
     if low < 0 < high and PARAMETERS[name].nonzero:
-        raise InputError(f"factors.{name}", [low, high], f"{PARAMETERS[name].allowed()}: the range holds 0")
+        raise InputError(f"factors.{name}", [low, high], PARAMETERS[name].allowed(), wrong="holds 0")
     return [low, high]

@@ -30,7 +30,7 @@ def check_name(name: Any) -> str:
     """Return a name that is valid for a folder inside the results folder; refuse any other name."""
     name = str(name) if isinstance(name, (int, float)) and not isinstance(name, bool) else name
     if isinstance(name, str) and DEVICE.fullmatch(name):
-        raise InputError("name", name, "the name of a folder; Windows has a device of this name", "Add a word to it.")
+        raise InputError("name", name, "the name of a folder", "Add a word to it.", "is a device of Windows")
     if not isinstance(name, str) or not NAME.fullmatch(name) or ".." in name or name.endswith("."):
         raise InputError(
             "name",

@@ -65,7 +65,7 @@ def _lines(
     except csv.Error as exc:
         remedy = 'Close the quotation marks; write one within a text twice: "".'
         remedy = "Shorten its cells." if "limit" in str(exc) else remedy
-        error = InputError(field, str(path), f"a readable CSV file ({exc})", remedy)
+        error = InputError(field, str(path), "a CSV file", remedy, f"cannot be read as CSV ({exc})")
         raise error.at(path, reader.line_num) from None
 
 

@@ -302,7 +302,10 @@ def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable
         if group == "status":
             return InputError(where, name, "a result or a factor")
         return InputError(
-            where, name, f"its group {group} is not among the study's outputs", f"Add {group} to outputs."
+            where,
+            name,
+            f"results of the study's outputs; its group {group} is not among them",
+            f"Add {group} to outputs.",
         )
     if name_of in VARIABLES and variable not in DEFAULTS and "[" not in name:
         dims = VARIABLES[name_of].dims

@@ -60,9 +60,9 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
         return unknown_name("study key", where, StudyFile.model_fields)
     if detail["type"] == "missing":
         *room, key = (str(part) for part in detail["loc"])
-        needs = f"{room[-1] if room else 'every study'} needs this key"
+        needs = f"this key, in {room[-1] if room else 'every study'}"
         return InputError(where, None, needs, f"Add {key}: ... to {room[-1]}." if room else f"Add a line '{key}: ...'.")
-    allowed = detail["msg"].replace("Input should be ", "it must be ")
+    allowed = detail["msg"].replace("Input should be ", "")
     if detail["type"] == "model_type":
         allowed = f"a mapping with {', '.join(ROOMS[where])}"
     for word, plain in (("dictionary", "mapping of names to values"), ("tuple", "list"), ("string", "text")):

@@ -160,19 +160,17 @@ def _lines(path: Path, field: str, what: str, most: float, most_rows: int | None
     remedy = "Save the table as .xlsx or as CSV."
     zipped, old = content.startswith(b"PK\x03\x04"), content.startswith(b"\xd0\xcf\x11\xe0")
     if old or path.suffix.lower() in _OTHER_FORMATS:
-        raise InputError(
-            field, str(path), f"a CSV file or a workbook (.xlsx); this is {_OLD if old else 'neither'}", remedy
-        )
+        wrong = f"is {_OLD}" if old else "has another format"
+        raise InputError(field, str(path), "a CSV file or a workbook (.xlsx)", remedy, wrong)
     if is_workbook(path):
         if not zipped:
-            raise InputError(
-                field, str(path), "a readable workbook; this is none", "Give the file the ending .csv, " + remedy
-            )
+            remedy = "Give the file the ending .csv, or save the table as .xlsx."
+            raise InputError(field, str(path), "a readable workbook", remedy, "is no workbook")
         return sheet_lines(content, path, field, what, most_rows), ""
     if zipped or content.lstrip()[:1] == b"<":
         kind = "workbook or another archive" if zipped else "page of HTML or XML"
         remedy = "Give a workbook the ending .xlsx." if zipped else remedy
-        raise InputError(field, str(path), f"a CSV file; this is a {kind}", remedy)
+        raise InputError(field, str(path), "a CSV file", remedy, f"is a {kind}")
     return csv_lines(text_of(content, path, field), path, field)
 
 

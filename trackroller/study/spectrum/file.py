@@ -278,7 +278,7 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
 def _named(error: InputError, where: str) -> list[InputError]:
     """Return the errors of a case with the place of the case before their fields."""
     named = [f"{where}{'.' if one.field in FIELDS else ': '}{one.field}" for one in error.errors]
-    return [InputError(name, one.value, one.allowed, one.remedy) for name, one in zip(named, error.errors, strict=True)]
+    return [one.named(name) for name, one in zip(named, error.errors, strict=True)]
 
 
 def _number(name: str, value: Any, open_lower: bool = False, unit: str = "-") -> float:

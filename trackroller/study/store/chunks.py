@@ -93,7 +93,7 @@ def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
         raise CorruptFile(path, "its content does not fit its checksum")
     with netCDF4.Dataset(path.name, memory=content[:-32]) as file:
         if excess := too_large(file, len(content)):
-            raise CorruptFile(path, excess)
+            raise CorruptFile(path, f"it {excess}")
         file.set_auto_mask(False)
         cases: np.ndarray = np.ascontiguousarray(file["case"][:]).view("S32").reshape(-1)
         if chunk_name(cases) != path.stem:

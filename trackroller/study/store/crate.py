@@ -141,10 +141,13 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
         }
     except (OSError, ValueError, KeyError, TypeError, RecursionError):
         remedy = "Give a folder results/NAME of a study that was run to its end."
-        raise InputError("crate", str(root), f"a folder with a readable {METADATA}", remedy) from None
+        wrong = f"holds no readable {METADATA}"
+        raise InputError("crate", str(root), "a study that was run to its end", remedy, wrong) from None
     for name in files:
         if Path(name).is_absolute() or ".." in Path(name).parts:
-            raise InputError("crate", name, "files inside the crate", "Do not use this crate.")
+            raise InputError(
+                "crate", name, "files inside the crate", "Do not use this crate.", "leads out of the crate"
+            )
     return files
 
 
@@ -177,7 +180,7 @@ def study_of_crate(root: Path | str) -> Study:
     damaged = {name: what for name, what in damaged_files(root).items() if name.startswith(INPUTS)}
     if damaged:
         name, what = next(iter(damaged.items()))
-        raise InputError("crate", name, f"inputs as they were written; this one is {what}", "Fetch the crate again.")
+        raise InputError("crate", name, "inputs as they were written", "Fetch the crate again.", f"is {what}")
     return study_of_folder(StudyFolder(Path(root)))
 
 

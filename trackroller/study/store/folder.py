@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from trackroller.errors import InputError
-from trackroller.files import disk_error, try_lock, write_text
+from trackroller.files import check_utf_8, disk_error, try_lock, write_text
 from trackroller.study.store.seal import is_sealed, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
@@ -92,6 +92,7 @@ class StudyFolder:
         WorkError
             If the folder cannot be written.
         """
+        check_utf_8(self.root.absolute(), "results folder")
         try:
             for name in ("plan", "chunks"):
                 (self.root / name).mkdir(parents=True, exist_ok=True)
@@ -99,8 +100,9 @@ class StudyFolder:
                 pass
         except OSError as exc:
             if exc.errno in NO_FOLDER:
-                allowed = f"it cannot be a folder ({exc.strerror})"
-                raise InputError("results folder", str(self.root), allowed, "Choose another with --results.") from None
+                wrong = f"cannot be a folder ({exc.strerror})"
+                remedy = "Choose another with --results."
+                raise InputError("results folder", str(self.root), "the path of a folder", remedy, wrong) from None
             raise disk_error(exc, self.root) from None
         return self
 

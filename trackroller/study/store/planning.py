@@ -95,7 +95,7 @@ def _remove_altered(folder: StudyFolder, tell: Tell) -> None:
     """Remove design and gathered results unless they are as they were written; they are made anew."""
     for path in (folder.design, folder.gathered):
         if path.is_dir():
-            raise InputError(path.name, str(path), "a file; this is a folder", "Move the folder away.")
+            raise InputError(path.name, str(path), "a file", "Move the folder away.", "is a folder")
         if path.exists() and altered(path):
             tell(f"{path} is truncated or was altered (its SHA-256 differs): it is made anew")
             discard(path)

@@ -151,7 +151,7 @@ def read_result(path: Path | str) -> xr.Dataset:
     """
     path = Path(path)
     if not path.is_file():
-        raise InputError("results", str(path), "a netCDF file that exists", "Run the study first.")
+        raise InputError("results", str(path), "the path of a netCDF file", "Run the study first.", "does not exist")
     return read_netcdf(check_sealed(path), "results", "Run the study again.")
 
 
@@ -177,8 +177,8 @@ def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
             return xr.load_dataset(path, engine="netcdf4")
     except (OSError, ValueError, RuntimeError, AttributeError, IndexError, KeyError, TypeError, OverflowError) as exc:
         reason = " ".join(str(exc).split())[:200]
-        raise InputError(what, str(path), f"a readable netCDF file ({reason})", remedy) from None
-    raise InputError(what, str(path), f"a netCDF file that fits the memory; {excess}", remedy)
+        raise InputError(what, str(path), "a netCDF file", remedy, f"cannot be read as netCDF ({reason})") from None
+    raise InputError(what, str(path), "a netCDF file that fits the memory", remedy, excess)
 
 
 def too_large(file: netCDF4.Dataset, size: int) -> str | None:
@@ -201,4 +201,4 @@ def too_large(file: netCDF4.Dataset, size: int) -> str | None:
     declared = sum(math.prod(v.shape) * getattr(v.dtype, "itemsize", TEXT_BYTES) for v in variables)
     if declared <= min(memory(), max(ANY_BYTES, MOST_PACKED * size)):
         return None
-    return f"it declares {values:,} values, which take {declared / 1e9:,.0f} GB, in a file of {size:,} bytes"
+    return f"declares {values:,} values, which take {declared / 1e9:,.0f} GB, in a file of {size:,} bytes"
