@@ -33,7 +33,7 @@ class LivePage:
     """`trackroller app FOLDER` in a process of its own."""
 
     def __init__(self, folder: Path, *options: str, browser: str = "", **where: Any) -> None:
-        command = [sys.executable, "-m", "trackroller.cli", "app", str(folder), *options]
+        command = [sys.executable, "-P", "-m", "trackroller.cli", "app", str(folder), *options]
         command += [] if browser else ["--no-browser"]
         self.folder = folder
         where["env"] = {**os.environ, **where.get("env", {}), **({"BROWSER": browser} if browser else {})}

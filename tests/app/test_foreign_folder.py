@@ -47,8 +47,13 @@ def test_links_out_of_the_folder_are_not_followed(tmp_path, link):
         assert page.process.wait(60) == 2 and "link" in page.process.stderr.read()
         told = []
     else:
-        told = [page.ask(question, name="x", confirm="x") for question in ("text_of", "pause", "resume", "delete")]
-        told += [page.ask("text_of", name="x"), page.ask("headlines", name="x"), page.get("results/x/report.html")]
+        told = [page.ask(question, name="x") for question in ("text_of", "pause", "resume")]
+        told += [
+            page.ask("delete", name="x", confirm="x"),
+            page.ask("text_of", name="x"),
+            page.ask("headlines", name="x"),
+            page.get("results/x/report.html"),
+        ]
         told += [page.ask("start", text=STUDY.replace("small", "x")), page.ask("picture", values={})]
         told += [page.ask("picture", values=POINTS), page.ask("all_fields"), page.ask("listing")]
         if link.startswith("results/x/"):

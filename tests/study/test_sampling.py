@@ -153,7 +153,7 @@ def test_table_of_own_cases_is_taken_with_a_derived_column(tmp_path):
     design = sample({"motor_force": {"expression": "-axial_force / 2"}}, "table", 1, 1, table=path)
     assert list(design.factors) == ["axial_force", "material_pair"]
     np.testing.assert_array_equal(design.columns["motor_force"], [-5, -10])
-    path.write_text("axial_force,velocity\n10,\n")
+    path.write_text("axial_force,velocity\n10,\n20,60\n")
     with pytest.raises(InputError, match="line 2"):
         sample({}, "table", 1, 1, table=path)
 
@@ -211,11 +211,11 @@ def test_unsafe_or_wrong_expressions_are_refused_with_their_place(text, says):
         ({"x": {"values": [1, 2]}}, "inner_outer", "scatters"),
         ({"x": {"values": [1, 2, 3]}}, "plackett_burman", "two values"),
         ({"x": {"uniform": [0, 1]}}, "box_behnken", "3 to 7"),
-        ({"x": {"values": [1]}}, "lhs", "must vary"),
+        ({"x": {"values": [1]}}, "lhs", "at least one factor that varies"),
         ({"x": {"uniform": [0, 1]}, "a": {"expression": "b"}, "b": {"expression": "a"}}, "lhs", "circle"),
         ({"x": {"uniform": [-1, 1]}, "a": {"expression": "sqrt(x)"}}, "lhs", "not a number"),
         ({"friction_coefficient": {"normal": [0.1, 0.1]}}, "lhs", "truncnormal"),
-        ({"x": 3}, "lhs", "dictionary"),
+        ({"x": 3}, "lhs", "a mapping with one of"),
     ],
 )
 def test_wrong_factors_are_refused_with_a_remedy(factors, method, says):
