@@ -170,7 +170,7 @@ def test_a_table_takes_units_and_decimal_commas(tmp_path, text):
     assert design["axial_force"].values.tolist() == [12.0, 20.0]
     assert design["velocity"].values.tolist() == [90.0, 60.0]
     (tmp_path / "cases.csv").write_text(text.replace("axial_force", "axial_force [mm]").replace("[mm] [kN]", "[mm]"))
-    with pytest.raises(InputError, match="line 2: axial_force = 'mm'"):
+    with pytest.raises(InputError, match="line 1: axial_force = 'mm'"):
         tr.load_study(tmp_path / "t.yaml").design()
 
 

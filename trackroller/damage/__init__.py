@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Iterable, Mapping
+from typing import Any
 
 from trackroller.damage import (
     bearing,
@@ -24,6 +25,15 @@ _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, mu
 LIMITS: dict[str, Limit] = {file.LIMIT.name: file.LIMIT for file in _FILES}
 
 
+_KINDS = {  # what a limit declares by a name, in words
+    "name": "the name of a limit",
+    "group": "a group of outputs",
+    "parameters": "a parameter",
+    "materials": "a value of a material",
+    "mappings": "a mapping",
+}
+
+
 def add_own() -> None:
     """Add the limits of the files in config/limits to `LIMITS`, where the user allows code.
 
@@ -33,12 +43,27 @@ def add_own() -> None:
         If a file declares no limit, or a name that another limit has taken.
     """
     for name, limit in own.own_limits().items():
-        for kind in ("name", "group", "parameters", "materials", "mappings"):
+        for kind, what in _KINDS.items():
             clash = _names(limit, kind) & {taken for known in LIMITS.values() for taken in _names(known, kind)}
             if clash:
-                wrong = f"belongs to another limit, as its {kind}"
+                wrong = f"is {what} that another limit declares"
                 raise InputError("limits", ", ".join(sorted(clash)), "", "Choose another name.", wrong)
         LIMITS[name] = limit
+
+
+def with_limits(own: Mapping[str, Any], declared: Iterable[Any], kind: str) -> dict[str, Any]:
+    """Return what the program declares by its name, and what limits declare besides.
+
+    Raises
+    ------
+    InputError
+        If a limit declares a name that the program has; `kind` is what it names.
+    """
+    added = {one.name: one for one in declared}
+    if taken := sorted(own.keys() & added.keys()):
+        wrong = f"is {kind} that the program has, so that no limit may declare it"
+        raise InputError("limits", ", ".join(taken), "", "Choose another name.", wrong)
+    return {**own, **added}
 
 
 def _names(limit: Limit, kind: str) -> set[str]:

@@ -6,11 +6,12 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from trackroller.damage import LIMITS
+from trackroller.damage import with_limits
 from trackroller.errors import InputError
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.units import in_unit
+from trackroller.parameters import LIMITS  # with the limits of a user's own
 
 
 def _number(
@@ -51,7 +52,9 @@ _PROPERTIES = (
     _number("scatter_in_stress", "T_S", "-", "scatter of the strength T_S = S_90/S_10", 1.0, 1e3, True, True),
 )
 OF_LIMITS: dict[str, Parameter] = {own.name: own for limit in LIMITS.values() for own in limit.materials}
-PROPERTIES: dict[str, Parameter] = {p.name: p for p in _PROPERTIES} | OF_LIMITS
+PROPERTIES: dict[str, Parameter] = with_limits(
+    {p.name: p for p in _PROPERTIES}, OF_LIMITS.values(), "a value of a material"
+)
 # Other ways to give the S-N curve; `trackroller.materials.sn_curve` turns them into the properties above.
 _ALTERNATIVES = (
     _number("fatigue_limit", "sigma_D", "MPa", "fatigue limit", 0.0, 2e5),

@@ -27,6 +27,7 @@ __all__ = [
     "CONTACT_MODELS",
     "EXACTNESS",
     "FIRST_TO_FAIL",
+    "LIMITS",
     "OF_LIMITS",
     "OPTIONS",
     "PARAMETERS",

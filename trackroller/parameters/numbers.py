@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import LIMITS, verdict, with_limits
 from trackroller.numerics.parameter import Parameter
 
 POSITIVE: dict[str, Any] = {"lower": 0.0, "open_lower": True}
@@ -98,4 +98,4 @@ _ALL = (
 OF_LIMITS: dict[str, Parameter] = {
     own.name: own for own in (*(own for limit in LIMITS.values() for own in limit.parameters), verdict.POSITION)
 }
-PARAMETERS: dict[str, Parameter] = {p.name: p for p in _ALL} | OF_LIMITS
+PARAMETERS: dict[str, Parameter] = with_limits({p.name: p for p in _ALL}, OF_LIMITS.values(), "a parameter")

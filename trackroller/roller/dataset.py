@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller import __version__
-from trackroller.damage import LIMITS, verdict
+from trackroller.damage import verdict, with_limits
 from trackroller.damage.limit import variables
-from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, REGIMES
+from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, LIMITS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 
 if TYPE_CHECKING:
@@ -123,8 +123,11 @@ _GROUPS = {
     ),
 }
 
-VARIABLES = {v.name: v for group, rows in _GROUPS.items() for v in variables(group, *rows)}
-VARIABLES |= {v.name: v for rows in (*(limit.results for limit in LIMITS.values()), verdict.RESULTS) for v in rows}
+VARIABLES = with_limits(
+    {v.name: v for group, rows in _GROUPS.items() for v in variables(group, *rows)},
+    (v for rows in (*(limit.results for limit in LIMITS.values()), verdict.RESULTS) for v in rows),
+    "a result",
+)
 
 
 def shown(*dims: str) -> tuple[str, ...]:

@@ -126,10 +126,7 @@ def read_table(
     _check_lengths(found, len(heads), separator, path, field, wrong)
     if not found:
         wrong.check()
-    try:
-        names, units = _names(_without_unnamed(heads, found, field), field, used)
-    except InputError as error:
-        raise_all(one.at(path, head) for one in error.errors)
+    names, units = _names_of_line(_without_unnamed(heads, found, field), field, used, path, head)
     table = UserTable(names, head, found)
     _read_units(table, units, used, path)
     if not found:
@@ -145,8 +142,8 @@ def read_table(
 def column_names(path: Path, field: str) -> list[str]:
     """Return the names of the columns of a table; [] for an empty one."""
     lines, _ = _lines(path, field, "case", math.inf, HEAD_ROWS)
-    _, heads, _ = _split(_until_names(lines))
-    return _names([head for head in heads if head], field, ())[0] if heads else []
+    number, heads, _ = _split(_until_names(lines))
+    return _names_of_line([head for head in heads if head], field, (), path, number)[0] if heads else []
 
 
 def is_workbook(path: Path) -> bool:
@@ -266,6 +263,17 @@ def _without_unnamed(heads: list[str], found: dict[int, list[str]], field: str) 
     for line in found.values():
         line[:] = [cell for j, cell in enumerate(line) if j not in unnamed]
     return [head for j, head in enumerate(heads) if j not in unnamed]
+
+
+def _names_of_line(
+    heads: list[str], field: str, used: Collection[str], path: Path, number: int
+) -> tuple[list[str], list[str]]:
+    """Do what `_names` does, and name file and line in its errors."""
+    try:
+        return _names(heads, field, used)
+    except InputError as error:
+        raise_all(one.at(path, number) for one in error.errors)
+        raise  # never reached: there is at least one error
 
 
 def _names(heads: list[str], field: str, used: Collection[str]) -> tuple[list[str], list[str]]:
