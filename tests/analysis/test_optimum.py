@@ -1,6 +1,7 @@
 """A search finds the designs that a grid of all designs holds, and goes on where it was stopped."""
 
 import itertools
+import re
 
 import numpy as np
 import pytest
@@ -214,6 +215,21 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("goal", "way", "says"),
+    [
+        ("pair_life_hours", "max", "is best: life of the pair"),
+        ("roller_profile_radius", "max", "tie, and no other design is better: roller profile radius −6.4 mm"),
+    ],
+)
+def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
+    solved = tr.run(changed(goals={goal: way}, budget={"designs": 8, "population": 4}), progress=False)
+    text = re.sub(r"\s+", " ", solved.report(tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert says in text and "everything" not in text and "out of reach" not in text
+    assert "Its goal: " in text
+    assert solved.explore(tmp_path / "explorer.html").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
     ("keys", "says"),
     [
         ({"constraints": ["max_pressure < 100", "max_pressure > 200"]}, "No design is valid in any condition"),
@@ -222,7 +238,7 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
             {"factors": {**STUDY["factors"], "roller_profile_radius": {"uniform": [-9, -6.4]}}},
             "roller profile radius −0.05 mm changes",
         ),
-        ({"goals": {"axial_force": "max"}}, "have the same goals, so the goals do not choose among them"),
+        ({"goals": {"axial_force": "max"}}, "have the same value of the goal, so the goal does not choose"),
         (
             {
                 "goals": {"probability(pair_life_hours)": "max"},

@@ -8,7 +8,7 @@ from synthetic_results import results_of
 from trackroller.analysis.robustness import robustness
 from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
-from trackroller.methods.b10 import b10
+from trackroller.methods.b10 import b10, log_b10
 from trackroller.study.file.load import parse_study
 
 INNER_OUTER = {
@@ -109,3 +109,33 @@ def test_robustness_refuses_another_design():
     ds = solved(lognormal, data=data)
     with pytest.raises(InputError, match="inner_outer"):
         robustness(results_of(ds), {})
+
+
+def test_a_body_above_its_strength_counts_as_life_0():
+    """In 20 % of the cases the roller breaks at once: its B10 is 0, and not that of the other cases."""
+
+    def fake(ds):
+        breaks = (ds["friction_coefficient"].values > 0.26) & (ds["velocity"].values < 45)  # a quarter, at one point
+        life = np.where(breaks, np.nan, 10 ** (3 + 0.2 * ds["axial_force"].values))
+        return {
+            "roller_life_hours": life,
+            "regime": np.zeros(len(life), np.int8),
+            "validity": 4 * breaks.astype(np.int32),
+        }
+
+    ds = solved(fake)
+    ds["validity"].attrs["flag_meanings"] = "half_space yield static"
+    life = robustness(results_of(ds), {}).sel(output="roller_life_hours")
+    assert life["b10"].values[0] == life["b10_safe"].values[0] == life["b10_high"].values[0] == 0.0
+    assert life["percentile_value"].sel(percentile=10).values[0] == 0.0
+    np.testing.assert_allclose(life["b10"][1], 10 ** (3 - stats.norm.ppf(0.9) * 0.2), rtol=0.02)
+    np.testing.assert_allclose(life["used_share"], 1.0)
+
+
+@pytest.mark.parametrize("scatter", [0.0, 0.1])
+def test_the_interval_of_a_b10_of_0_is_known_or_unbounded(scatter):
+    member, deviations = np.arange(400) % 4, np.full(400, scatter)
+    lives = 10 ** np.random.default_rng(3).normal(3, 0.2, 400)
+    assert log_b10(np.where(np.arange(400) % 5 == 0, 0.0, lives), deviations, member, 4) == (-np.inf, 0.0)
+    value, wide = log_b10(np.where(np.arange(400) % 12 == 0, 0.0, lives), deviations, member, 4)
+    assert np.isfinite(value) and wide == np.inf

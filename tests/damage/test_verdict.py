@@ -13,8 +13,12 @@ from trackroller.damage import LIMITS, asked
 from trackroller.damage.limit import Limit, SolvedRollers, Verdict
 from trackroller.damage.verdict import verdict
 from trackroller.errors import InputError
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
+from trackroller.report.pages.sheet import collect
 
 NAMES = list(LIMITS)
+STEEL = "1.7225-quenched-tempered"
+STRONG = {"like": STEEL, "tensile_strength": 3000.0, "fatigue_limit": 1000.0}
 
 
 def limit(name, used, hours, **more):
@@ -127,3 +131,58 @@ def test_a_life_is_told_without_peaks_and_forces(outputs):
     words = ["solve", "--set", f"outputs={outputs}", "--set", "contact_model=sliding", "--set", scattered]
     ran = CliRunner().invoke(app, words)
     assert ran.exit_code == 0 and "h (median); contact 2 decides" in " ".join(ran.output.split())
+
+
+@pytest.mark.parametrize(
+    ("case", "regime"),
+    [
+        ({"motor_force": -60, "friction_coefficient": 0.1, "axial_force": 0}, "full_slip"),
+        ({"motor_force": 0, "radial_force": -4000}, "rolling"),  # both bodies exceed R_m
+        ({"motor_force": 0, "radial_force": -1500, "guide_material": STRONG}, "rolling"),  # the roller alone
+    ],
+)
+@pytest.mark.parametrize("outputs", [("peak_stress", "life"), ("peak_stress", "life", "multiaxial")])
+def test_a_roller_that_skids_and_a_body_above_its_strength_have_no_fatigue_life(case, regime, outputs):
+    given = tr.Case(guide_overrollings_per_hour=600, **case)
+    options = {"life_criterion": "von_mises_amplitude"} if "multiaxial" in outputs else {}
+    ds = tr.solve(given, outputs, contact_model="sliding", accuracy="preview", **options)
+    assert REGIMES[int(ds.regime)] == regime
+    lifeless = ["roller"] if "guide_material" in case else ["roller", "guide"]
+    for body in BODIES:
+        lives = [ds.life_cycles.sel(body=body), ds.life_hours.sel(body=body), ds[f"{body}_life_hours"]]
+        lives.append(ds.life_error_estimate.sel(body=body) if not options else lives[0])
+        assert all(bool(one.isnull().all() if body in lifeless else one.notnull().all()) for one in lives)
+    assert np.isnan(ds.pair_life_hours) and FIRST_TO_FAIL[int(ds.first_to_fail)] == "unknown"
+    swapped = tr.Case(**{**case, "guide_material": given.roller_material, "roller_material": given.guide_material})
+    other = tr.solve(swapped, outputs, contact_model="sliding", accuracy="preview", **options)
+    assert np.isnan(other.pair_life_hours), "the guide has no life, though its hours are not known"
+
+
+@pytest.mark.parametrize(
+    ("outputs", "mechanism"),
+    [
+        (("peak_stress", "life", "limits"), "static"),
+        (("life", "limits"), "fatigue"),
+        (("life", "wear", "limits"), "fatigue"),
+    ],
+)
+def test_a_body_above_its_strength_reaches_its_first_limit_at_once(outputs, mechanism):
+    worn = {"like": STEEL, "wear_coefficient": 1e-6}
+    case = tr.Case(motor_force=0, radial_force=-4000, roller_material=worn, permissible_wear_depth=0.1)
+    ds = tr.solve(case, outputs, contact_model="sliding", accuracy="preview")
+    assert ds.life_to_first_limit_hours.values.tolist() == [0.0, 0.0] and ds.pair_life_to_first_limit_hours == 0.0
+    words = ds.limiting_mechanism.attrs["flag_meanings"].split()
+    assert [words[i] for i in ds.limiting_mechanism.values] == [mechanism] * 2
+    assert np.isnan(ds.life_hours_by_limit.sel(limit="fatigue")).all()
+    assert collect(ds).first[0].endswith("exceeded now.")
+
+
+def test_a_skidding_roller_keeps_the_lives_of_its_other_limits():
+    worn = {"like": STEEL, "wear_coefficient": 1e-6}
+    case = tr.Case(motor_force=60, friction_coefficient=0.1, axial_force=0, roller_material=worn, guide_material=worn)
+    case = tr.Case(**case.as_dict() | {"permissible_wear_depth": 0.1, "guide_overrollings_per_hour": 600})
+    ds = tr.solve(case, ("life", "rating", "wear", "limits"), contact_model="sliding", accuracy="preview")
+    assert REGIMES[int(ds.regime)] == "full_slip"
+    assert np.isnan(ds.life_hours_by_limit.sel(limit=["fatigue", "rating"])).all()
+    guide = ds.life_hours_by_limit.sel(limit="wear", body="guide")
+    assert np.isfinite(guide) and ds.life_to_first_limit_hours.sel(body="guide") == guide

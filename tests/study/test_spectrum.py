@@ -80,12 +80,12 @@ def test_one_block_lasts_its_life_over_its_cycles():
 def test_rates_of_damage_add_up():
     """One over the life of two blocks together is the sum of one over the life of each."""
     a = {"name": "a", "distance": 1000, "radial_force": -200, "guide_overrollings": 5}
-    b = {"name": "b", "distance": 500, "radial_force": -250, "guide_overrollings": 9}
+    b = {"name": "b", "distance": 500, "radial_force": -230, "guide_overrollings": 9}
     both, one, other = (solved(spectrum(*blocks)).life_shifts for blocks in ((a, b), (a,), (b,)))
     assert (1 / both).values == pytest.approx((1 / one + 1 / other).values, rel=1e-12)
 
 
-@given(st.floats(10, 1e5), st.floats(1.01, 3), st.floats(20, 300))
+@given(st.floats(10, 1e5), st.floats(1.01, 3), st.floats(20, 75))
 @settings(max_examples=25, deadline=None)
 def test_more_load_or_way_shortens_life(distance, factor, force):
     lives = [
@@ -117,6 +117,36 @@ def test_a_block_in_which_a_contact_lifts_off_makes_the_life_unknown():
     ds = solve_spectrum(spectrum({"name": "calm", "distance": 10}, lifted, contact_model="sliding"))
     assert ds.regime.values.tolist() == [0, 2] and np.isnan(ds.damage.isel(block=1)).all()
     assert np.isnan(ds.roller_life_shifts) and "'lifted' (lift-off)" in summary(ds)[0]
+
+
+def test_a_body_that_breaks_and_a_roller_that_skids_have_no_fatigue_life():
+    """R_m of the steel is 720 MPa: contact 2 exceeds it from 240 N on; the other limits and blocks stay."""
+    calm = {"name": "calm", "distance": 10, "radial_force": -100}
+    heavy = {"name": "heavy", "distance": 10, "radial_force": -245}
+    for blocks, regimes in (((calm, heavy), [0, 0]), ((calm, calm | {"name": "skids"}), [0, 1])):
+        ds = solved(spectrum(*blocks, base={"roller_material": SCATTERED}), regimes=regimes)
+        assert np.isnan(ds.damage.isel(block=1)).all() and np.isfinite(ds.damage.isel(block=0, body=0)).all()
+        assert np.isnan(ds.roller_life_shifts) and np.isnan(ds.life_shifts_at_probability).all()
+        still = solved(spectrum(blocks[0], blocks[1] | {"distance": 0}), regimes=regimes)
+        assert np.isfinite(still.roller_life_shifts)
+
+
+def test_a_spectrum_says_where_a_body_breaks_and_where_a_roller_skids():
+    base = {"guide_overrollings_per_hour": 600, "friction_coefficient": 0.1, "motor_force": 0}
+    calm = {"name": "calm", "distance": 10, "radial_force": -200}
+    skids, breaks = ({**calm, "name": "slips", "motor_force": -60}, {**calm, "name": "blow", "radial_force": -4000})
+    more = {"base": base, "contact_model": "sliding", "accuracy": "preview", "limits": ["fatigue"]}
+    ds = solve_spectrum(spectrum(calm, skids, breaks, **more))
+    said = summary(ds)
+    assert ds.regime.values.tolist() == [0, 1, 0] and np.isnan(ds.roller_life_hours)
+    assert said[0].startswith(
+        "The roller has no fatigue life: its peak stress exceeds its tensile strength in 'blow'; "
+    )
+    assert "the roller skids in 'slips'" in said[0] and "at most" in said[0]
+    assert ds.life_to_first_limit_shifts.values.tolist() == [0, 0], "it breaks in each shift"
+    assert ds.limiting_mechanism.attrs["flag_meanings"].split()[int(ds.limiting_mechanism[0])] == "fatigue"
+    slips = solve_spectrum(spectrum(calm, skids, **more))
+    assert np.isnan(slips.life_to_first_limit_shifts).all(), "no life is known, and nothing ends it at once"
 
 
 def test_a_failed_block_is_not_hidden_and_named():

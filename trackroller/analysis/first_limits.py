@@ -85,7 +85,10 @@ def reached_hours(view: StudyView) -> np.ndarray:
     """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
     used, hours = (flat(view.data, name, view.dims) for name in ("utilisation", "life_hours_by_limit"))
     timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values
-    reached = until_reached(used, hours, timed, [LIMITS[name] for name in view.data["limit"].values.tolist()])
+    names = view.data["limit"].values.tolist()
+    breaks = np.stack([view.flagged("static", body if view.by_body else "") for body in BODIES], axis=1)
+    broken = breaks[:, None, :] & np.array([name == "fatigue" for name in names])[:, None]
+    reached = until_reached(used, hours, timed, [LIMITS[name] for name in names], broken)
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
 
 

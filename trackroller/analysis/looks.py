@@ -85,7 +85,7 @@ def _of_points(results: StudyResults, name: str) -> tuple[np.ndarray, np.ndarray
         column = outputs(
             results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed
         )[0]
-        values, scatter = column.values, own.get(body_of(output))
+        values, scatter = results.view.with_breaks(column), own.get(body_of(output))
         if kind != "probability":
             scatter = np.zeros(design.size) if scatter is None else scatter
             halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]

@@ -51,9 +51,9 @@ def robustness(
         Dimension `point`, with the factors of the outer array as coordinates. `percentile_value` (output, point,
         percentile); `mean` and `standard_deviation` (output, point) over the rolling cases. For each life `b10` with
         `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
-        full slip, in lift-off or failed counts as life 0; `beyond_data`, the shortest life beyond the S-N data, NaN
-        without one. `probability` (regime, point) with intervals.
-        `analysis.target` adds the variables of `trackroller.analysis.targets.targets`.
+        full slip, in lift-off or failed counts as life 0. A body above its tensile strength has the life 0 in both;
+        `beyond_data`, the shortest life beyond the S-N data, NaN without one. `probability` (regime, point)
+        with intervals. `analysis.target` adds the variables of `trackroller.analysis.targets.targets`.
 
     Raises
     ------
@@ -72,7 +72,8 @@ def robustness(
     by_output = []
     for column in columns:
         scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size))
-        by_output.append(_statistics(column.values, regime, "life" in column.name, scatter, design.points))
+        values = results.view.with_breaks(column)
+        by_output.append(_statistics(values, regime, "life" in column.name, scatter, design.points))
         beyond = np.where(results.view.beyond_data(column.name), column.values, np.nan)
         by_output[-1]["beyond_data"] = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
     out = xr.Dataset(coords=_coordinates(design, columns))
@@ -92,7 +93,8 @@ def robustness(
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
         "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
-        "other case as life 0; the same inner sample at every design point"
+        "other case as life 0; a body above its tensile strength counts as life 0; "
+        "the same inner sample at every design point"
     )
     return {
         "method": design.method.name,

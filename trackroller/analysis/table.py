@@ -22,7 +22,7 @@ from trackroller.study.design.levels import NAMED
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
-from trackroller.study.outputs import case_dims
+from trackroller.study.outputs import Output, case_dims, of_fatigue
 
 MOST_LEVELS = 12  # a factor with more levels is divided into classes
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
@@ -337,6 +337,17 @@ class StudyView:
         knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
         endless = np.isposinf(self.column(f"{body}_life_hours"))
         return past_data(self.column(f"life_cycles_{body}"), names.map(knees).to_numpy(dtype=float)) | endless
+
+    def with_breaks(self, column: Output) -> np.ndarray:
+        """Return the values of an output, shape (n,); a fatigue life of a body above its tensile strength counts as 0.
+
+        The results state no life there. A statistic over the cases must not leave out those that fail at once.
+        """
+        if not of_fatigue(column.name):
+            return column.values
+        body = next((body for body in BODIES if body in column.name and self.by_body), "")
+        counted = self.rolling if self.met is None else self.rolling & self.met
+        return np.where(counted & self.flagged("static", body), 0.0, column.values)
 
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""

@@ -39,10 +39,33 @@ def amplitude(solved: SolvedRollers) -> np.ndarray:
     return np.asarray(values[name] * limit)
 
 
+def overloaded(peak_stress: np.ndarray, tensile_strength: np.ndarray) -> np.ndarray:
+    """Return where a body breaks at once, (n, body) bool: its peak stress exceeds its tensile strength in a contact.
+
+    Parameters
+    ----------
+    peak_stress : numpy.ndarray
+        Largest von Mises stress, (n, contact, body) [MPa].
+    tensile_strength : numpy.ndarray
+        R_m, (n, body) [MPa].
+    """
+    return np.asarray(np.any(peak_stress > tensile_strength[:, None, :], axis=1))
+
+
+def _overloaded(solved: SolvedRollers) -> np.ndarray:
+    return overloaded(solved.values["peak_stress"], solved.materials["tensile_strength"])
+
+
+def _without_life(solved: SolvedRollers) -> np.ndarray:
+    """Return where a body has no fatigue life, (n, body) bool: it breaks at once, or the roller skids."""
+    return np.asarray(_overloaded(solved) | solved.skids)
+
+
 def life(solved: SolvedRollers) -> Results:
     """Return overrollings and hours to failure at 50 % failure probability, and the relative error of the life.
 
-    The relative error of the life is the exponent of the S-N curve times the relative error of the stress.
+    The relative error of the life is the exponent of the S-N curve times the relative error of the stress. A body
+    that breaks at once or skids has no fatigue life: NaN, and so has its pair.
 
     Parameters
     ----------
@@ -64,13 +87,15 @@ def life(solved: SolvedRollers) -> Results:
     stress, curve = amplitude(solved), curve_of(solved)
     published = solved.options["life_criterion"] not in STRESS_OF
     error = solved.values["error_estimate"] if published else np.full_like(stress, np.nan)
-    cycles = curve.life_cycles(stress)
+    lifeless = _without_life(solved)
+    cycles = np.where(lifeless[:, None, :], np.nan, curve.life_cycles(stress))
     hours = cycles / solved.overrollings_per_hour[:, None, :]
     roller, guide = np.moveaxis(hours.min(axis=1), 1, 0)
     pair, first = first_failure(roller, guide)
+    pair = np.where(lifeless.any(axis=1), np.nan, pair)
     return {
         "life_cycles": cycles,
-        "life_error_estimate": curve.slope(stress) * error,
+        "life_error_estimate": np.where(np.isnan(cycles), np.nan, curve.slope(stress) * error),
         "life_hours": hours,
         "roller_life_hours": roller,
         "guide_life_hours": guide,
@@ -84,9 +109,10 @@ def verdict(solved: SolvedRollers, results: Results) -> Verdict:
     p = solved.options["failure_probability"]
     curve, stress = curve_of(solved).changed(failure_probability=p), amplitude(solved)
     known = curve.scatters | (p == 0.5)
+    living = known & ~_without_life(solved)[:, None, :]
     hours = curve.life_cycles(stress) / solved.overrollings_per_hour[:, None, :]
     utilisation = worst(np.where(known, stress / curve.knee[0], np.nan))
-    return Verdict(utilisation, -worst(-np.where(known, hours, np.nan)))
+    return Verdict(utilisation, -worst(-np.where(living, hours, np.nan)), _overloaded(solved))
 
 
 LIMIT = Limit(
@@ -121,6 +147,7 @@ LIMIT = Limit(
     standard="DIN 50100:2016 for the form of the S-N curve",
     assumes=(
         "Fatigue: no size effect; one overrolling is one cycle. The published life_criterion takes the peak von Mises "
-        "stress as amplitude, with no mean stress.",
+        "stress as amplitude, with no mean stress. A roller that skids and a body above its tensile strength have no "
+        "fatigue life.",
     ),
 )

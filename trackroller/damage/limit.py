@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike
 from trackroller.damage.histories import Tractions
 from trackroller.damage.mapping import MappingField
 from trackroller.numerics.parameter import Parameter
-from trackroller.numerics.variable import BODIES, Variable
+from trackroller.numerics.variable import BODIES, REGIMES, Variable
 
 SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
 Results = dict[str, np.ndarray]
@@ -41,6 +41,14 @@ def roller_overrollings(velocity: ArrayLike, rolling_radius: ArrayLike) -> np.nd
         v / (2 pi r_A) [1/h].
     """
     return np.asarray(velocity) * 60e3 / (2 * np.pi * np.asarray(rolling_radius))
+
+
+def skidding(regime: np.ndarray) -> np.ndarray:
+    """Return which of n rollers skid by their regime, (n, 1) bool.
+
+    A skidding roller wears and heats up until it fails, and its overrollings are no cycles of fatigue.
+    """
+    return np.asarray((np.asarray(regime) == REGIMES.index("full_slip"))[:, None])
 
 
 def _no_tractions() -> Tractions:
@@ -73,6 +81,8 @@ class SolvedRollers:
     unworn_gap : callable
         Function of the number of a case, the place of a contact (0 or 1), and lateral places outward (m,) [mm], which
         returns the gap of the unworn, undeformed profiles there, (m,) [mm].
+    regime : numpy.ndarray, optional
+        Number in `REGIMES` of each case, (n,); None before the balance is known.
     """
 
     cases: Mapping[str, np.ndarray]
@@ -82,6 +92,12 @@ class SolvedRollers:
     options: Mapping[str, Any] = field(default_factory=dict)
     tractions: Callable[[], Tractions] = _no_tractions
     unworn_gap: Callable[[int, int, np.ndarray], np.ndarray] = _no_gap
+    regime: np.ndarray | None = None
+
+    @property
+    def skids(self) -> np.ndarray:
+        """Return which rollers skid, see `skidding`, (n, 1); none before the balance is known."""
+        return np.zeros((len(self.rolling_radius), 1), dtype=bool) if self.regime is None else skidding(self.regime)
 
     @property
     def overrollings_per_hour(self) -> np.ndarray:
@@ -95,10 +111,12 @@ class Verdict:
     """How far a limit is used, and the hours until it is reached, (n, body) each; None where a limit has none.
 
     `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a value that is not known.
+    `at_once`, (n, body), marks bodies that break at once, so that the limit is reached without a life.
     """
 
     utilisation: np.ndarray | None
     life_hours: np.ndarray | None
+    at_once: np.ndarray | None = None
 
 
 def worst(values: np.ndarray) -> np.ndarray:

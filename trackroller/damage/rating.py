@@ -50,13 +50,14 @@ def contacts_to_limit(
 
 
 def evaluate(solved: SolvedRollers) -> Results:
-    """Return `rating_utilisation_static` [1] and `rating_life_hours` [h], (n, contact, body)."""
+    """Return `rating_utilisation_static` [1] and `rating_life_hours` [h], (n, contact, body); NaN if it skids."""
     m = {name: solved.materials[name][:, None, :] for name in ("hardness", "yield_strength", "surface_hardened")}
     strength = m["hardness"], m["yield_strength"], m["surface_hardened"] == 1
     pressure = solved.values["max_pressure"][:, :, None]
+    hours = contacts_to_limit(pressure, *strength) / solved.overrollings_per_hour[:, None, :]
     return {
         "rating_utilisation_static": pressure / static_pressure(*strength),
-        "rating_life_hours": contacts_to_limit(pressure, *strength) / solved.overrollings_per_hour[:, None, :],
+        "rating_life_hours": np.where(solved.skids[:, :, None], np.nan, hours),
     }
 
 

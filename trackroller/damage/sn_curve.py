@@ -202,7 +202,7 @@ class SNCurve:
         -------
         numpy.ndarray
             Cycles [1] of the broadcast shape; inf for zero stress, NaN for NaN or a negative stress. Above R_m the
-            curve is run on to fewer than N_Rm cycles, where it gives no fatigue life: the validity flag `static` warns.
+            curve is run on to fewer than N_Rm cycles; there `fatigue` gives no life.
         """
         limit, knee = self.knee
         sigma = np.asarray(stress, dtype=float)

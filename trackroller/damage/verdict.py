@@ -34,7 +34,9 @@ RESULTS = variables(
 )
 
 
-def until_reached(used: np.ndarray, life: np.ndarray, timed: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
+def until_reached(
+    used: np.ndarray, life: np.ndarray, timed: np.ndarray, limits: Sequence[Limit], broken: np.ndarray | None = None
+) -> np.ndarray:
     """Return when limits are reached, (..., limit, body), in the unit of `life`; NaN where it is not known.
 
     Parameters
@@ -45,13 +47,18 @@ def until_reached(used: np.ndarray, life: np.ndarray, timed: np.ndarray, limits:
         Whether a limit has a life, (limit,). A limit without a life is reached at once or never.
     limits : sequence of Limit
         The limits, some of which a utilisation of 1 ends at once although they have a life.
+    broken : numpy.ndarray of bool, optional
+        Where a body breaks at once, so that a limit is reached without a life, (..., limit, body).
     """
     at_once = ~timed | np.array([limit.ends_at_once for limit in limits], dtype=bool)
     never = np.where(np.isnan(used), np.nan, np.inf)
-    return np.where((used >= 1.0) & at_once[:, None], 0.0, np.where(timed[:, None], life, never))
+    now = (used >= 1.0) & at_once[:, None]
+    return np.where(now if broken is None else now | broken, 0.0, np.where(timed[:, None], life, never))
 
 
-def first_of(reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit]) -> tuple[np.ndarray, np.ndarray]:
+def first_of(
+    reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit], broken: np.ndarray | None = None
+) -> tuple[np.ndarray, np.ndarray]:
     """Return when the first limit is reached, and which one it is.
 
     Parameters
@@ -62,6 +69,8 @@ def first_of(reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit]) -> 
         Utilisation, (n, limit, body) [1], which ranks limits that are reached together.
     limits : sequence of Limit
         The limits; a body that a limit does not concern does not lack it.
+    broken : numpy.ndarray of bool, optional
+        Limits that are reached because the body breaks at once, (n, limit, body). Its strength comes first.
 
     Returns
     -------
@@ -72,6 +81,7 @@ def first_of(reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit]) -> 
     known, concerned = ~np.isnan(reached), np.array([[body in limit.bodies for body in BODIES] for limit in limits])
     first = np.min(np.where(known, reached, np.inf), axis=1)
     rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
+    rank = rank if broken is None else np.where(broken & (rank >= 0.0), -0.5, rank)
     missing = (~known & concerned).any(axis=1)
     place = np.where(known.any(axis=1), np.argmax(rank, axis=1), -1)
     return np.where(np.isinf(first) & missing, np.nan, first), place
@@ -99,10 +109,11 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
 
     Notes
     -----
-    A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. A limit
-    that lacks a value is left out.
+    A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. Fatigue
+    counts as reached at once where a body is loaded above its tensile strength. A limit that lacks a value is left out.
     """
-    used, hours = (np.full((len(solved.rolling_radius), len(limits), 2), np.nan) for _ in range(2))
+    shape = len(solved.rolling_radius), len(limits), 2
+    used, hours, broken = np.full(shape, np.nan), np.full(shape, np.nan), np.zeros(shape, dtype=bool)
     timed = np.zeros(len(limits), dtype=bool)
     for i, limit in enumerate(limits):
         assert limit.verdict is not None
@@ -111,7 +122,9 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
         for values, given in ((used, own.utilisation), (hours, own.life_hours)):
             if given is not None:
                 values[:, i] = np.where([body in limit.bodies for body in BODIES], given, np.nan)
-    lives, first = first_of(until_reached(used, hours, timed, limits), used, limits)
+        if own.at_once is not None:
+            broken[:, i] = own.at_once
+    lives, first = first_of(until_reached(used, hours, timed, limits, broken), used, limits, broken)
     return {
         "utilisation": used,
         "life_hours_by_limit": hours,

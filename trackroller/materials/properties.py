@@ -106,6 +106,8 @@ def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> flo
         If the value is not a number or lies outside its bounds.
     """
     remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
+    if prop.name == "woehler_exponent" and isinstance(value, (int, float)) and -1.0 < value < 0.0:
+        remedy = f"If Basquin's b is meant, the exponent is k = -1/b: write {-1.0 / value:.3g}."
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."
     field = f"{where}.{prop.name}"

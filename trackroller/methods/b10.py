@@ -72,14 +72,14 @@ def log_b10(lives: np.ndarray, scatter: np.ndarray, member: np.ndarray, copies: 
 
     Parameters
     ----------
-    lives : lives [any unit], shape (n,); NaN marks a life that does not count
+    lives : lives [any unit], shape (n,); NaN marks a life that does not count, 0 is a body that fails at once
     scatter : standard deviation of log10 life of the material itself [1], shape (n,)
     member : replicate of each life, shape (n,)
     copies : number of replicates
 
     Returns
     -------
-    The half width is inf where the data do not bound B10, and 0 where B10 is not limited for sure.
+    The half width is inf where the data do not bound B10, and 0 where B10 is not limited, or 0, for sure.
 
     Notes
     -----
@@ -98,9 +98,12 @@ def log_b10(lives: np.ndarray, scatter: np.ndarray, member: np.ndarray, copies: 
         logs = np.log10(lives)
         value = float(np.log10(b10(lives, scatter)[0]))
         failed = np.where(scatter > 0, stats.norm.cdf((value - logs) / np.maximum(scatter, 1e-9)), logs <= value)
-    half = share(np.where(np.isinf(logs), 0.0, failed), member, copies)[1]
+    failed = np.where(np.isneginf(logs), 1.0, np.where(np.isposinf(logs), 0.0, failed))
+    half = share(failed, member, copies)[1]
     if half >= 0.1:
         return value, np.inf
     low, high = np.quantile(logs, [0.1 - half, 0.1 + half], method="inverted_cdf")
     middle = float(np.quantile(logs, 0.1, method="inverted_cdf"))
-    return value, 0.0 if np.isinf(low) else float(max(high - middle, middle - low))
+    if np.isposinf(low) or np.isneginf(high):  # not limited, or 0
+        return value, 0.0
+    return value, np.inf if np.isneginf(low) else float(max(high - middle, middle - low))

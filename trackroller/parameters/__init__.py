@@ -14,7 +14,7 @@ from __future__ import annotations
 from trackroller.damage import LIMITS, add_own
 from trackroller.damage.pair import FIRST_TO_FAIL
 from trackroller.numerics.parameter import Parameter
-from trackroller.numerics.variable import BODIES
+from trackroller.numerics.variable import BODIES, REGIMES
 
 add_own()  # before the modules below read LIMITS; files of a user's own may import the names above from here
 
@@ -31,6 +31,7 @@ __all__ = [
     "OF_LIMITS",
     "OPTIONS",
     "PARAMETERS",
+    "REGIMES",
     "Option",
     "Parameter",
     "options_text",
@@ -40,7 +41,6 @@ __all__ = [
 OUTPUT_GROUPS = words_of("outputs")
 SPIN_MODELS, ACCURACIES, LIFE_RULES = words_of("spin_model"), words_of("accuracy"), words_of("life_rule")
 DEFAULT_OUTPUTS: tuple[str, ...] = OPTIONS["outputs"].default
-REGIMES = ("rolling", "full_slip", "lift_off", "failed")
 REGIME_LABELS = ("rolling", "full slip", "lift-off", "failed")  # the same in prose
 MATERIAL_FIELDS = ("roller_material", "guide_material")
 MECHANICAL_MAPPINGS = {  # entries of a case that are mappings; in columns they stand as canonical JSON, '' for none

@@ -43,7 +43,7 @@ VALIDITY: dict[str, ValidityFlag] = {
     ),
     "static": ValidityFlag(
         "the peak stress exceeds the tensile strength",
-        "peak stress above R_m of the body: static failure; the life lies beyond the end of the S-N curve",
+        "peak stress above R_m of the body: static failure, so that it has no fatigue life",
         "The body fails at once and has no fatigue life: choose a closer fit, a stronger material or less load.",
         of_body=True,
     ),

@@ -1,4 +1,4 @@
-"""Ask about values that are allowed but unusual: a wrong unit, measured points that are not smoothed."""
+"""Ask about values that are allowed but unusual: a wrong unit, a reciprocal, measured points that are not smoothed."""
 
 from __future__ import annotations
 
@@ -30,21 +30,34 @@ USUAL: dict[str, tuple[float, float]] = {
     "motor_force": (0.1, 1e6),
     "velocity": (0.3, 2000.0),
     "friction_coefficient": (0.0, 1.0),
+    "ambient_temperature": (0.0, 200.0),
+    "cooled_area": (100.0, 1e7),
+    "permissible_wear_depth": (1e-4, 10.0),
 }
 FROM_ZERO = ("axial_force", "motor_force")  # small values are usual beside larger ones: only the largest counts
 # ASSUME: magnesium to tungsten, and unfilled polyethylene to polymers with carbon fibres.
 METAL = {"youngs_modulus": (4e4, 4.5e5), "tensile_strength": (50.0, 4000.0), "density": (1500.0, 20000.0)}
+EXPONENT = (1.0, 100.0)  # of an S-N curve; welds have 3
 POLYMER = {"youngs_modulus": (200.0, 4e4), "tensile_strength": (10.0, 500.0), "density": (850.0, 2300.0)}
 OF_FAMILY = {"metal": METAL, "PA6": POLYMER, "POM": POLYMER}
 OTHER_UNITS = {
     "MPa": ("GPa", "Pa", "kPa"),
     "mm": ("m", "cm", "um"),
+    "mm2": ("m2", "cm2"),
+    "degC": ("K",),
     "N": ("kN", "mN"),
     "deg": ("rad",),
     "m/min": ("m/s", "mm/s", "km/h"),
     "kg/m3": ("g/cm3",),
     "-": ("%",),
 }
+# entries of mappings that the radial force of a roller usually does not exceed, in N; the others in N mm times 1 mm
+RATINGS = {
+    "bearing": {"dynamic_rating": "N", "static_rating": "N", "permissible_moment": "N mm"},
+    "catalogue": {"radial": "N", "axial": "N", "moment": "N mm"},
+}
+LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
+SMALL = {"axial": 0.02}  # share of the radial force below which a rating is asked about; 1 for the others
 ROUGH = 0.05  # scatter of the curvature of measured points over that of an arc as wide as the points
 
 
@@ -76,8 +89,10 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
             sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
+        sentences.append(_exponent(material))
+    sentences += _ratings(values)
     for name in ("guide_profile", "roller_profile"):
-        sentences += [_rough(name, profile) for profile in _profiles(values.get(name))]
+        sentences += [_rough(name, profile) for profile in _mappings(values.get(name))]
     return [text for text in sentences if text]
 
 
@@ -99,8 +114,37 @@ def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], ki
     return f"{name} = {number:g}{shown} is {off} the usual {low:g} to {high:g}{shown}{kind}{ask}."
 
 
-def _profiles(value: Any) -> list[dict[str, Any]]:
-    """Return the distinct cross-sections of a value of `doubts`."""
+def _exponent(material: Material) -> str:
+    """Return the sentence about an exponent of the S-N curve that may be Basquin's b = 1/k, '' for a usual one."""
+    k = material.woehler_exponent
+    if EXPONENT[0] <= k <= EXPONENT[1]:
+        return ""
+    off = f"below the usual {EXPONENT[0]:g}" if k < EXPONENT[0] else f"above the usual {EXPONENT[1]:g}"
+    ask = f"; if b is meant, k = 1/b: write {1.0 / k:.3g}" if k < EXPONENT[0] else ""
+    return f"woehler_exponent = {k:.4g} of the material '{material.name}' is {off}{ask}."
+
+
+def _ratings(values: Mapping[str, Any]) -> list[str]:
+    """Return a sentence for each rating of a bearing or catalogue that is smaller than the smallest radial force."""
+    loads = [abs(v) for v in np.ravel(values.get("radial_force", math.nan)).tolist() if isinstance(v, (int, float))]
+    load = min((v for v in loads if v > 0.0 and math.isfinite(v)), default=0.0)
+    given = [("permissible_radial_force", v, "N", 1.0) for v in np.ravel(values.get("permissible_radial_force", 0.0))]
+    for field, units in RATINGS.items():
+        for mapping in _mappings(values.get(field)):
+            given += [(f"{field}.{n}", mapping.get(n), unit, SMALL.get(n, 1.0)) for n, unit in units.items()]
+    out = []
+    for name, number, unit, share in given:
+        if isinstance(number, (int, float)) and 0.0 < number < share * load:
+            larger = LARGER_UNITS[unit]
+            out.append(
+                f"{name} = {number:g} {unit} is small beside the radial force of {load:g} N; if {number:g} {larger} is "
+                f"meant, write '{number:g} {larger}' or {1e3 * number:g}."
+            )
+    return list(dict.fromkeys(out))
+
+
+def _mappings(value: Any) -> list[dict[str, Any]]:
+    """Return the distinct mappings of a value of `doubts`, such as cross-sections."""
     if isinstance(value, Mapping):
         return [dict(value)]
     return [json.loads(text) for text in dict.fromkeys(np.ravel(value).tolist()) if isinstance(text, str) and text]

@@ -63,6 +63,13 @@ class Output:
     excluded: dict[str, int] = field(default_factory=dict)
 
 
+def of_fatigue(name: str) -> bool:
+    """Return whether an output of an analysis is a life by the S-N curve."""
+    variable = DEFAULTS[name][0] if name in DEFAULTS else name.partition("[")[0]
+    by_curve = variable in VARIABLES and VARIABLES[variable].group == "life" and "error" not in variable
+    return (by_curve and "life" in variable) or name.startswith("life_hours_by_limit[fatigue")
+
+
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
     """Return the dimensions that count cases: `case`, or the factors of an unstacked grid in their order."""
     if "case" in ds.dims:

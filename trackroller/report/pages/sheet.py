@@ -23,6 +23,7 @@ from trackroller.report.numbers import BEYOND, listing, lives_in_years, number, 
 from trackroller.report.tables.inputs import Row, as_material, input_rows, material_rows, material_source
 from trackroller.report.tables.limits import (
     GUESSED,
+    OVERLOADED,
     Margin,
     at_temperature,
     first_limits,
@@ -42,7 +43,7 @@ from trackroller.report.words.assumptions import (
 from trackroller.report.words.sentence import phrase
 from trackroller.report.words.wear import run_in
 from trackroller.roller import record
-from trackroller.roller.dataset import VARIABLES, shown
+from trackroller.roller.dataset import VARIABLES, shown, validity_bit
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
@@ -217,7 +218,9 @@ def _no_life(regime: str, ds: xr.Dataset, body: str, material: Material) -> str:
     """Say why a body has no fatigue life: overload or a skidding roller; an empty text if it has one."""
     peaks = ds["peak_stress"].sel(body=body).values if "peak_stress" in ds else np.zeros(1)
     if (over := float(np.nan_to_num(peaks).max()) / material.tensile_strength) > 1:
-        return f"the peak stress is {rounded(over, 2)} times its tensile strength"
+        return f"the peak stress is {rounded(over, 2)} times its {OVERLOADED}"
+    if "validity_body" in ds and int(ds["validity_body"].sel(body=body)) & validity_bit("static"):
+        return f"the peak stress exceeds its {OVERLOADED}"
     return "the roller skids: friction heat and wear decide" if regime == "full_slip" else ""
 
 
@@ -235,7 +238,7 @@ def _verdict(
         "sheet",
         "verdict",
         regime=regime,
-        overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if "tensile strength" in why],
+        overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if OVERLOADED in why],
         exceeded=[f"{title} ({listing(bodies)})" for title, bodies in passed.items()],
         lives=list(map(_hours, of_roller[:2])) if known else [],
         contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known else None,

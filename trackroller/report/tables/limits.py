@@ -20,6 +20,7 @@ from trackroller.roller import temperature
 from trackroller.roller.dataset import NOTES
 from trackroller.roller.limits import Limits
 
+OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
 YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface
 BOTH = "roller and guide"
 GUESSES = ": placeholders of material"  # in a note on a limit that rests on values without a source
@@ -159,8 +160,8 @@ def _of_limits(
             used, hours = (float(_at(ds, one, places, **here)) for one in ("utilisation", "life_hours_by_limit"))
             if math.isnan(used) and math.isnan(hours):
                 continue
-            if lifeless[body]:
-                hours = math.nan
+            # a body that breaks at once breaks by its strength, unless this limit is not asked for
+            breaks = name == "fatigue" and OVERLOADED in lifeless[body] and "static" not in places["limit"]
             values = np.asarray(_at(ds, variable, places, **here), dtype=float)
             value = float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
             bound = f"{rounded(value / used if used > 0 else math.nan)} {unit}".strip()
@@ -171,8 +172,9 @@ def _of_limits(
             # both bodies share the heat of a contact
             own = "" if limit is heat.LIMIT else f" '{materials[body].name}'"
             guessed = any(note.startswith(f"{name}{GUESSES}{own}") for note in notes)
-            of_life = timed and not lifeless[body]
-            out.append(Margin(limit.title, body, *texts, used, hours, limit.ends_at_once, of_life, beyond, guessed))
+            of_life = timed and not (name == "fatigue" and lifeless[body])
+            at_once = limit.ends_at_once or breaks
+            out.append(Margin(limit.title, body, *texts, used, hours, at_once, of_life, beyond, guessed))
     return out
 
 

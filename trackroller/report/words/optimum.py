@@ -13,6 +13,7 @@ from trackroller.report.numbers import Life, capital, lasting, long_name, percen
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.study.file.search import judged_by
 
 SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
 
@@ -73,8 +74,12 @@ def _invalid(view: StudyView, search: dict[str, Any], least: float) -> Sentence:
 
 def _unreached(view: StudyView, search: dict[str, Any]) -> Sentence | None:
     """Name the probabilities and lives that no design brings above 0, and goals without a value."""
-    wanted = [goal_column(view.solved, goal) for goal, way in search["goals"].items() if way == "max"]
-    low = [words for values, _, words in wanted if not np.nanmax(values, initial=0.0) > 0]
+    low = []
+    for goal in (goal for goal, way in search["goals"].items() if way == "max"):
+        values, _, words = goal_column(view.solved, goal)
+        rises = "life" in goal or judged_by(goal)[0] == "probability"  # other goals may be negative
+        if np.isnan(values).all() or (rises and not np.nanmax(values) > 0):
+            low.append(words)
     return say("optimum", "unreached", goals=low) if low else None
 
 
@@ -82,7 +87,7 @@ def _checked(search: dict[str, Any]) -> Sentence:
     optima = search["optima"]
     change = max(abs(c) for one in optima for c in _changes(one["values"], one["reference"]))
     worse = sum(one["violation"][1] > one["violation"][0] for one in optima)
-    return say("optimum", "checked", change=change, worse=worse, many=len(optima))
+    return say("optimum", "checked", change=change, worse=worse, many=len(optima), several=len(search["goals"]) > 1)
 
 
 def _changes(before: list[float], after: list[float]) -> list[float]:

@@ -32,16 +32,16 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
     values |= {"count": len(best), "of": front.sizes["row"], "kind": kind}
     if len(best):
         table = np.stack([front[name].values.astype(float) for name in goals], axis=1)
-        ends = [[_goal_value(front, name, float(front[name].values[at])) for name in goals] for at in end_places(front)]
+        places = end_places(front)
+        ends = [[_goal_value(front, name, float(front[name].values[at])) for name in goals] for at in places]
         words = [goal_words(front, name) for name in goals]
         values["goals"] = [f"{word} {value}" for word, value in zip(words, ends[0], strict=True)]
         values["first"] = [f"{value} {word}" for word, value in zip(words, ends[0], strict=True)]
-        first, second = table[end_places(front)[:2]]
-        values["last"] = ends[1] if (first != second).any() else []
+        values["last"] = ends[1] if len(places) > 1 and (table[places[0]] != table[places[1]]).any() else []
         values["alike"] = len(np.unique(table[best], axis=0)) == 1
     values["outside"] = int((~view.valid[rows]).sum()) if view is not None and kind == "design" else 0
     values["alone"] = "pair_life_hours" in goals and view is not None and not view.has("guide_life_hours")
-    return say("pareto", "pareto", **values)
+    return say("pareto", "pareto", several=len(goals) > 1, **values)
 
 
 def goal_words(front: xr.Dataset, name: str) -> str:

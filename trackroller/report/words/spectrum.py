@@ -10,8 +10,9 @@ import xarray as xr
 
 from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS
-from trackroller.parameters import BODIES, REGIME_LABELS
+from trackroller.parameters import BODIES, REGIME_LABELS, REGIMES
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.roller.dataset import validity_bit
 
 UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))
 
@@ -64,15 +65,21 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
 
 
 def _unknown(ds: xr.Dataset, body: str, damage: np.ndarray) -> dict[str, Any]:
-    """Return why the life of a body is not known, and the longest life that the damage of the known blocks allows.
+    """Return why a body has no known life, and the longest life that the damage of the other blocks allows.
 
     `at_most` is this life [shifts]; it is 0 if the known blocks do no damage and so set no bound.
     """
     unknown, known = ds["damage"].sel(body=body).isnull().any("contact").values, float(np.nansum(damage))
-    blocks = zip(ds["block"].values[unknown], ds["regime"].values[unknown], strict=True)
+    names, regime = ds["block"].values.astype(str)[unknown], ds["regime"].values.astype(int)[unknown]
+    skids, breaks = regime == REGIMES.index("full_slip"), np.zeros(len(names), dtype=bool)
+    if "validity_body" in ds:
+        breaks = (ds["validity_body"].sel(body=body).values[unknown] & validity_bit("static")) != 0
+    unsolved = np.isnan(ds["peak_stress"].sel(body=body).transpose("block", "contact").values[unknown]).any(axis=1)
     return {
-        "unmoved": bool(np.isnan(ds["overrollings"].sel(body=body).values[unknown]).all()),
-        "unsolved": [f"'{name}' ({REGIME_LABELS[int(code)]})" for name, code in blocks],
+        "unmoved": not (skids | breaks | unsolved).any(),
+        "unsolved": [f"'{n}' ({REGIME_LABELS[r]})" for n, r in zip(names[unsolved], regime[unsolved], strict=True)],
+        "breaks": [f"'{name}'" for name in names[breaks]],
+        "skids": [f"'{name}'" for name in names[skids & ~breaks]],
         "at_most": ds.attrs["critical_damage"] / known if known > 0 else 0.0,
     }
 

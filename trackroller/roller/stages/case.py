@@ -30,7 +30,8 @@ if TYPE_CHECKING:
 LIFE_CONVENTIONS = (
     "S-N curve N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is taken "
     "as the amplitude (as published); below sigma_D: elementary continues the curve, haibach uses the slope 2k - 1, "
-    "unlimited gives inf; roller: one overrolling per revolution; guide: overrollings per hour are the user's input"
+    "unlimited gives inf; no life (NaN) in full slip and where the peak stress exceeds R_m; roller: one overrolling "
+    "per revolution; guide: overrollings per hour are the user's input"
 )
 
 
@@ -39,7 +40,7 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
     v = block.values
     if "friction_work" in options.outputs:
         v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
-    limits(table, v, options)
+    limits(table, v, options, block.regime)
     validity(table, block, options)
 
 
@@ -52,7 +53,9 @@ def peak_goal(table: CaseTable, options: Options) -> np.ndarray:
     return np.fmin(settings.peak_goal, settings.life_goal / np.fmax(exponent.max(axis=(1, 2)), 1.0))
 
 
-def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options) -> SolvedRollers:
+def solved_of(
+    table: CaseTable, values: dict[str, np.ndarray], options: Options, regime: np.ndarray | None = None
+) -> SolvedRollers:
     """Return cases, materials and results as the limits receive them."""
     names = [field.name for field in dataclasses.fields(table.roller) if field.name not in TEXTS]
     return SolvedRollers(
@@ -61,6 +64,7 @@ def solved_of(table: CaseTable, values: dict[str, np.ndarray], options: Options)
         values,
         rolling_radius(table.axis_distance, table.guide_profile_radius, np.deg2rad(table.contact_angle)),
         vars(options),
+        regime=regime,
         unworn_gap=partial(_unworn_gap, table),
     )
 
@@ -82,9 +86,9 @@ def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) 
     return between.lateral(lateral)
 
 
-def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> None:
+def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray) -> None:
     """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
-    wanted, solved = asked(options.outputs), solved_of(table, v, options)
+    wanted, solved = asked(options.outputs), solved_of(table, v, options, regime)
     for limit in wanted:
         if TRACTIONS not in limit.needs or limit.shared is not None:  # the others are there: `patch_limits`
             v |= limit.evaluate(solved)
@@ -109,7 +113,7 @@ def patch_limits(results: Results, options: Options) -> None:
         own |= {name: own[name] * scene.unit[:, None, None] for name in ("x", "y")}
         return Tractions(**own, mirrored=scene.mirror.symmetric)
 
-    solved = dataclasses.replace(solved_of(scene.table, results.values, options), tractions=fields)
+    solved = dataclasses.replace(solved_of(scene.table, results.values, options, results.regime), tractions=fields)
     for limit in own:
         results.values |= limit.evaluate(solved)
     for limit in shared:
@@ -197,9 +201,10 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
         return np.maximum(*split) > 0.1
 
 
-def outlives_groove(table: CaseTable, v: dict[str, np.ndarray], options: Options) -> np.ndarray:
+def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
     """Return True where a life of a body, in travel of the roller, exceeds the run-in distance, (n, 2)."""
-    solved, out = solved_of(table, v, options), np.zeros((len(table), 2), bool)
+    v = block.values
+    solved, out = solved_of(table, v, options, block.regime), np.zeros((len(table), 2), bool)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
     for limit in judged(options.outputs):
         assert limit.verdict is not None
@@ -240,6 +245,6 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
         if "heat_utilisation" in v:
             warn("overheated", np.any(v["heat_utilisation"] > 1.0, axis=1))
         if "run_in_distance" in v:
-            warn("worn", outlives_groove(table, v, options))
+            warn("worn", outlives_groove(table, block, options))
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]

@@ -16,6 +16,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, fatigue, miner
+from trackroller.damage.limit import skidding
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
 from trackroller.damage.verdict import first_of, until_reached
@@ -60,9 +61,9 @@ def solve_spectrum(
     xarray.Dataset
         Dimensions block, contact and body, and probability where a material gives scatter. Overrollings per shift, peak
         stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
-        that cannot be solved, or in which a contact lifts off, makes the lives that depend on it NaN; `regime` states
-        why. The life of the guide is NaN where its overrollings are not known. The key `limits` of the spectrum adds
-        the results of `by_limit`.
+        that cannot be solved, in which a contact lifts off or the roller skids, or whose peak stress exceeds R_m, makes
+        the lives that depend on it NaN; `regime` and `validity_body` state why. The life of the guide is NaN where its
+        overrollings are not known. The key `limits` of the spectrum adds the results of `by_limit`.
 
     Notes
     -----
@@ -96,7 +97,7 @@ def curves(spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule:
 
 
 def damage_per_shift(
-    stress: np.ndarray, cycles: np.ndarray, bodies: list[SNCurve], probability: float = 0.5
+    stress: np.ndarray, cycles: np.ndarray, bodies: list[SNCurve], living: np.ndarray, probability: float = 0.5
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return cycles to failure and damage per shift of each block, (block, contact, body) [1] each.
 
@@ -106,6 +107,8 @@ def damage_per_shift(
         Peak stress [MPa] and cycles per shift [1].
     bodies : list of SNCurve
         S-N curves of roller and guide.
+    living : numpy.ndarray of bool
+        Where a body has a fatigue life, (block, contact, body).
     probability : float
         Failure probability [1]. For values other than 0.5, a material without scatter gives NaN.
     """
@@ -113,6 +116,7 @@ def damage_per_shift(
     for i, curve in enumerate(bodies):
         if probability == 0.5 or curve.scatters.all():
             life[..., i] = curve.changed(failure_probability=probability).life_cycles(stress[..., i])
+    life[~living] = np.nan
     return life, miner.block_damage(cycles, life)
 
 
@@ -127,7 +131,9 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     rule = spectrum.options.get("life_rule", "elementary")
     materials = [database.material(getattr(case, f"{body}_material")) for body in BODIES]
     bodies = curves(spectrum, solved, materials, rule)
-    life, damage = damage_per_shift(stress, cycles, bodies)
+    breaks = fatigue.overloaded(peak, np.concatenate([curve.tensile_strength for curve in bodies], axis=1))
+    living = np.broadcast_to(~(breaks | skidding(solved["regime"].values))[:, None, :], stress.shape)
+    life, damage = damage_per_shift(stress, cycles, bodies, living)
     total = damage.sum(axis=0)
     shifts = miner.repetitions_to_failure(total, spectrum.critical_damage)
     first = shifts.min(axis=0)  # A track whose life is not known makes the result NaN.
@@ -154,12 +160,12 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
     variables |= _loads(spectrum, database)
     if spectrum.groups:
         chance = spectrum.options.get("failure_probability", 0.5)
-        variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, chance)[1])
+        variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, living, chance)[1], breaks)
     if "fatigue_stress" in solved:
         variables["fatigue_stress"] = (_BCB, stress, dict(solved["fatigue_stress"].attrs))
     if any(curve.scatters.any() for curve in bodies):
         levels = spectrum.failure_probabilities
-        sums = [damage_per_shift(stress, cycles, bodies, p)[1].sum(axis=0) for p in levels]
+        sums = [damage_per_shift(stress, cycles, bodies, living, p)[1].sum(axis=0) for p in levels]
         lives = miner.repetitions_to_failure(np.stack(sums), spectrum.critical_damage)
         meta = _attrs("1", "shifts to failure at a failure probability", "L_S,p")
         known = {"probability": ("probability", list(levels), {"units": "1", "long_name": "failure probability"})}
@@ -241,7 +247,7 @@ def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
     return made
 
 
-def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray) -> dict[str, Any]:
+def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, breaks: np.ndarray) -> dict[str, Any]:
     """Return damage, utilisation and shifts of each limit, and the first limit of each body.
 
     Parameters
@@ -252,6 +258,8 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray) -> di
         Its solved blocks with the group `limits`.
     by_curve : numpy.ndarray
         Damage of each track by the S-N curve per shift, (block, contact, body) [1].
+    breaks : numpy.ndarray of bool
+        Where a body breaks at once, (block, body).
 
     Returns
     -------
@@ -273,8 +281,10 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray) -> di
     critical = np.array([spectrum.critical_damage if limit.name == "fatigue" else 1.0 for limit in limits])[:, None]
     shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
-    reached = until_reached(most, shifts, timed, limits)
-    first, which = (one[0] for one in first_of(reached[None], most[None], limits))
+    of_fatigue = np.array([limit is fatigue.LIMIT for limit in limits])
+    broken = of_fatigue[:, None] & (breaks & (travel[:, 0] > 0)).any(axis=0)
+    reached = until_reached(most, shifts, timed, limits, broken)
+    first, which = (one[0] for one in first_of(reached[None], most[None], limits, broken[None]))
     words = (*LIMITS, "unknown")
     names = np.array([words.index(name) for name in (*(limit.name for limit in limits), "unknown")])[which]
     flag = {"long_name": "limit that the body reaches first", "flag_meanings": " ".join(words)}
