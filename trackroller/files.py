@@ -142,12 +142,29 @@ def read_text(path: Path | str, what: str, most: float = MAX_BYTES) -> str:
     return text_of(read_bytes(path, what, most), path, what)
 
 
-def text_of(content: bytes, path: Path | str, what: str) -> str:
-    """Return the text of the content of a user's file, see `read_text`."""
+def text_of(content: bytes, path: Path | str, what: str, western: bool = False) -> str:
+    """Return the text of the content of a user's file, see `read_text`.
+
+    Parameters
+    ----------
+    content : bytes
+        The file.
+    path, what
+        See `read_text`.
+    western : bool
+        Whether UTF-16 without its mark and the encoding of Windows in western countries are read too, as instruments
+        write them.
+    """
     utf_16 = content.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE))  # Excel's "Unicode text"
+    if western and not utf_16:
+        zeros = [content[start::2].count(0) for start in (0, 1)]
+        utf_16 = max(zeros) > 0.3 * len(content) and min(zeros) == 0
+        content = (codecs.BOM_UTF16_LE if zeros[1] else codecs.BOM_UTF16_BE) * utf_16 + content
     try:
         text = content.decode("utf-16" if utf_16 else "utf-8-sig")
     except UnicodeDecodeError as exc:
+        if western and not utf_16:
+            return text_of(content.decode("cp1252", "replace").encode(), path, what)
         remedy = "Save the file as UTF-8; in Excel choose 'CSV UTF-8'."
         wrong = f"is not {exc.encoding.upper()} text at byte {exc.start}"
         error = InputError(what, str(path), "text in UTF-8, or in UTF-16 with its mark", remedy, wrong)

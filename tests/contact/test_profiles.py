@@ -13,13 +13,13 @@ from trackroller.contact.cross_sections import (
     CONTACT_SLOPE,
     arcs,
     drawn,
-    noise_of,
     parabola,
     smoothed,
     with_edges,
     worn,
 )
 from trackroller.contact.drawn_profiles import cross_section, gap, treats_sides_alike
+from trackroller.contact.measured_points import noise_of
 from trackroller.contact.normal.wearing import on_cells
 from trackroller.contact.profiles import canonical
 
@@ -176,7 +176,7 @@ def test_edges_cut_and_round_the_material():
         ({"arcs": [{"radius": -7, "to": 1}]}, "to"),
         ({"arcs": [{"radius": -7, "to": 1}, {"radius": 3, "to": 0.5}, {"radius": 2}]}, "beyond"),
         ({"points": [[0, 0], [1, 1]]}, "rows"),
-        ({"points": [[0, 0], [1, 1], [1, 2], [3, 3], [4, 4]]}, "increases"),
+        ({"points": [[0, 0], [1, 1], [1, 2], [3, 3], [4, 4]]}, "one height for each x"),
         ({"points": [[0, 0], [1, "b"], [2, 2], [3, 3], [4, 4]]}, "numbers"),
         ({"points": [[i, 0.0] for i in range(6)], "frame": "contact"}, "both sides"),
         ({"points": [[i, 0.0] for i in range(6)], "smooth": -1}, "noise"),
@@ -291,7 +291,7 @@ def test_a_curve_upside_down_or_on_one_side_only_says_so():
 def test_order_duplicates_and_gaps_are_named_by_row(tmp_path, monkeypatch):
     points = circle_points(6.0, n=21)
     broken = {
-        "increases": (points[::-1], [*points[:5], *points[4:]], [points[3], *points]),
+        "one height": ([*points[:5], [points[4][0], 0.0], *points[5:]],),
         "finite": ([*points[:4], [points[4][0], math.nan], *points[5:]],),
         "rows": ([], None, points[:3], "1 2"),
     }

@@ -29,7 +29,7 @@ HEAD = {"name": "t", "factors": {"axial_force": {"values": [0, 10]}}, "outputs":
 def test_the_head_of_a_point_file_states_the_units(head, rows, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "p.csv").write_text(f"{head}\n{rows}", encoding="utf-8")
-    assert read_points("p.csv", "guide_profile.file") == [pytest.approx([-1.5, 5.8]), [0.0, 6.0]]
+    assert read_points("p.csv", "guide_profile.file").rows == [pytest.approx([-1.5, 5.8]), [0.0, 6.0]]
 
 
 @pytest.mark.parametrize(

@@ -117,3 +117,13 @@ def test_a_study_and_a_spectrum_ask_about_ratings():
 def test_a_negative_exponent_of_basquin_is_refused_with_the_exponent_to_write():
     with pytest.raises(tr.InputError, match=r"k = -1/b: write 11.8"):
         load_database().material(CURVE | {"woehler_exponent": -0.085})
+
+
+@pytest.mark.parametrize("body", ["guide_profile", "roller_profile"])
+def test_points_in_another_unit_are_asked_about(body):
+    sign = 1.0 if body == "roller_profile" else -1.0
+    points = [[x, sign * -x * x / 14] for x in np.linspace(-1.5, 1.5, 31)]
+    for size, words in ((1.0, []), (1 / 25.4, ["0.118 mm wide"]), (1e3, ["3e+03 mm wide"])):
+        profile = {"points": (size * np.array(points)).tolist(), "frame": "contact"}
+        told = doubts_of_case(tr.Case(**{body: profile}), load_database())
+        assert len(told) == len(words) and all(word in one for word, one in zip(words, told, strict=True))

@@ -1,7 +1,10 @@
-"""Points from files: where they are looked for, and how numbers may be written."""
+"""Points from files: where they are looked for, and how names, units and numbers may be written."""
 
 from __future__ import annotations
 
+import zipfile
+
+import numpy as np
 import pytest
 from command_line import trackroller
 
@@ -17,6 +20,32 @@ def written(separator: str, comma: bool) -> str:
     return "\n".join([separator.join(["x", "z"]), *lines])
 
 
+def lines_of(form: str, head: str = "", units: tuple[float, float] = (1.0, 1.0), comma: bool = False) -> str:
+    """Return a file of `ROWS`, each line formatted with its count k, x and z in units of so many mm."""
+    lines = [head] if head else []
+    for k, (x, z) in enumerate(ROWS):
+        line = form.format(k=k, x=f"{x / units[0]:.8f}", z=f"{z / units[1]:.8f}")
+        lines.append(line.replace(".", ",") if comma else line)
+    return "\n".join(lines)
+
+
+@pytest.fixture
+def read(tmp_path, monkeypatch):
+    """Return a function that reads the points of a text, in the order of x."""
+    monkeypatch.chdir(tmp_path)
+
+    def points(content: str | bytes) -> list[list[float]]:
+        content = content.encode() if isinstance(content, str) else content
+        (tmp_path / "c.csv").write_bytes(content)
+        return sorted(read_points("c.csv", "guide_profile.file").rows)
+
+    return points
+
+
+def is_right(rows: list[list[float]]) -> bool:
+    return np.shape(rows) == np.shape(ROWS) and bool(np.abs(np.array(rows) - ROWS).max() < 2e-5)
+
+
 @pytest.mark.parametrize(
     ("separator", "comma"),
     [
@@ -24,23 +53,301 @@ def written(separator: str, comma: bool) -> str:
         ("; ", True),
         ("\t", True),
         ("   ", True),
+        (", ", True),
         (";", False),
         (",", False),
         (", ", False),
         ("\t", False),
     ],
 )
-def test_decimal_commas_are_read_where_they_are_unambiguous(tmp_path, monkeypatch, separator, comma):
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "c.csv").write_text(written(separator, comma), encoding="utf-8")
-    assert read_points("c.csv", "guide_profile.file") == [[pytest.approx(v, abs=1e-5) for v in row] for row in ROWS]
+def test_decimal_commas_are_read_where_they_are_unambiguous(read, separator, comma):
+    assert is_right(read(written(separator, comma)))
 
 
-def test_thousands_and_words_are_refused_with_the_line(tmp_path, monkeypatch):
+IN, UM, MIL = 25.4, 1e-3, 0.0254
+
+
+@pytest.mark.parametrize(
+    ("head", "form", "units"),
+    [
+        ("x (in);z (in)", "{x};{z}", (IN, IN)),
+        ("x(um),z(mm)", "{x},{z}", (UM, 1.0)),
+        ("x/mm\tz/µm", "{x}\t{z}", (1.0, UM)),
+        ("x / cm ; z / in", "{x};{z}", (10.0, IN)),
+        ("x, in;z, in", "{x};{z}", (IN, IN)),
+        ("x, in, z, inch", "{x},{z}", (IN, IN)),
+        ("x mm   z um", "{x}   {z}", (1.0, UM)),
+        ("x in mm  z in um", "{x} {z}", (1.0, UM)),
+        ("x_um,z_mm", "{x},{z}", (UM, 1.0)),
+        ("xum;zmm", "{x};{z}", (UM, 1.0)),
+        ("x dm;z yd", "{x};{z}", (100.0, 914.4)),
+        ("x (mil);z [mil]", "{x};{z}", (MIL, MIL)),
+        ("x {Zoll};z {inches}", "{x};{z}", (IN, IN)),
+        ("x;z\nmm;um", "{x};{z}", (1.0, UM)),
+        ("mm;um", "{x};{z}", (1.0, UM)),
+        ("# x [mm] z [um]", "{x} {z}", (1.0, UM)),
+        ("Position [mm]\tHöhe [µm]", "{x}\t{z}", (1.0, UM)),
+        ("X [MM];Z [MM]", "{x};{z}", (1.0, 1.0)),
+        ("# lengths in mm, tip 2 um", "{x},{z}", (1.0, 1.0)),
+        ("no,x,z", "{k},{x},{z}", (1.0, 1.0)),
+        ("#;x (um);z", "{k};{x};{z}", None),
+        (",x,z", "{k},{x},{z}", (1.0, 1.0)),
+        ("x;y;z", "{x};7.5;{z}", (1.0, 1.0)),
+        ("x;y;z", "7.5;{x};{z}", (1.0, 1.0)),
+        ("x y z", "{x} {z} 0", (1.0, 1.0)),
+        ("z;x", "{z};{x}", (1.0, 1.0)),
+        ("x;z;quality", "{x};{z};ok", (1.0, 1.0)),
+        ("sep=;\nx;z", "{x};{z}", (1.0, 1.0)),
+        ("x;z;", "{x};{z};", (1.0, 1.0)),
+        ('"x","z"', '"{x}","{z}"', (1.0, 1.0)),
+        ("x;z(x)", "{x};{z}", (1.0, 1.0)),
+        ("Date: 2024-05-01\nx;z", "{x};{z}", (1.0, 1.0)),
+        ("% x z", "{x} {z}", (1.0, 1.0)),
+    ],
+)
+def test_heads_are_read_as_a_person_reads_them(read, head, form, units):
+    if units is None:  # one of two columns with a unit
+        with pytest.raises(tr.InputError, match="one column only, 'um'"):
+            read(lines_of(form, head))
+    else:
+        assert is_right(read(lines_of(form, head, units)))
+
+
+@pytest.mark.parametrize(
+    ("head", "form", "words"),
+    [
+        ("", "{x} 0 {z}", r"line 1.*begins lines of 3 numbers.*Keep two columns"),
+        ("", "{k} {x} {z}", r"of which the first counts the points"),
+        ("x;z", "{x};{z};1", r"line 2.*lines of 3 numbers, and the head names 2"),
+        ("x;y;z", "{x};{z}", r"the head names 3 columns"),
+        ("x;y;z", "{x};{k};{z}", r"line 1.*the position across the profile and the height"),
+        ("x (kg);z (kg)", "{x};{z}", r"line 1.*the unit 'kg'"),
+        ("x (furlong);z (furlong)", "{x};{z}", r"line 1.*the unit 'furlong'"),
+        ("x;z (um)", "{x};{z}", r"one column only, 'um'"),
+        ("# units: um", "{x} {z}", r"line 1.*says 'um'.*x \[um\]"),
+        ("all values in inch", "{x} {z}", r"line 1.*says 'inch'"),
+        ("Profile of a rail (in)", "{x} {z}", r"line 1.*says 'in'"),
+        ("x;depth", "{x};{z}", r"names a depth"),
+        ("no;z", "{k};{z}", r"the position across the profile"),
+        ("37", "{x} {z}", r"line 1.*behind '#'"),
+        (
+            "\n".join(f"Key{k}=1" for k in range(6)),
+            "{x}\t{z}\t0.1\t0.2",
+            r"line 1.*first of 6 heading.*instrument.*Export",
+        ),
+        ("x,z", "{x}", r"."),
+    ],
+)
+def test_what_a_person_would_ask_about_is_refused_with_its_line(read, head, form, words):
+    with pytest.raises(tr.InputError, match=words):
+        read(lines_of(form, head))
+
+
+@pytest.mark.parametrize("head", ["x,z", ""])
+def test_decimal_commas_between_commas_are_refused(read, head):
+    with pytest.raises(tr.InputError, match=r"decimal commas cannot be told apart.*semicolons"):
+        read(lines_of("{x},{z}", head, comma=True))
+    with pytest.raises(tr.InputError, match="decimal commas cannot be told apart"):
+        read(lines_of("{x}", head[:1], comma=True))
+    with pytest.raises(tr.InputError, match=r"head names 2 columns.*semicolons"):
+        read("x,z\n-4,4,472\n-3,5,196\n-2,5,657\n-1,5,916\n0,6\n1,5,916\n")
+
+
+@pytest.mark.parametrize("mark", ["", "NaN", "*****", "-", "---", "#N/A", "bad", "inf"])
+def test_lost_points_are_named_by_line(read, mark):
+    lines = lines_of("{x};{z}", "x;z").splitlines()
+    for number in (2, 20, len(lines)):
+        lost = [*lines[: number - 1], f"{lines[number - 1].split(';')[0]};{mark}", *lines[number:]]
+        with pytest.raises(tr.InputError, match=rf"line {number}: .*not measured. .*Leave out"):
+            read("\n".join(lost))
+
+
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-8-sig", "utf-16", "utf-16-le", "utf-16-be", "cp1252"])
+@pytest.mark.parametrize("end", ["\n", "\r\n", "\r"])
+def test_encodings_and_ends_of_lines(read, encoding, end):
+    text = lines_of("{x}\t{z}", "x [mm]\tz [µm]", (1.0, UM)).replace("\n", end)
+    assert is_right(read(text.encode(encoding)))
+    assert is_right(read(lines_of("{x}\t{z}").replace("\n", end).encode(encoding)))
+
+
+@pytest.mark.parametrize("minus", ["\u2212", "\u2013"])
+def test_other_signs_of_spreadsheets(read, minus):
+    assert is_right(read(lines_of("{x};{z}", "x;z").replace("-", minus)))
+    assert is_right(read(lines_of("{x}D+00 {z}D+00")))
+    assert is_right(read(lines_of("{x};\u00a0{z}", "x;z")))
+
+
+def test_workbooks_and_pictures_are_refused(read, tmp_path):
+    with zipfile.ZipFile(tmp_path / "book.xlsx", "w") as book:
+        book.writestr("xl/workbook.xml", "<a/>")
+    for content, words in (
+        ((tmp_path / "book.xlsx").read_bytes(), "is a workbook.*Save the sheet"),
+        (b"\xd0\xcf\x11\xe0\xa1\xb1\x1a\xe1" + bytes(200), "an old workbook"),
+        (b"%PDF-1.7\n\x00\x01\x02", "zero bytes"),
+        (b"%PDF-1.7\n\x03\x01\x02", "bytes that are no text"),
+        (b"", "lines of two numbers"),
+    ):
+        with pytest.raises(tr.InputError, match=words):
+            read(content)
+
+
+def simpack(settings: str = "units.len.f = 1000.", points: str = "", weight: str = "") -> str:
+    rows = points or "\n".join(f"  {y:.6f}  {z:.6f} {weight}" for y, z in reversed(ROWS))
+    return (
+        "! *** wheel ***\nheader.begin\n  version = 1  ! flag\n  type = 1\nheader.end\nspline.begin\n"
+        "  approx.smooth = +0.0E+00 ! smoothing\n  comment = 'units: in'\n  bound.y.min = 1.0\n  bound.y.max = 0.0\n"
+        f"  inversion = 1\n{settings}\n  point.begin\n  ! y value   z value\n{rows}\n  point.end\nspline.end\n"
+    )
+
+
+@pytest.mark.parametrize(
+    ("settings", "factor", "moved"),
+    [
+        ("units.len.f = 1000.", (1, 1), (0, 0)),
+        ("units.len.f = 1\n units.len = 'm'", (1e3, 1e3), (0, 0)),
+        ("units.len.f = 1000\n shift.y = 0.5\n shift.z = -2", (1, 1), (0.5, -2)),
+        ("units.len.f = 1000\n mirror.z = 1\n shift.y = -2", (1, -1), (-2, 0)),
+        ("units.len.f = 1000\n mirror.y = 1\n shift.z = 1", (-1, 1), (0, 1)),
+        ("units.len.f = 1000\n point.dist.min = 1e-4", (1, 1), (0, 0)),
+    ],
+)
+def test_profiles_of_simpack_are_read_as_their_settings_say(read, settings, factor, moved):
+    expected = (np.array(ROWS) + moved) * factor
+    np.testing.assert_allclose(read(simpack(settings)), sorted(expected.tolist()), atol=2e-3)
+    assert is_right(read(simpack(weight="1.0")))
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ("units.len.f = 1000\n approx.smooth = 1e-3", "Give `smooth`"),
+        ("units.len.f = 1000\n rotate = 0.02", "Turn the points"),
+        ("units.len.f = 1000\n point.dist.min = 0.5", "leaves out no point"),
+        ("units.len.f = 1000\n bound.y.min = -2\n bound.y.max = 2", "bounds"),
+        ("units.len.f = 1000\n mirror.z = 2", "0 or 1"),
+        ("units.len.f = 1000\n mirror.z = 1\n shift.z = -2", "0 beside a shift"),
+        ("units.len.f = 1000\n stretch.y = 2", "is no known setting"),
+        ("units.len = 'mm'", "units.len.f"),
+    ],
+)
+def test_settings_of_simpack_that_change_the_shape_are_refused(read, settings, words):
+    with pytest.raises(tr.InputError, match=words):
+        read(simpack(settings))
+    for broken in (simpack().replace("point.end", ""), simpack(points="1 2\n3\n"), simpack().replace("header.end", "")):
+        with pytest.raises(tr.InputError, match=r"c\.csv, line"):
+            read(broken)
+
+
+CASES = {  # a file and the largest pressures of both contacts [MPa]
+    "inch": ("guide_profile", "contact", "x (in);z (in)\n", (647.0, 823.0)),
+    "xyz": ("roller_profile", "contact", "x;y;z\n", (649.0, 825.0)),
+    "index": ("guide_profile", "section", "no,x,z\n", (647.0, 823.0)),
+    "prw": ("guide_profile", "section", "", (647.0, 823.0)),
+    "smoothed": ("guide_profile", "section", "x;z\n", (647.0, 823.0)),
+}
+
+
+@pytest.mark.parametrize("name", CASES)
+@pytest.mark.long
+def test_files_give_the_pressure_of_the_true_profile(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "c.csv").write_text(written(";", True) + "\n1.234,5;2,0\n", encoding="utf-8")
-    with pytest.raises(tr.InputError, match=r"line 39.*decimal commas only"):
-        read_points("c.csv", "guide_profile.file")
+    body, frame, head, expected = CASES[name]
+    x = np.round(np.arange(-30, 31) * 0.05, 2) if frame == "contact" else np.round(np.arange(-90, 91) * 0.05, 2)
+    z = np.sqrt((36.0 if body == "guide_profile" else 49.0) - x * x)
+    noise = np.random.default_rng(5).normal(0.0, 1e-4, x.size) if name == "smoothed" else 0.0
+    rows = zip(x.tolist(), (z + noise).tolist(), strict=True)
+    text = {
+        "inch": lambda: head + "".join(f"{a / IN:.9f};{b / IN:.9f}\n" for a, b in rows),
+        "xyz": lambda: head + "".join(f"{a};0.0;{b:.7f}\n" for a, b in rows),
+        "index": lambda: head + "".join(f"{k},{a},{b:.7f}\n" for k, (a, b) in enumerate(rows)),
+        "prw": lambda: simpack(points="\n".join(f"{a} {b:.7f}" for a, b in rows)),
+        "smoothed": lambda: head + "".join(f"{a};{b:.7f}\n" for a, b in rows),
+    }[name]()
+    (tmp_path / "c.csv").write_text(text, encoding="utf-8")
+    profile = {"file": "c.csv", "frame": frame} | ({"smooth": 1e-4} if name == "smoothed" else {})
+    case = tr.Case(**{body: profile}, friction_coefficient=0.2, motor_force=0)
+    ds = tr.solve(case, "contact", normal="halfspace", accuracy="preview", contact_model="sliding")
+    np.testing.assert_allclose(ds.max_pressure, expected, rtol=0.05 if name == "smoothed" else 5e-3)
+
+
+def test_words_are_refused_with_the_line(read):
+    with pytest.raises(tr.InputError, match=r"line 39.*one 1,0;2,0' does not hold two numbers.*decimal commas only"):
+        read(written(";", True) + "\none 1,0;2,0\n")
+
+
+THOUSANDS = [(x, round(-x * x / 12000)) for x in range(-4500, 4501, 250)]  # in micrometres
+
+
+@pytest.mark.parametrize("sign", [",", ".", "'", "\u202f"])
+def test_thousands_are_read_where_the_numbers_tell(read, sign):
+    """Thousands and decimals cannot be told apart in a single cell, but in a column they can."""
+    text = "x [um];z [um]\n" + "\n".join(f"{x:,};{z:,}" for x, z in THOUSANDS).replace(",", sign)
+    assert read(text) == [[x / 1000, z / 1000] for x, z in THOUSANDS]
+    with_decimals = text.replace(";", f"{',' if sign == '.' else '.'}5;")
+    assert read(with_decimals)[0] == [-4.5005, -1.688]
+
+
+@pytest.mark.parametrize("mark", ".,")
+def test_three_decimals_are_read_where_the_numbers_tell(read, mark):
+    rows = [(x, round((36.0 - x * x) ** 0.5, 3)) for x in range(-4, 5)]
+    padded = "\n".join(f"{x};{z:.3f}" for x, z in rows).replace(".", mark)  # each height may be some thousands
+    assert read(f"x;z\n{padded}") == [[x, z] for x, z in rows]
+    assert read("x;z\n" + "\n".join(f"{x};{z:g}" for x, z in rows).replace(".", mark)) == [[x, z] for x, z in rows]
+
+
+def test_a_number_that_stays_ambiguous_is_refused(read):
+    with pytest.raises(tr.InputError, match=r"line 2.*1\.500 or 1500.*Write"):
+        read("x [um];z [um]\n" + "\n".join(f"{k}.500;{k * k}.250" for k in range(1, 9)))
+
+
+def test_two_decimal_signs_are_refused(read):
+    with pytest.raises(tr.InputError, match=r"line 12.*decimal sign ',', and lines before have '\.'"):
+        read(lines_of("{x};{z}", "x;z").replace("-2.00000000;5.65685425", "-2,0;5,6569"))
+
+
+@pytest.mark.parametrize(
+    ("form", "units"),
+    [
+        ("{x} mm;{z} mm", (1, 1)),
+        ("{x} in;{z} um", (25.4, 1e-3)),
+        ("{x}mm\t{z}µm", (1, 1e-3)),
+        ("{x} nm|{z} cm", (1e-6, 10)),
+    ],
+)
+def test_units_behind_each_number_are_read(read, form, units):
+    assert is_right(read(lines_of(form, "", units)))
+    for head, words in (("x [mm];z [m]", "the column has"), ("", "one column only")):
+        with pytest.raises(tr.InputError, match=words):
+            read(lines_of("{x};{z} um", head))
+    for wrong, words in ((" kg", "has the unit kg"), (" um", "the column has mm"), ("", "has no unit")):
+        mixed = lines_of("{x} mm;{z} mm").replace("5.91607978 mm", f"5.91607978{wrong}", 1)
+        with pytest.raises(tr.InputError, match=words):
+            read(mixed if wrong != " kg" else lines_of("{x} kg;{z} kg"))
+
+
+@pytest.mark.parametrize("remark", ["# 5;6", "% 5 6", "! note", "// note", "; measured on Monday", "*** profile ***"])
+def test_remarks_are_left_out(read, remark):
+    lines = lines_of("{x};{z}", "x;z").splitlines()
+    for place in (0, 1, 9, len(lines)):
+        assert is_right(read("\n".join([*lines[:place], remark, "", *lines[place:], "", ""])))
+
+
+@pytest.mark.parametrize("line", [";NaN", "*****;***", ";", "-1;", "x;z", "Sum;12", "End"])
+def test_lines_that_hide_a_point_are_no_remarks(read, line):
+    lines = lines_of("{x};{z}", "x;z").splitlines()
+    text = "\n".join([*lines[:9], line, *lines[9:]])
+    if line == ";":  # an empty row of a spreadsheet
+        assert is_right(read(text))
+    else:
+        with pytest.raises(tr.InputError, match="line 10"):
+            read(text)
+
+
+@pytest.mark.parametrize("line", ["Scale: 0.001", "scale z: 0,001", "# z-Faktor = 1000", "scale factor 2,5"])
+def test_a_scale_is_not_left_out(read, line):
+    with pytest.raises(tr.InputError, match=r"line 1.*states a scale of .*which is not applied"):
+        read(f"{line}\n" + lines_of("{x};{z}", "x;z"))
+    assert is_right(read("Scale: 1.0\n" + lines_of("{x};{z}", "x;z")))
 
 
 @pytest.mark.long

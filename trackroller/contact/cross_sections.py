@@ -16,13 +16,14 @@ from functools import cached_property
 
 import numpy as np
 
+from trackroller.contact.measured_points import noise_of
+
 STEEPEST = 0.999  # largest sine of the inclination to the tangent plane at which arcs are followed
 # Tangent of 25 degrees. ASSUME: a surface with a larger inclination to the contact plane takes no part in this contact;
 # a half-space with one plane of contact does not describe it.
 CONTACT_SLOPE = 0.4663
 
 BEFORE_AXIS = 0.95  # ASSUME: a surface nearer to its axis of revolution than 5 % of the radius takes no part
-SAFETY = 1.05  # factor on the noise found in points: too little smoothing does more harm than too much
 
 Curve = Callable[[np.ndarray], np.ndarray]
 
@@ -178,30 +179,6 @@ def smoothed(u: np.ndarray, height: np.ndarray, noise: float | str):
     if excess(low) >= 0.0:
         return make_smoothing_spline(u, height, lam=unit * 10.0**low)
     return make_smoothing_spline(u, height, lam=unit * 10.0 ** brentq(excess, low, high, xtol=1e-6))
-
-
-def noise_of(u: np.ndarray, height: np.ndarray) -> float:
-    """Return the standard deviation of the noise of heights [mm], from divided differences of five neighbours.
-
-    These differences vanish for cubics and nearly vanish for arcs and parabolas. Kinks and steps give few large values,
-    which the median leaves out. Noise that neighbours share is not detected.
-
-    Parameters
-    ----------
-    u, height : numpy.ndarray, shape (n,)
-        Points [mm].
-    """
-    count = u.size - 4
-    near = np.stack([u[k : k + count] for k in range(5)])
-    apart = near[:, None] - near[None] + np.eye(5)[:, :, None]
-    weights = 1.0 / apart.prod(axis=1)
-    weights /= np.sqrt((weights**2).sum(axis=0))
-    left = np.abs(sum(weights[k] * height[k : k + count] for k in range(5)))
-    deviation = 1.4826 * float(np.median(left))
-    for _ in range(3):
-        kept = left[left <= 3.0 * deviation]
-        deviation = float(np.sqrt(np.mean(kept**2))) / 0.9866 if kept.size else deviation
-    return SAFETY * deviation
 
 
 def worn(section: CrossSection, start: float, step: float, depth: np.ndarray, moved: float = 0.0) -> CrossSection:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, smoothed, with_edges, worn
+from trackroller.contact.measured_points import in_order
 from trackroller.contact.profiles import FEWEST
 from trackroller.errors import ShapeError
 
@@ -86,7 +87,7 @@ def cross_section(text: str, body: str, radius: float, alpha: float, guide_radiu
 
 def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius: float, side: int) -> CrossSection:
     points = np.asarray(profile["points"])
-    x, z = points[:, 0], points[:, 1]
+    x, z = points[in_order(points)].T
     out = -1.0 if body == "roller_profile" else 1.0
     noise = profile.get("smooth", 0.0)
     if profile["frame"] == "contact":
@@ -102,9 +103,8 @@ def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius:
         remedy = "In frame: section x = 0 is the middle of the guide; see also frame: contact."
         raise ShapeError(body, f"{x.size} points with x >= 0", f"at least {FEWEST} on the side of a contact", remedy)
     nominal = guide_radius * math.sin(alpha)
-    u, w = x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
-    u, w = _single_valued(u, w)
-    apex = _touching_point(u, w, noise, body, alpha)
+    u, w = _single_valued(*_turned(x, smoothed(x, z, noise)(x) if noise else z, alpha), body)
+    apex = _touching_point(u, w, _turned(x, z, alpha), noise, body, alpha)
     # `place` is the distance from the middle of the guide, which compares with that of the nominal contact.
     place = apex * math.cos(alpha) + float(np.interp(apex, u, w)) * math.sin(alpha)
     if not nominal / ASTRAY < place < nominal * ASTRAY:
@@ -115,7 +115,12 @@ def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius:
         )
         remedy = "Give x and z in mm, x = 0 in the middle, and a nominal radius near the drawn one; or frame: contact."
         raise ShapeError(body, given, allowed, remedy)
-    return _flat_enough(drawn(u - apex, out * w, noise), body, guide_radius)
+    return _flat_enough(drawn(u - apex, out * w), body, guide_radius)
+
+
+def _turned(x: np.ndarray, z: np.ndarray, alpha: float) -> tuple[np.ndarray, np.ndarray]:
+    """Return points of the section along and across the tangent plane at the contact [mm]."""
+    return x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
 
 
 def _beside(guide_radius: float) -> str:
@@ -132,27 +137,39 @@ def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSe
     raise ShapeError(body, given, allowed, "Give x and z in mm. If the points are noisy, give `smooth`.")
 
 
-def _single_valued(u: np.ndarray, w: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return the longest part of the turned curve in which u increases."""
-    breaks = np.flatnonzero(np.diff(u) <= 0)
+def _single_valued(u: np.ndarray, w: np.ndarray, body: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the longest part of the turned curve in which u increases.
+
+    Several steps back are an overhang, which takes no part in the contact. A single one is a jump or noise.
+    """
+    back = np.diff(u) <= 0
+    single = back[1:-1] & ~back[:-2] & ~back[2:]
+    if single.any():
+        place = np.flatnonzero(single)[0] + 1
+        given = f"a curve that turns back between two points, {math.hypot(u[place], w[place]):.4g} mm from the origin"
+        allowed = "a curve that does not turn back, seen along the contact normal"
+        raise ShapeError(body, given, allowed, "Leave out lost points. If the points are noisy, give `smooth`.")
+    breaks = np.flatnonzero(back)
     starts, ends = np.concatenate([[0], breaks + 1]), np.concatenate([breaks + 1, [u.size]])
     k = int(np.argmax(ends - starts))
     return u[starts[k] : ends[k]], w[starts[k] : ends[k]]
 
 
-def _touching_point(u, w, noise, body: str, alpha: float) -> float:
-    """Return the u where the curve is parallel to the tangent plane, nearest to the apex of a fitted parabola."""
+def _touching_point(u, w, points, noise, body: str, alpha: float) -> float:
+    """Return the u where the curve is parallel to the tangent plane, nearest to the apex of a fitted parabola.
+
+    `points` are the turned points before they were smoothed with `noise`, for the message where there is none.
+    """
     from scipy.optimize import brentq  # heavy, and for drawn profiles only
 
     if u.size < FEWEST:
-        raise _nowhere_parallel(u, w, body, alpha)
-    spline = smoothed(u, w, noise)
-    slope = spline.derivative()
+        raise _nowhere_parallel(points, body, alpha)
+    slope = smoothed(u, w, 0.0).derivative()
     places = np.linspace(u[0], u[-1], 40 * u.size + 1)
     values = slope(places)
     turns = np.flatnonzero(values[:-1] * values[1:] <= 0)
     if turns.size == 0:
-        raise _nowhere_parallel(u, w, body, alpha, (noise, values) if noise else None)
+        raise _nowhere_parallel(points, body, alpha, (noise, values) if noise else None)
     roots = np.array(
         [
             brentq(slope, places[k], places[k + 1]) if values[k] * values[k + 1] < 0 else places[k + (values[k] != 0)]
@@ -164,9 +181,11 @@ def _touching_point(u, w, noise, body: str, alpha: float) -> float:
     return float(roots[np.argmin(np.abs(roots - apex))])
 
 
-def _nowhere_parallel(u, w, body: str, alpha: float, smooth: tuple | None = None) -> ShapeError:
+def _nowhere_parallel(turned, body: str, alpha: float, smooth: tuple | None = None) -> ShapeError:
     """Return the error for points without a contact, or for smoothing `smooth` = (noise, slopes) that removed it."""
-    steps = np.diff(w) / np.diff(u) if u.size > 1 else np.full(1, math.tan(alpha))
+    u, w = turned
+    with np.errstate(divide="ignore"):  # a step along the contact normal
+        steps = np.diff(w) / np.diff(u) if u.size > 1 else np.full(1, math.tan(alpha))
     angle = math.degrees(alpha)
     points = angle - np.degrees(np.arctan(steps))
     lean = points if smooth is None else angle - np.degrees(np.arctan(smooth[1]))
@@ -274,7 +293,8 @@ def treats_sides_alike(text: str) -> bool:
         return False
     if profile.get("frame") != "section":
         return True
-    return sum(p[0] <= 0 for p in profile["points"]) < FEWEST
+    points = np.asarray(profile["points"])
+    return bool(np.count_nonzero(points[in_order(points), 0] <= 0) < FEWEST)
 
 
 def with_wear(guide: str, roller: str, radii: tuple[float, float], worn: list[dict[str, Any]]) -> tuple[str, str]:

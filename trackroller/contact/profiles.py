@@ -21,11 +21,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping
-from typing import Any
+from pathlib import Path
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names, unknown_name
+from trackroller.contact.measured_points import FARTHEST, MISLEADING, TOLD, Findings, examined, in_order
+from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.numerics.numbers import number_in, number_or_nan
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
@@ -33,10 +35,24 @@ KEYS = (*FORMS, "frame", "smooth", "edge", "width", "worn")
 WORN_KEYS = ("start", "step", "depth", "moved", "inclined")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
-FARTHEST = 1e300  # mm; largest finite length
+LARGEST = 1e300  # mm; largest finite length
 FEWEST, MOST = 5, 20_000  # smallest and largest number of points of a drawn cross-section
+FOLDED = 0.05  # scatter of sorted points over their height from which on they are two parts of an outline
 
-PointReader = Callable[[Any, str], list[list[float]]]  # (name of a file, field) -> rows [x, z]
+
+class PointRows(NamedTuple):
+    """Points of a cross-section as they were given: rows [x, z], and the file and the line of each, if there is one."""
+
+    rows: Any
+    path: Path | None = None
+    lines: tuple[int, ...] = ()
+
+    def at(self, row: int, error: InputError) -> InputError:
+        """Return an error after noting where this row stands."""
+        return error if self.path is None else error.at(self.path, self.lines[row])
+
+
+PointReader = Callable[[Any, str], PointRows]  # (name of a file, field) -> points
 
 
 def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReader | None = None) -> dict[str, Any]:
@@ -65,11 +81,12 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     -----
     `arc: r` is a circle (> 0 convex, < 0 a groove, inf straight) [mm], and `parabola: r` its approximation in Hertz's
     theory. `arcs: [{radius: r, to: x}, ..., {radius: r}]` are tangent arcs from inside to outside, with x from the
-    nominal contact. `points: [[x, z], ...]` are drawn or measured points with increasing x [mm], and `file: name.csv`
-    gives them as two columns of a file.
+    nominal contact. `points: [[x, z], ...]` are drawn or measured points [mm], and `file: name.csv` gives them as two
+    columns of a file. They are sorted by x, and points that stand twice count once.
 
     Points and files may also have `frame: section | contact` (default section) and `smooth`: the standard deviation of
-    the measuring noise [mm], 'auto', or 0. With the default 0 the spline passes through every point.
+    the measuring noise [mm], 'auto', or 0. Without it, the spline passes through every point, and points that scatter
+    or lie off their neighbours are refused. `smooth: 0` says that every point is meant.
 
     Every form may have `edge: {inner: mm, outer: mm, chamfer: mm}` or `width: mm`. `edge` gives the distances from the
     nominal contact along the tangent plane at which the material ends, and the radius of the rounded edge. `width` is
@@ -120,21 +137,31 @@ def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | 
         return {"arcs": _arcs(value["arcs"], f"{field}.arcs")}
     if form == "file" and read is None:
         raise InputError(f"{field}.file", value["file"], "points", "Read the file and give its rows as points.")
-    rows = read(value["file"], f"{field}.file") if form == "file" and read else value["points"]
+    given = read(value["file"], f"{field}.file") if form == "file" and read else PointRows(value["points"])
     frame = value.get("frame", "section")
     if frame not in FRAMES:
         raise unknown_name(f"{field}.frame", str(frame), FRAMES)
-    out: dict[str, Any] = {"points": _points(rows, f"{field}.{form}"), "frame": frame}
-    x = [p[0] for p in out["points"]]
-    if frame == "contact" and not x[0] < 0 < x[-1]:
+    points = _points(given, f"{field}.{form}")
+    low, high = float(points[:, 0].min()), float(points[:, 0].max())
+    if frame == "contact" and not low < 0 < high:
         remedy = "In frame: contact x counts from the nominal contact; in frame: section from the middle of the guide."
         allowed = "points on both sides of the nominal contact x = 0"
-        raise InputError(f"{field}.{form}", [x[0], x[-1]], allowed, remedy)
+        raise InputError(f"{field}.{form}", [low, high], allowed, remedy)
+    out: dict[str, Any] = {"points": points.tolist(), "frame": frame}
     smooth = value.get("smooth", 0.0)
     if smooth != "auto":
         allowed = "the standard deviation of the noise >= 0 [mm], or 'auto'"
-        smooth = number_in(smooth, f"{field}.smooth", allowed, 0.0, FARTHEST, unit="mm")
-    if smooth:
+        smooth = number_in(smooth, f"{field}.smooth", allowed, 0.0, LARGEST, unit="mm")
+    order = _checked_order(points, given, f"{field}.{form}")
+    found = examined(*points[order].T)
+    meant = "smooth" in value and not smooth
+    if not meant:
+        _check_curve(found, points, order, given, f"{field}.{form}")
+    if "smooth" not in value and found.roughness >= MISLEADING:
+        error = _unsmoothed(found, field)
+        error.file = None if given.path is None else str(given.path)
+        raise error
+    if smooth or (meant and (found.runs or found.jumps or found.roughness >= TOLD)):
         out["smooth"] = smooth
     return out
 
@@ -152,13 +179,15 @@ def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
         arc = {"radius": _number(row["radius"], f"{here}.radius", finite=False)}
         if not last:
             allowed = "a finite place [mm] beyond the end of the arc before"
-            start = math.nextafter(out[-1]["to"], math.inf) if out else -FARTHEST
-            arc["to"] = number_in(row["to"], f"{here}.to", allowed, start, FARTHEST, unit="mm")
+            start = math.nextafter(out[-1]["to"], math.inf) if out else -LARGEST
+            arc["to"] = number_in(row["to"], f"{here}.to", allowed, start, LARGEST, unit="mm")
         out.append(arc)
     return out
 
 
-def _points(rows: Any, field: str) -> list[list[float]]:
+def _points(given: PointRows, field: str) -> np.ndarray:
+    """Return the numbers of points (n, 2) [mm] as they were given."""
+    rows = given.rows
     try:
         points = np.asarray([[number_or_nan(v, "mm", field) for v in row] for row in rows], dtype=float)
     except (TypeError, ValueError):
@@ -166,17 +195,79 @@ def _points(rows: Any, field: str) -> list[list[float]]:
     if points.ndim != 2 or points.shape[1] != 2 or not FEWEST <= len(points) <= MOST:
         allowed = f"{FEWEST} to {MOST} rows of two numbers x, z [mm]"
         raise InputError(field, f"an array of shape {points.shape}", allowed)
-    for wrong, allowed, remedy in (
-        (~np.isfinite(points).all(axis=1), "finite numbers", "Leave out the rows that were not measured."),
-        (
-            np.diff(points.T[0], prepend=-np.inf) <= 0,
-            "x increases from row to row",
-            "Sort by x; keep one point for each x.",
-        ),
-    ):
-        for row in np.flatnonzero(wrong)[:1].tolist():
-            raise InputError(f"{field}[{row}]", points[row].tolist(), allowed, remedy)
-    return points.tolist()
+    lost = ~(np.abs(points) < FARTHEST).all(axis=1)
+    for row in np.flatnonzero(lost)[:1].tolist():
+        allowed, remedy = f"finite numbers below {FARTHEST:g} mm", "Leave out the points that were not measured."
+        error = InputError(f"{field}[{row}]", points[row].tolist(), allowed, remedy, "is no place of a point")
+        raise given.at(row, error)
+    return points
+
+
+def _checked_order(points: np.ndarray, given: PointRows, field: str) -> np.ndarray:
+    """Return the order of points by x, each once; refuse two heights for one x, and outlines that turn back."""
+    order = in_order(points)
+    x, z = points[order].T
+    for k in np.flatnonzero(np.diff(x) <= 0)[:1].tolist():
+        first, second = sorted((int(order[k]), int(order[k + 1])))
+        wrong = f"has the x of point {first + 1}, whose z is {points[first, 1]:g} mm"
+        remedy = "Keep one of these points, or their mean; x is the position across the profile, z the height."
+        error = InputError(field, _named(points, [second]), "one height for each x", remedy, wrong)
+        raise given.at(second, error)
+    if len(order) < FEWEST:
+        raise InputError(field, f"{len(order)} different points", f"at least {FEWEST}", wrong="are too few")
+    steps = np.diff(points[:, 0])
+    turns = np.flatnonzero(steps[1:] * steps[:-1] < 0)
+    if turns.size and examined(x, z).scatter > FOLDED * np.ptp(z):
+        row = int(turns[0]) + 1
+        allowed = "points of a curve with one height for each x"
+        remedy = "Keep the part of the outline that faces the other body, with the position in column x, z in column z."
+        raise given.at(row, InputError(field, _named(points, [row]), allowed, remedy, "is where x turns back"))
+    return order
+
+
+def _check_curve(found: Findings, points: np.ndarray, order: np.ndarray, given: PointRows, field: str) -> None:
+    """Refuse points off the curve through their neighbours, and jumps; `found` counts in `order`."""
+    wrong = Collector()
+
+    def refuse(rows: list[int], row: int, lies: str, remedy: str) -> None:
+        error = InputError(field, _named(points, rows), "points of one curve", remedy, lies)
+        wrong.errors.append(given.at(row, error))
+
+    near: set[int] = set()
+    for run in found.runs:
+        rows = sorted(order[run.first : run.last + 1].tolist())
+        near |= set(range(run.first - 1, run.last + 1))
+        lies = f"{_length(run.off)} off {'its neighbours' if len(rows) == 1 else 'their neighbours'}"
+        remedy = "Leave out lost points and specks. If the shape is meant, draw it with more points, or give smooth: 0."
+        refuse(rows, rows[0], f"{'lies' if len(rows) == 1 else 'lie'} {lies}", remedy)
+    for k in (k for k in found.jumps if k not in near):
+        (x, z), (to_x, to_z) = points[order[k]], points[order[k + 1]]
+        rows = sorted((int(order[k]), int(order[k + 1])))
+        lies = f"have a step between them that is {_length(to_x - x)} wide and {_length(abs(to_z - z))} high"
+        remedy = "Leave out lost points. If a step is meant, end the points there and give `edge`, or give smooth: 0."
+        refuse(rows, rows[1], lies, remedy)
+    wrong.check()
+
+
+def _named(points: np.ndarray, rows: list[int]) -> str:
+    """Return points in words, such as 'point 41 (-2.5, 0)'."""
+    ends = [f"({x:.6g}, {z:.6g})" for x, z in points[rows][[0, -1]]]
+    if len(rows) == 1:
+        return f"point {rows[0] + 1} {ends[0]}"
+    return f"points {rows[0] + 1} to {rows[-1] + 1}, {ends[0]} to {ends[1]}"
+
+
+def _length(size: float) -> str:
+    return f"{size:.3g} mm" if size >= 0.1 else f"{1e3 * size:.2g} µm"
+
+
+def _unsmoothed(found: Findings, field: str) -> InputError:
+    """Return the error for points whose scatter would count as shape."""
+    noise = f"{1e3 * found.scatter:.2g} um"
+    wrong = f"is missing, and the points scatter by {noise} (noise or rounding), which can raise the pressure by "
+    allowed = "auto, the standard deviation of the noise, or 0"
+    remedy = f"Give smooth: auto, or the measured noise, such as smooth: {noise}; smooth: 0 takes the scatter as shape."
+    return InputError(f"{field}.smooth", None, allowed, remedy, wrong + found.pressure_rise)
 
 
 def _edge(value: Any, field: str) -> dict[str, float]:

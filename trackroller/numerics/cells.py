@@ -19,9 +19,10 @@ from typing import NamedTuple
 
 from trackroller.numerics.units import split_quantity
 
-_MINUS = re.compile(
-    "(^|[eE])[\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d]"
-)  # hyphens, dashes, minus signs of word processors
+DASHES = "\u2010\u2011\u2012\u2013\u2212\ufe63\uff0d"  # hyphens, dashes, minus signs of word processors
+SEPARATORS = ";\t|,"  # between the cells of a line
+_MINUS = re.compile(f"(^|[eE])[{DASHES}]")
+_STATED = re.compile(r'"?sep=(.)"?[;,\t|]*', re.IGNORECASE)
 _NUMBER = re.compile(r"([-+]?) ?(\d[\d.,'’ ]*|[.,]\d+)(.*)", re.ASCII)
 _EXPONENT = re.compile(r"[eE]([-+]?\d+)|[dD]([-+]\d+)", re.ASCII)
 _GROUPED = re.compile(r"[1-9]\d{0,2}(?:([.,'’ ])\d{3})(?:\1\d{3})*(?:(?!\1)([.,])(\d+))?", re.ASCII)
@@ -69,6 +70,12 @@ class _Parts(NamedTuple):
     mark: str  # the sign before the decimals, or the only sign if it may also separate thousands
     certain: bool
     rest: str  # exponent and unit
+
+
+def stated_separator(line: str) -> str:
+    """Return the separator that a line such as `sep=;` states, which Excel understands; '' for another line."""
+    stated = _STATED.fullmatch(line) if "=" in line else None
+    return stated[1] if stated else ""
 
 
 def decimal_signs(cells: Iterable[str]) -> frozenset[str]:

@@ -9,10 +9,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.cross_sections import noise_of
+from trackroller.contact.measured_points import MISLEADING, TOLD, examined, in_order
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.units import in_unit
 from trackroller.parameters import PARAMETERS
+from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.case import Case
 
 if TYPE_CHECKING:
@@ -58,7 +59,8 @@ RATINGS = {
 }
 LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
 SMALL = {"axial": 0.02}  # share of the radial force below which a rating is asked about; 1 for the others
-ROUGH = 0.05  # scatter of the curvature of measured points over that of an arc as wide as the points
+# ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres above.
+MEASURED_WIDTH = 0.05, 20.0
 
 
 def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> list[str]:
@@ -91,8 +93,10 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
             sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
         sentences.append(_exponent(material))
     sentences += _ratings(values)
+    guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     for name in ("guide_profile", "roller_profile"):
-        sentences += [_rough(name, profile) for profile in _mappings(values.get(name))]
+        radius = next((r for r in guide_radii if r > 0.0), math.nan)
+        sentences += [text for profile in _mappings(values.get(name)) for text in _of_points(name, profile, radius)]
     return [text for text in sentences if text]
 
 
@@ -150,18 +154,42 @@ def _mappings(value: Any) -> list[dict[str, Any]]:
     return [json.loads(text) for text in dict.fromkeys(np.ravel(value).tolist()) if isinstance(text, str) and text]
 
 
-def _rough(name: str, profile: Mapping[str, Any]) -> str:
-    """Return the sentence about measured points whose scatter counts as shape, '' if there is none."""
-    if "points" not in profile or profile.get("smooth"):
-        return ""
-    x, z = np.asarray(profile["points"], dtype=float).T
-    noise = noise_of(x, z)
-    scatter = math.sqrt(6.0) * noise / float(np.median(np.diff(x))) ** 2  # of the second difference
-    signs = np.sign(np.diff(z, 4))
-    random = np.mean(signs[1:] != signs[:-1]) > 0.5 if signs.size > 1 else False  # 0.8 of noise, 0 of a coarse arc
-    if scatter < ROUGH / (0.5 * float(x[-1] - x[0])) or not random:
-        return ""
-    return (
-        f"{name}: its points scatter by {1e3 * noise:.2g} µm and are not smoothed, so that the scatter counts as shape "
-        f"and pressures are far too high; add smooth: auto, or the measured noise, smooth: {1e3 * noise:.1g} um."
-    )
+def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> list[str]:
+    """Return sentences about points of an unlikely size, or that were put in order, scatter or leave the curve."""
+    if "points" not in profile:
+        return []
+    points = np.asarray(profile["points"], dtype=float)
+    order = in_order(points)
+    found, steps = examined(*points[order].T), np.sign(np.diff(points[:, 0]))
+    sentences, width = [], float(np.ptp(points[:, 0]))
+    low, high = (size * guide_radius for size in MEASURED_WIDTH)
+    if width < low or width > high:
+        sentences.append(
+            f"{name}: its points are {width:.3g} mm wide, and the radius of the guide is {guide_radius:.3g} mm; if "
+            "they are not in mm, give their unit: x [um], z [um] at the head of a file."
+        )
+    if len(order) < len(points):
+        sentences.append(
+            f"{name}: {len(points) - len(order)} of its {len(points)} points stand twice; each counts once."
+        )
+    if np.any(steps < 0):
+        way = "run from large to small x" if np.all(steps <= 0) else "do not run in one direction"
+        sentences.append(f"{name}: its points {way}; they were sorted by x.")
+    if profile.get("smooth"):
+        return sentences
+    if found.runs or found.jumps:
+        sentences.append(f"{name}: points lie off their neighbours, and smooth: 0 takes them as shape.")
+    meant = "smooth" in profile  # kept only where it matters
+    if found.roughness >= (MISLEADING if meant else TOLD):
+        noise = f"{1e3 * found.scatter:.2g}"
+        sentences.append(
+            f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, so that the scatter "
+            f"counts as shape and can raise the pressure by {found.pressure_rise}; add smooth: auto, or the measured "
+            f"noise, such as smooth: {noise} um{'' if meant else ', or smooth: 0 if it is meant'}."
+        )
+    return sentences
+
+
+def _numbers(given: Any) -> list[float]:
+    """Return the finite numbers of a value of `doubts`; other values become NaN."""
+    return [float(v) if isinstance(v, (int, float)) else math.nan for v in np.ravel(given).tolist()]

@@ -13,10 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from trackroller.errors import InputError
-from trackroller.numerics.cells import Refused
-
-SEPARATORS = ";\t|,"
-_SEP = re.compile(r'"?sep=(.)"?[;,\t|]*', re.IGNORECASE)
+from trackroller.numerics.cells import SEPARATORS, Refused, stated_separator
 
 
 def csv_lines(text: str, path: Path, field: str) -> tuple[Iterator[tuple[int, list[str]]], str]:
@@ -41,11 +38,11 @@ def csv_lines(text: str, path: Path, field: str) -> tuple[Iterator[tuple[int, li
     """
     lines = (line.strip() for line in io.StringIO(text, newline=None))
     first = next(lines, "")
-    stated = _SEP.fullmatch(first) if "=" in first else None
-    if stated is None and first[:1] not in ("", "#"):
+    stated = stated_separator(first)
+    if not stated and first[:1] not in ("", "#"):
         return _lines(text, path, field, _separator(first)), _separator(first)
     head = next((line for line in lines if line and line[0] != "#"), "")
-    separator = stated[1] if stated else _separator(head)
+    separator = stated or _separator(head)
     return _lines(text, path, field, separator, bool(stated)), separator
 
 
