@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import numpy as np
@@ -117,6 +118,38 @@ def test_a_study_and_a_spectrum_ask_about_ratings():
 def test_a_negative_exponent_of_basquin_is_refused_with_the_exponent_to_write():
     with pytest.raises(tr.InputError, match=r"k = -1/b: write 11.8"):
         load_database().material(CURVE | {"woehler_exponent": -0.085})
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"roller_profile_radius": 8.5}, "if a groove is meant, write -8.5"),
+        ({"guide_profile_radius": 10, "axis_distance": 30, "roller_profile_radius": 19}, "1.9 times that of the guide"),
+        ({"roller_profile": {"arc": 7}}, "if a groove is meant, write arc: -7"),
+        ({"roller_profile": {"parabola": 7}}, "write parabola: -7"),
+        ({"roller_profile": {"arcs": [{"radius": 7, "to": 0.2}, {"radius": 6.3}]}}, "write radius: -7"),
+        (
+            {"roller_profile": {"points": [[x, x * x / 14] for x in np.linspace(-1, 1, 21)], "frame": "contact"}},
+            "sign of z",
+        ),
+    ],
+)
+def test_a_convex_roller_with_the_radius_of_a_groove_is_asked_about(given, words):
+    (told,) = doubts_of_case(tr.Case(**given), load_database())
+    assert "convex roller" in told and words in told
+
+
+@pytest.mark.parametrize(
+    "given", [{"roller_profile_radius": r} for r in (5, 40, math.inf, -8.5)] + [{"roller_profile": {"arc": -7}}]
+)
+def test_other_rollers_are_not_asked_about(given):
+    assert doubts_of_case(tr.Case(**given), load_database()) == []
+
+
+def test_convex_rollers_of_a_study_are_compared_with_their_own_guide():
+    rows = {"guide_profile_radius": np.array([6.0, 20.0]), "roller_profile_radius": np.array([-8.0, 8.5])}
+    assert not doubts(rows)
+    assert "write -8.5" in doubts({"roller_profile_radius": np.array([-8.0, 8.5, 40.0])})[0]
 
 
 @pytest.mark.parametrize("body", ["guide_profile", "roller_profile"])

@@ -1,4 +1,4 @@
-"""Ask about values that are allowed but unusual: a wrong unit, a reciprocal, measured points that are not smoothed."""
+"""Ask about values that are allowed but unusual: another unit, sign or reciprocal, points that are not smoothed."""
 
 from __future__ import annotations
 
@@ -61,6 +61,7 @@ LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
 SMALL = {"axial": 0.02}  # share of the radial force below which a rating is asked about; 1 for the others
 # ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres above.
 MEASURED_WIDTH = 0.05, 20.0
+LIKE_A_GROOVE = 2.0  # ASSUME: the radius of a groove is at most this times that of the guide
 
 
 def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> list[str]:
@@ -97,6 +98,7 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
         sentences += [text for profile in _mappings(values.get(name)) for text in _of_points(name, profile, radius)]
+    sentences += _convex_rollers(values)
     return [text for text in sentences if text]
 
 
@@ -190,6 +192,42 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
     return sentences
 
 
+def _convex_rollers(values: Mapping[str, Any]) -> list[str]:
+    """Return sentences about convex rollers with the radius of a groove."""
+    guides = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
+    rollers = _numbers(values.get("roller_profile_radius", math.nan))
+    if not guides:
+        return []
+    same = len(guides) == len(rollers)  # a study has a row for each case
+    pairs = zip(guides, rollers, strict=True) if same else ((one, other) for one in guides[:1] for other in rollers)
+    like = {other: other / one for one, other in pairs if one < other <= LIKE_A_GROOVE * one}
+    found = [("roller_profile_radius", radius, ratio, f"write -{radius:g}") for radius, ratio in like.items()]
+    for profile in _mappings(values.get("roller_profile")):
+        radius, remedy = _convex_radius(profile)
+        if guides[0] < radius <= LIKE_A_GROOVE * guides[0]:
+            found.append(("roller_profile", radius, radius / guides[0], remedy))
+    return [
+        f"{name}: a radius of {radius:.4g} mm is that of a convex roller, and {ratio:.3g} times that of the guide, as "
+        f"grooves have; if a groove is meant, {remedy}."
+        for name, radius, ratio, remedy in found[:1]
+    ]
+
+
 def _numbers(given: Any) -> list[float]:
     """Return the finite numbers of a value of `doubts`; other values become NaN."""
     return [float(v) if isinstance(v, (int, float)) else math.nan for v in np.ravel(given).tolist()]
+
+
+def _convex_radius(profile: Mapping[str, Any]) -> tuple[float, str]:
+    """Return the radius of a roller at its nominal contact, > 0 convex [mm], and how a groove is written."""
+    for form in ("arc", "parabola"):
+        if form in profile:
+            return profile[form], f"write {form}: -{profile[form]:g}"
+    if "arcs" in profile:
+        here = next(row for row in profile["arcs"] if row.get("to", math.inf) > 0.0)
+        return here["radius"], f"write radius: -{here['radius']:g}"
+    if profile.get("frame") != "contact":  # in frame: section a curve that bends the wrong way has no contact
+        return math.nan, ""
+    x, z = np.asarray(profile["points"], dtype=float).T
+    square = np.polyfit(x, z, 2)[0]
+    return (0.5 / square if square > 0.0 else math.nan), "change the sign of z, which counts towards the roller's axis"
