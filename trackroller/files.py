@@ -9,6 +9,7 @@ import errno
 import hashlib
 import math
 import os
+import secrets
 import shutil
 import signal
 import tempfile
@@ -64,13 +65,31 @@ def check_utf_8(path: Path | str, what: str) -> None:
         raise InputError(what, shown, "names in UTF-8", remedy, "has a name that is not UTF-8") from None
 
 
-def refuse_links(root: Path, what: str) -> None:
-    """Refuse a folder that is a link or holds one, at any depth: the link may lead to files of other people."""
+def check_place(path: Path, what: str) -> None:
+    """Refuse to write a path that is not UTF-8, or that leads out of the folder that `confine` names."""
+    check_utf_8(path, what)
+    _check_confined(path.parent, what)
+
+
+def is_link(path: Path) -> bool:
+    """Return whether a path is a link, also if it is dangling."""
+    return path.is_symlink() or bool(getattr(os.path, "isjunction", lambda path: False)(path))
+
+
+def refuse_link(path: Path, what: str) -> None:
+    """Refuse a path that is a link: it may lead to files of other people."""
+    if is_link(path):
+        remedy = "Remove the link, or replace it by what it leads to."
+        raise InputError(what, str(path), "files and folders without links", remedy, "is a link")
+
+
+def refuse_links(root: Path, what: str, inside: bool = False) -> None:
+    """Refuse a folder that holds a link, at any depth, and one that is a link unless only what is `inside` counts."""
+    if not inside:
+        refuse_link(root, what)
     for place, folders, names in os.walk(root):
-        for path in (Path(place), *(Path(place, name) for name in (*folders, *names))):
-            if path.is_symlink():
-                remedy = "Remove the link, or replace it by what it leads to."
-                raise InputError(what, str(path), "files and folders without links", remedy, "is a link")
+        for name in (*folders, *names):
+            refuse_link(Path(place, name), what)
 
 
 @contextmanager
@@ -247,7 +266,30 @@ def _true_cause(exc: OSError, path: Path) -> OSError:
     return exc
 
 
-def write_whole(path: Path, write: Callable[[Path], object]) -> None:
+_TOKEN = secrets.token_hex(8)  # tells the temporary files of this process from those of others
+
+
+def scratch_name(path: Path) -> Path:
+    """Return the temporary path beside a file or folder under which this process makes it; no one else has it."""
+    return path.with_name(f".{path.name}.{os.getpid()}-{_TOKEN}.tmp")
+
+
+@contextmanager
+def disk_errors(path: Path) -> Iterator[None]:
+    """Turn a write to `path` that fails within this context into a `WorkError` with its remedy."""
+    try:
+        yield
+    except WorkError:
+        raise
+    except (OSError, RuntimeError) as exc:
+        if isinstance(exc, OSError) and (exc.errno or 0) > 0:
+            raise disk_error(exc, path) from exc
+        full = shutil.disk_usage(path.parent).free < 16_000_000  # the netCDF library hides the system's error
+        code = errno.ENOSPC if full else errno.EIO
+        raise disk_error(OSError(code, str(exc)), path) from exc
+
+
+def write_whole(path: Path, write: Callable[[Path], object], ready: Callable[[], object] = lambda: None) -> None:
     """Write a file under a temporary name, flush it to the disk and rename it.
 
     A failure leaves no file behind, and a killed process leaves the previous file unchanged.
@@ -258,33 +300,33 @@ def write_whole(path: Path, write: Callable[[Path], object]) -> None:
         The file to write.
     write : callable
         Writes the content; it receives the temporary path.
+    ready : callable
+        Called just before the rename; what it raises leaves the previous file unchanged.
 
     Raises
     ------
     WorkError
         If the operating system or the netCDF library cannot write.
     """
-    check_utf_8(path, "file to write")
-    _check_confined(path.parent, "file to write")
-    beside = path.with_name(f".{path.name}.{os.getpid()}.tmp")
+    check_place(path, "file to write")
+    beside = scratch_name(path)
     try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        write(beside)
-        with open(beside, "rb+") as stream:
-            os.fsync(stream.fileno())
-        os.replace(beside, path)
-        _sync_folder(path.parent)
-    except WorkError:
-        raise
-    except (OSError, RuntimeError) as exc:
-        if isinstance(exc, OSError) and (exc.errno or 0) > 0:
-            raise disk_error(exc, path) from exc
-        full = shutil.disk_usage(path.parent).free < 16_000_000  # the netCDF library hides the system's error
-        code = errno.ENOSPC if full else errno.EIO
-        raise disk_error(OSError(code, str(exc)), path) from exc
+        with disk_errors(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+            write(beside)
+            flush(beside)
+            ready()
+            os.replace(beside, path)
+            sync_folder(path.parent)
     finally:
         with contextlib.suppress(OSError):
             beside.unlink()
+
+
+def flush(path: Path) -> None:
+    """Flush a file to the disk."""
+    with open(path, "rb+") as stream:
+        os.fsync(stream.fileno())
 
 
 def write_text(path: Path, text: str) -> None:
@@ -304,38 +346,9 @@ def write_private(path: Path, text: str) -> None:
     write_whole(path, write)
 
 
-@contextmanager
-def whole_folder(path: Path) -> Iterator[Path]:
-    """Yield an empty folder that takes the place of `path` at the end; two processes may do so at once.
-
-    Parameters
-    ----------
-    path : pathlib.Path
-        The folder to replace. A failure leaves it as it is.
-
-    Raises
-    ------
-    WorkError
-        If the folder cannot be written.
-    """
-    check_utf_8(path, "folder to write")
-    _check_confined(path.parent, "folder to write")
-    path.parent.mkdir(parents=True, exist_ok=True)
-    with tempfile.TemporaryDirectory(prefix=f".{path.name}.", suffix=".tmp", dir=path.parent) as scratch:
-        new, old = Path(scratch, "new"), Path(scratch, "old")
-        new.mkdir()
-        old.mkdir()
-        yield new
-        for attempt in range(100):  # another process may have put its folder there meanwhile
-            with contextlib.suppress(FileNotFoundError):
-                path.rename(old / str(attempt))
-            try:
-                new.rename(path)
-                return
-            except OSError as exc:
-                if exc.errno not in (errno.ENOTEMPTY, errno.EEXIST):
-                    raise disk_error(exc, path) from exc
-        raise WorkError(f"{path}: other processes replace this folder all the time. Start again when they have ended.")
+def open_here(path: Path | str, mode: str) -> IO[Any]:
+    """Open a file, but no link: where a system cannot refuse links, the check before has to do."""
+    return open(path, mode, opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NOFOLLOW", 0), 0o666))
 
 
 def _interrupt(number: int, frame: FrameType | None) -> None:
@@ -373,7 +386,8 @@ def interrupts_wait_for_files() -> Iterator[None]:
             raise KeyboardInterrupt
 
 
-def _sync_folder(folder: Path) -> None:
+def sync_folder(folder: Path) -> None:
+    """Flush the names of the files of a folder to the disk."""
     with contextlib.suppress(OSError):  # some file systems cannot flush a folder
         handle = os.open(folder, os.O_RDONLY)
         try:

@@ -25,6 +25,7 @@ from trackroller.study.design.growth import doubled
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import load_study
 from trackroller.study.status import status_of
+from trackroller.study.store.plan import study_folder
 
 STUDY = {
     "name": "sure",
@@ -150,7 +151,7 @@ def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
     killed(study, tmp_path / "parts", monkeypatch, (600, 1300))
     parts = grow(study, tmp_path / "parts")
     assert parts.data.drop_attrs().identical(whole.data.drop_attrs()) and looks_of(parts) == found
-    assert status_of(study, tmp_path / "parts").total == design.size == sum(sizes)
+    assert status_of(study, study_folder(study.name, tmp_path / "parts")).total == design.size == sum(sizes)
 
 
 def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
@@ -208,7 +209,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(design, first, tmp_path, monkeypa
     killed(study, tmp_path / "parts", monkeypatch, (0.8 * first, 2.4 * first))
     parts = grow(study, tmp_path / "parts")
     assert parts.data.drop_attrs().identical(whole.data.drop_attrs()) and looks_of(parts) == looks_of(whole)
-    assert status_of(study, tmp_path / "parts").total == whole.data.sizes["case"]
+    assert status_of(study, study_folder(study.name, tmp_path / "parts")).total == whole.data.sizes["case"]
 
 
 def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):

@@ -159,8 +159,8 @@ def test_altered_results_are_named_in_the_list_and_their_pages_refused(tmp_path,
     monkeypatch.chdir(tmp_path)
     mapping = {"name": "two", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
     root = run_study(load_study(mapping), solver=fake_solver.solve).folder.root
-    with sealing(root / "report.html"):
-        (root / "report.html").write_text("sound")
+    with sealing(root / "report.html") as beside:
+        beside.write_text("sound")
     assert listing()[0]["state"] == "done" and page_of("two", "report.html").read_text() == "sound"
     for name in ("report.html", "study.nc"):
         (root / name).write_bytes((root / name).read_bytes()[:-1])

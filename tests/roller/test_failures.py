@@ -17,6 +17,7 @@ from trackroller.roller.options import Options
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
+from trackroller.study.store.plan import study_folder
 
 SLENDER = {"roller_profile_radius": -6.001}  # beyond what fastsim reaches
 POINTS = [[x, 0.5 * (x * x) / -7] for x in np.linspace(-1, 1, 21).tolist()]
@@ -126,7 +127,7 @@ def test_a_study_keeps_the_reasons(tmp_path):
     plan = run_study(study, tmp_path)
     with xr.open_dataset(plan.folder.gathered) as ds:
         assert "slender" in ds["reason"].values[0] and ds["reason"].values[1] == ""
-    (reason,) = status_of(study, tmp_path).by_reason
+    (reason,) = status_of(study, study_folder(study.name, tmp_path)).by_reason
     assert "slender" in reason
 
 

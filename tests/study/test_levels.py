@@ -11,6 +11,7 @@ from trackroller.study.design.levels import short
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
+from trackroller.study.store.plan import study_folder
 
 POINTS = [[float(x), -0.01 * x * x] for x in range(-5, 6)]
 
@@ -88,7 +89,7 @@ def test_status_tells_failed_profiles_in_words(tmp_path):
         }
     )
     run_study(study, tmp_path)
-    levels = [level for _, level in status_of(study, tmp_path).by_level]
+    levels = [level for _, level in status_of(study, study_folder(study.name, tmp_path)).by_level]
     assert len(levels) == 2 and all(t.startswith("drawn") and t.endswith("361 points") for t in levels)
 
 

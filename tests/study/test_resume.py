@@ -22,6 +22,7 @@ from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 from trackroller.study.store import chunks
 from trackroller.study.store.identity import Cases, chunk_name
+from trackroller.study.store.plan import study_folder
 from trackroller.study.store.planning import working_plan
 
 HERE = Path(__file__).parents[1]
@@ -251,7 +252,7 @@ def test_failed_cases_are_rows_with_a_reason_and_the_rest_goes_on(tmp_path, monk
     assert "no convergence" in str(ds["reason"].sel(axial_force=7.0).values[0])
     assert ds["normal_force"].sel(axial_force=13.0).isnull().all()
     assert int(ds["converged"].sum()) == 60
-    status = status_of(parse_study(data), tmp_path)
+    status = status_of(parse_study(data), study_folder("s", tmp_path))
     assert (status.total, status.done, status.failed) == (64, 64, 4)
     assert status.by_level[("axial_force", "13")] == 2
     before = sum(solved().values())
@@ -302,7 +303,7 @@ def test_results_folder_that_cannot_be_written_is_an_input_error(tmp_path):
 @pytest.mark.parametrize("name", ["study.nc", "design.nc"])
 def test_folder_in_the_place_of_a_file_is_an_input_error(tmp_path, name):
     (tmp_path / "s" / name).mkdir(parents=True)
-    with pytest.raises(InputError, match=rf"{name}.*this is a folder.*Move the folder away"):
+    with pytest.raises(InputError, match=rf"{name}.*is a folder.*Move the folder away"):
         run(DATA, tmp_path)
 
 
@@ -421,13 +422,13 @@ def test_more_samples_leave_the_cases_of_the_smaller_sample_solved(tmp_path, sol
     assert 0 < sum(before.values()) < sum(solved().values()) == cases, "each case of the larger sample once"
     run(data | {"samples": large}, tmp_path)
     assert sum(solved().values()) == cases, "planning again changes nothing"
-    assert status_of(parse_study(data | {"samples": large}), tmp_path).missing == 0
+    assert status_of(parse_study(data | {"samples": large}), study_folder(data["name"], tmp_path)).missing == 0
     assert np.isfinite(ds["normal_force"]).all()
 
 
 def test_a_larger_latin_hypercube_is_drawn_anew_and_the_plan_says_so(tmp_path, solved):
     data = {"name": "g", "outputs": ["forces"], "contact_model": "sliding", "factors": SAMPLED, "design": "lhs"}
     run(data | {"samples": 10}, tmp_path)
-    told = status_of(parse_study(data | {"samples": 20}), tmp_path).unused
+    told = status_of(parse_study(data | {"samples": 20}), study_folder("g", tmp_path)).unused
     assert told.startswith("10 solved cases") and "lhs draws each number of samples anew" in told
     assert "Design sobol keeps its rows" in told

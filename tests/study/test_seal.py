@@ -22,7 +22,7 @@ from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import chunk_name
 from trackroller.study.store.inventory import take_inventory
-from trackroller.study.store.seal import altered, recorded, sealing
+from trackroller.study.store.seal import altered, put_text, recorded, sealing
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
 TABLE = "axial_force,friction_coefficient\n" + "".join(f"{20 + i},0.1\n" for i in range(12))
@@ -164,9 +164,9 @@ def test_results_written_just_before_an_interrupt_do_not_look_altered(tmp_path, 
     _grow(7)
     folder = StudyFolder(Path("results/grown"))
     build_report(folder)
-    with pytest.raises(KeyboardInterrupt), sealing(folder.gathered):
+    with pytest.raises(KeyboardInterrupt), sealing(folder.gathered) as beside:
         data = xr.load_dataset(folder.gathered)
-        data.assign_attrs(date="later").to_netcdf(folder.gathered)
+        data.assign_attrs(date="later").to_netcdf(beside)
         raise KeyboardInterrupt
     build_report(folder)
     assert damaged_files(folder.root) == {}
@@ -236,8 +236,7 @@ def test_a_report_of_earlier_results_leaves_the_crate_and_the_figures(tmp_path, 
 def test_a_result_that_is_written_while_it_is_checked_does_not_look_altered(tmp_path, monkeypatch):
     path = tmp_path / "study.nc"
     for text in ("old", "new"):
-        with sealing(path):
-            path.write_text(text)
+        put_text(path, text)
     now = recorded(path)
     records = iter([{"study.nc": "0" * 64}, now, now])
     monkeypatch.setattr("trackroller.study.store.seal.recorded", lambda path: next(records))

@@ -24,8 +24,9 @@ from trackroller.errors import InputError
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import sources
-from trackroller.study.store.folder import STORE_FORMAT, StudyFolder, _digest
-from trackroller.study.store.seal import METADATA, sealing
+from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
+from trackroller.study.store.ownership import METADATA, record_digest
+from trackroller.study.store.seal import sealing
 
 STORED = Path(__file__).parents[1] / "data" / "sealed_study.zip"
 STUDY = EDITED.replace("name: edited", "name: sealed")
@@ -50,8 +51,8 @@ def sealed_anew(path: Path):
     """Write a result with its record, and keep the description of the folder, which `sealing` removes."""
     description = path.parent / METADATA
     kept = description.read_bytes()
-    with sealing(path):
-        yield
+    with sealing(path) as beside:
+        yield beside
     description.write_bytes(kept)
 
 
@@ -59,13 +60,13 @@ def rewrite(root: Path, number: int | None) -> None:
     """Give plan and results another format, sealed as the version that wrote them would have sealed them."""
     record = json.loads((root / "plan.json").read_text())
     record.pop("digest")
-    with sealed_anew(root / "study.nc"):
+    with sealed_anew(root / "study.nc") as beside:
         data = xr.load_dataset(root / "study.nc")
         data.attrs |= {"store_format": number} if number else {}
         data.attrs = {key: value for key, value in data.attrs.items() if number or key != "store_format"}
-        data.to_netcdf(root / "study.nc")
+        data.to_netcdf(beside)
     record = {k: v for k, v in record.items() if k != "store_format"} | ({"store_format": number} if number else {})
-    (root / "plan.json").write_text(json.dumps({**record, "digest": _digest(record)}))
+    (root / "plan.json").write_text(json.dumps({**record, "digest": record_digest(record)}))
 
 
 def forces(root: Path) -> np.ndarray:
@@ -125,12 +126,12 @@ def test_rerun_solves_every_case_again_and_compares_what_is_stored(sealed):
 
 
 def test_rerun_names_each_variable_that_differs(sealed):
-    with sealed_anew(sealed / "study.nc"):
+    with sealed_anew(sealed / "study.nc") as beside:
         data = xr.load_dataset(sealed / "study.nc")
         data["normal_force"] = data["normal_force"] * 1.01
         data["slip"][:1] = np.nan
         data["former_output"] = data["slip"]
-        data.to_netcdf(sealed / "study.nc")
+        data.to_netcdf(beside)
     code, out, _ = command(("rerun", "results/sealed", "--results", "again"))
     assert code == 1 and "normal_force: differs by 3.5e-03 of the load" in out
     assert "slip: is missing now, or has other gaps" in out and "former_output: is missing now" in out

@@ -19,6 +19,7 @@ from workflow_place import ROOT, command, copy_program, environment, lay_study, 
 from trackroller.cli.workflow import workflow_config, workflow_plan
 from trackroller.errors import InputError
 from trackroller.study.store.crate import damaged_files, read_crate
+from trackroller.study.store.folder import StudyFolder
 
 
 @pytest.fixture
@@ -143,6 +144,35 @@ def test_an_empty_folder_gets_the_default_study(tmp_path):
     }
     assert (tmp_path / "results" / "default" / "plan.json").is_file()
     assert "loads" in snakemake(tmp_path, "-n", "--config", "study=config/studies/loads.yaml", quiet=())
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("notes.txt", "and holds notes.txt"),
+        ("figures/mine.png", "figures/mine.png"),
+        ("report.html", "report.html"),
+        ("logs/gather.log", "logs/gather.log"),
+        ("inputs -> outside", "is a link"),
+    ],
+)
+def test_files_of_somebody_else_stop_the_workflow_before_it_deletes_them(place, name, said):
+    root, outside = place / "results" / "tiny", place / "outside"
+    outside.mkdir()
+    (outside / "study.yaml").write_text("somebody's")
+    if name != "notes.txt":
+        StudyFolder(root).create()
+    path = root / name.partition(" -> ")[0]
+    path.parent.mkdir(parents=True, exist_ok=True)
+    if " -> " in name:
+        path.symlink_to(outside)
+    else:
+        path.write_text("somebody's")
+    told = snakemake(place, code=1)
+    assert said in told and "Traceback" not in told, told
+    assert (outside if path.is_symlink() else path.parent).is_dir()
+    assert (outside / "study.yaml").read_text() == "somebody's"
+    assert path.is_symlink() or path.read_text() == "somebody's"
 
 
 FOREIGN = """

@@ -24,7 +24,7 @@ from trackroller.analysis.judging import OPTIMUM, Judged, goals_of_search, judge
 from trackroller.analysis.stored_study import solved_results
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
-from trackroller.files import sha256, write_text
+from trackroller.files import sha256
 from trackroller.methods.factor import Factor
 from trackroller.methods.optimise import first_generation, genes_of, next_generation, nondominated_ranks, survivors
 from trackroller.parameters import PARAMETERS
@@ -36,6 +36,7 @@ from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.plan import Plan
+from trackroller.study.store.seal import put_text
 
 TABLE, ELEMENTS = "kalker_table", "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front
@@ -60,7 +61,7 @@ class _Search:
         """Return a study with these designs, which stand in `designs.csv`."""
         path, choices = self.folder.root / "designs.csv", study.drawn.meta["outer"]
         lines = [",".join(choices), *(",".join(repr(float(gene)) for gene in row) for row in genes)]
-        write_text(path, "\n".join(lines) + "\n")
+        put_text(path, "\n".join(lines) + "\n")
         config = study.config.model_copy(update={"table": path.name})
         inputs = study.inputs | {path: ("table", sha256(path))}
         return dataclasses.replace(study, config=config, path=path, inputs=inputs)

@@ -28,6 +28,7 @@ from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.inventory import Inventory
 from trackroller.study.store.labels import labelled
+from trackroller.study.store.ownership import check_readable
 from trackroller.study.store.plan import locate
 from trackroller.study.store.seal import digest_of, read_result
 from trackroller.study.store.sources import solver_digest
@@ -57,8 +58,8 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
     Raises
     ------
     InputError
-        If there is no such file, it holds no study, this version would read its study file differently, or its rows
-        are not those of its design.
+        If there is no such file, it holds no study, this version would read its study file differently, its rows are
+        not those of its design, or the folder holds a link.
     WorkError
         If the file was altered after it was written.
     """
@@ -96,6 +97,8 @@ def solved_results(
 
 def _gathered(path: Path) -> xr.Dataset | None:
     """Return the results in `study.nc`; None for the folder of a study whose plan is not gathered yet."""
+    if path.is_dir():
+        check_readable(path)
     file = StudyFolder(path).gathered if path.is_dir() else path
     planned = StudyFolder(path).record().get("study") if path.is_dir() else None
     if not file.is_file() and planned is None:

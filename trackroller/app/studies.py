@@ -8,10 +8,10 @@ from __future__ import annotations
 import contextlib
 import datetime
 import functools
+import hashlib
 import json
 import math
 import os
-import shutil
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
@@ -22,7 +22,7 @@ from trackroller.analysis.table import StudyView
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, find_beside, read_text, refuse_links, write_text
+from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
@@ -32,11 +32,13 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
+from trackroller.study.store import ownership
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.seal import altered, check_sealed
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
 TEXTS, RESULTS = Path("studies"), Path("results")
+WRITTEN = Path(".trackroller")  # where the page notes which study files it wrote
 MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
 PAGES = ("report.html", "explorer.html")
 _REFUSED: dict[str, Any] = {  # what the list shows of a study with a link in its folder
@@ -81,7 +83,7 @@ def checked(text: str | None = None, study: dict[str, Any] | None = None) -> dic
         out["text"] = write_yaml(study or {}) if text is None else text
         out["study"] = parse_mapping(out["text"], "study file")
         parsed = _study(out["text"])
-        out |= {"plan": plan_rows(parsed, status_of(parsed, RESULTS)), "doubts": parsed.doubts()}
+        out |= {"plan": plan_rows(parsed, status_of(parsed, folder_of(parsed.name))), "doubts": parsed.doubts()}
     except InputError as exc:
         out["errors"] = [{"field": e.field, "line": e.line, "message": str(e)} for e in exc.errors]
     except WorkError as exc:
@@ -120,11 +122,14 @@ def start(text: str) -> dict[str, Any]:
     folder = folder_of(name)
     if _works(name, folder):
         raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
-    write_text(TEXTS / f"{name}.yaml", text)
-    folder.root.mkdir(parents=True, exist_ok=True)
+    folder.create()
+    _write_text(name, text, folder)
     for file in (PROGRESS, PAUSE):
-        (folder.root / file).unlink(missing_ok=True)
-    with open(folder.root / "page.log", "ab") as log:
+        ownership.clear(folder.root / file, folder.root)
+    ownership.make_way(log_file := folder.root / "page.log", folder.root)
+    with open_here(log_file, "ab") as log:
+        log.write(f"trackroller: started {datetime.datetime.now().isoformat(' ', 'seconds')}\n".encode())
+        log.flush()
         _running[name] = subprocess.Popen(
             python("trackroller.app.worker", name),
             stdin=subprocess.DEVNULL,
@@ -133,6 +138,24 @@ def start(text: str) -> dict[str, Any]:
             start_new_session=True,  # Ctrl-C at the server does not reach it
         )
     return {"name": name}
+
+
+def _write_text(name: str, text: str, folder: StudyFolder) -> None:
+    """Write the file of a study, unless somebody has written another one since the page wrote it or read it.
+
+    The page wrote or read what stands in its own record, and what the study was planned from.
+    """
+    path, record = TEXTS / f"{name}.yaml", WRITTEN / "studies.sha256"
+    known = ownership.read_record(record)[1]
+    planned = {one["sha256"] for one in folder.record().get("inputs", {}).values()}
+    if os.path.lexists(path) and (path.is_symlink() or not path.is_file() or path.read_bytes() != text.encode()):
+        if path.is_symlink() or not path.is_file() or sha256(path) not in known.get(path.name, set()) | planned:
+            remedy, wrong = "Give the study another name, or rename the file.", f"has a file {path} from elsewhere"
+            raise InputError("name", name, "a name whose file this page wrote", remedy, wrong)
+    digest = hashlib.sha256(text.encode()).hexdigest()
+    ownership.write_record(record, known | {path.name: known.get(path.name, set()) | {digest}}, current=True)
+    ownership.write_text(path, text)
+    ownership.write_record(record, known | {path.name: {digest}}, current=True)
 
 
 def resume(name: str) -> dict[str, Any]:
@@ -145,6 +168,7 @@ def pause(name: str) -> None:
     folder = folder_of(name)
     if not (_starts(name) or is_held(folder.root / LOCK)):
         raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
+    ownership.make_way(folder.root / PAUSE, folder.root)
     (folder.root / PAUSE).touch()
 
 
@@ -158,7 +182,7 @@ def delete(name: str, confirm: str = "") -> None:
     if not folder.root.is_dir():
         remedy = "It may be deleted already."
         raise InputError("name", name, "a study of this folder", remedy, "is not there")
-    shutil.rmtree(folder.root)
+    ownership.delete_study(folder.create().root)
 
 
 def _works(name: str, folder: StudyFolder) -> bool:
@@ -192,7 +216,7 @@ def _entry(name: str) -> dict[str, Any] | None:
     with contextlib.suppress(OSError, ValueError):
         progress = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
     works = _works(name, folder)
-    if not (works or progress or folder.plan_file.is_file() or folder.gathered.is_file()):
+    if not (works or progress or folder.gathered.is_file() or ownership.is_study(folder.root)):
         return None
     chunks = folder.record().get("chunks", {})
     total = progress.get("total") or sum(chunks.values()) or None
@@ -232,10 +256,18 @@ def _altered(path: Path, newest: float, size: int) -> str:
 
 
 def text_of(name: str) -> dict[str, Any]:
-    """Return the file of a study, as it was written or as it was stored with the results."""
+    """Return the file of a study, as it was written or as it was stored with the results.
+
+    After its folder or its file was renamed, the study has the new name, so that its run goes on there.
+    """
     for path in (TEXTS / f"{check_name(name)}.yaml", folder_of(name).study_file):
         if path.is_file():
-            return {"text": read_text(path, "study file")}
+            text = read_text(path, "study file")
+            with contextlib.suppress(InputError):  # the page shows what is wrong in the file
+                stated = parse_mapping(text, "study file")
+                if stated.get("name", name) != name:
+                    return {"text": write_yaml(stated | {"name": name})}
+            return {"text": text}
     raise InputError("name", name, "a study of this folder", "Choose one of the list.", "is not there")
 
 

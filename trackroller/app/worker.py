@@ -18,8 +18,9 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock, write_text
-from trackroller.study.store.folder import wait_for_lock
+from trackroller.files import confine, interrupts_wait_for_files, refuse_links, try_lock
+from trackroller.study.store.folder import StudyFolder, wait_for_lock
+from trackroller.study.store.ownership import clear, write_text
 
 LOCK, PROGRESS, PAUSE = ".page.lock", ".page.json", ".pause"
 TICK = 0.4  # seconds between two looks for the wish to pause, and between two records of progress
@@ -59,7 +60,7 @@ def _watch(pause: Path) -> None:
     """Interrupt the main thread once the file that asks for a pause is there."""
     while not pause.exists():
         time.sleep(TICK)
-    pause.unlink(missing_ok=True)
+    clear(pause)
     _thread.interrupt_main()
 
 
@@ -73,7 +74,7 @@ def run(name: str) -> None:
     """
     root = Path("results", name)
     refuse_links(root, "results")
-    root.mkdir(parents=True, exist_ok=True)
+    StudyFolder(root).create()
     with open(root / LOCK, "ab") as lock:
         wait_for_lock(lock)  # a look at the lock holds it for a moment
         progress = Progress(root)
@@ -97,10 +98,10 @@ def _work(name: str, progress: Progress) -> None:
     from trackroller.solved import open_study
     from trackroller.study.status import find_study, status_of
 
-    study = find_study(f"studies/{name}.yaml")
-    progress.say(failed=status_of(study).failed)  # in the chunks that an earlier run solved
+    study, folder = find_study(f"studies/{name}.yaml")
+    progress.say(failed=status_of(study, folder).failed)  # in the chunks that an earlier run solved
     plan = run_any(study, started=progress.started, progress=progress.advanced)
-    status = status_of(study)
+    status = status_of(study, folder)
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
     build_report(plan.folder, lambda line: progress.say(step=line))
     progress.say(step="making the explorer")

@@ -25,6 +25,8 @@ if TYPE_CHECKING:
 COMPLETE = ("forces", "contact", "peak_stress", "life")
 CHEAP = ("rating", "bearing", "limits")  # limits that cost nothing beside a complete case
 PRINTED = " --json prints the result as text, and --report writes a page."
+# the first bytes of a file, by the end of its name
+KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b""}
 SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 
@@ -74,16 +76,19 @@ def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Da
 def writable(out: Path) -> Path:
     """Return the file to write for the path that a user gave.
 
-    The target of a symbolic link is written, and the link stays.
+    The target of a symbolic link is written, and the link stays. A file of the same kind is replaced.
 
     Raises
     ------
     InputError
-        If the folder is missing, or `out` is there and is not a regular file.
+        If the folder is missing, or `out` is there and is not a regular file, or a file of another kind.
     """
     target = Path(os.path.realpath(out))
     if target.exists() and not target.is_file():
         raise InputError("--out", str(out), "the path of a regular file", "Give the name of a file to write.")
+    if target.is_file() and not _same_kind(target, out.suffix.lower()):
+        allowed = "a new file, or one of the kind that is written"
+        raise InputError("--out", str(out), allowed, "Give another name.", "is a file of another kind")
     if not target.parent.is_dir():
         wrong = "stands in a folder that does not exist"
         raise InputError("--out", str(out), "a file in a folder", f"Create the folder {target.parent}.", wrong)
@@ -100,6 +105,22 @@ def writable_data(out: Path, otherwise: str = "") -> Path:
         remedy = f"Write {out.stem or 'result'}.nc.{otherwise}"
         raise InputError("--out", str(out), "a file whose name ends in .nc, because it is written as netCDF", remedy)
     return writable(out)
+
+
+def _same_kind(path: Path, suffix: str) -> bool:
+    """Return whether a file is empty, or of the kind that a suffix stands for; netCDF is the default."""
+    with open(path, "rb") as stream:
+        head = stream.read(16).removeprefix(b"\xef\xbb\xbf").lstrip()
+    return not head or head.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF")))
+
+
+def free_for_page(page: Path) -> None:
+    """Refuse to write a page that the user did not name over a file that is no page of this program."""
+    from trackroller.study.store.ownership import is_page  # heavy: as above
+
+    if os.path.lexists(page) and not is_page(page):
+        allowed, wrong = "a new file, or a page that trackroller wrote", "is a file of somebody else"
+        raise InputError("--out", str(page), allowed, "Give another path with -o.", wrong)
 
 
 def writable_page(page: Path) -> Path:
@@ -210,8 +231,11 @@ def run_wear(
             print_line(f"{float(last['travel']):.4g} of {goal:g} km, depth {depth:.3g} um")
 
     before = None
-    if target is not None and target.exists():
+    if target is not None and target.exists() and target.stat().st_size:
         before = read_netcdf(target, "--out", "A run goes on from what the file holds: give another name.")
+        if "next_step" not in before:
+            allowed, wrong = "a new file, or one that `trackroller wear` wrote, to go on from", "holds something else"
+            raise InputError("--out", str(out), allowed, "Give another name.", wrong)
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
@@ -229,7 +253,7 @@ def is_failed(dataset: xr.Dataset) -> bool:
 def plot_target(target: str, settings: list[str] | None, out: Path | None, results: Path) -> None:
     """Draw the case of a case file, or the figures of a study."""
     path = Path(target)
-    if path.suffix in (".yaml", ".yml") and not is_study(path):
+    if path.suffix in (".yaml", ".yml") and not names_study(path):
         from trackroller.report.figures.contact import plot_case
 
         dataset = solve_case(path, settings, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
@@ -240,12 +264,11 @@ def plot_target(target: str, settings: list[str] | None, out: Path | None, resul
     else:
         from trackroller.report.build import draw_solved
         from trackroller.study.status import find_study
-        from trackroller.study.store.plan import study_folder
 
-        folder, drawn = draw_solved(study_folder(find_study(target, results).name, results), out)
+        folder, drawn = draw_solved(find_study(target, results)[1], out)
     print(f"{len(drawn)} figures in {folder}")
 
 
-def is_study(path: Path) -> bool:
+def names_study(path: Path) -> bool:
     """Return True for a study file, which has factors, a base, a name or a design; any other file is a case file."""
     return bool({"factors", "base", "name", "design"} & set(read_mapping(path, "study or case file")))

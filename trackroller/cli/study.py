@@ -10,7 +10,7 @@ from typing import Any, TextIO
 
 import numpy as np
 
-from trackroller.cli.case import case_of, is_study, tell_doubts, writable, writable_page
+from trackroller.cli.case import case_of, free_for_page, names_study, tell_doubts, writable, writable_page
 from trackroller.cli.usage import print_doubts
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
@@ -27,11 +27,13 @@ from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar, shown_steps
 from trackroller.study.repeat import repeat_case
 from trackroller.study.run import run_study
-from trackroller.study.status import Status, find_study, plan_rows, status_of
+from trackroller.study.status import Status, find_folder, find_study, plan_rows, status_of
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.ownership import check, is_study
 from trackroller.study.store.plan import study_folder
 
+EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study
 
 
@@ -63,7 +65,7 @@ def run_with_progress(
 
 def make_report(study: str, results: Path, out: Path | None) -> None:
     """Make analysis, figures and report of a study that was run, and a copy at `out`; or write its cases to `out`."""
-    folder = study_folder(find_study(study, results).name, results)
+    folder = find_study(study, results)[1]
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
     target = out if out is None else writable(out) if table else writable_page(out)
     if target is not None and table:
@@ -91,12 +93,17 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
     from trackroller.report.build import place_of_pages  # heavy: SALib
     from trackroller.solved import open_study
 
-    path = Path(study) if Path(study).exists() else results / study
+    found = find_folder(study, results)
+    path = Path(study) if found is None and Path(study).exists() else results / study if found is None else found.root
     target = out if out is None else writable_page(out)
     if target is not None and target.suffix.lower() == ".pdf":
         raise InputError("--out", str(out), "a file whose name ends in .html; the explorer works in a browser")
     solved, folder = open_study(path), StudyFolder(path if path.is_dir() else path.parent)
-    print(solved.explore(target or place_of_pages(solved, folder) / "explorer.html"))
+    if out is None and is_study(folder.root):
+        folder.create()
+    elif out is None:
+        free_for_page(folder.root / EXPLORER)
+    print(solved.explore(target or place_of_pages(solved, folder) / EXPLORER))
 
 
 def print_best(study: str, results: Path, out: Path | None) -> None:
@@ -105,7 +112,8 @@ def print_best(study: str, results: Path, out: Path | None) -> None:
     from trackroller.solved import open_study
 
     target = out if out is None else writable_page(out)
-    folder = Path(study) if Path(study).is_dir() else study_folder(find_study(study, results).name, results).root
+    found = find_folder(study, results)
+    folder = Path(study) if found is None and Path(study).is_dir() else find_study(study, results)[1].root
     view = open_study(folder).view
     said, table = best_of(view)
     for text in said:
@@ -124,10 +132,10 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     int
         The exit code: 1 if a file of the study is damaged or was altered.
     """
-    path = find_study(study, results)
-    status = status_of(path, results)
+    checked, folder = find_study(study, results)
+    status = status_of(checked, folder)
     print(
-        f"study     {path.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
+        f"study     {checked.name}: {status.total} cases, {status.done} done, {status.missing} missing, "
         f"{status.failed} failed"
     )
     _print_left(status)
@@ -146,8 +154,8 @@ def print_status(study: str, results: Path, figures: bool) -> int:
     if figures:
         from trackroller.report.build import draw_solved  # heavy: matplotlib
 
-        folder, drawn = draw_solved(study_folder(path.name, results))
-        print(f"figures   {len(drawn)} in {folder}")
+        place, drawn = draw_solved(folder)
+        print(f"figures   {len(drawn)} in {place}")
     return int(bool(status.corrupt))
 
 
@@ -165,7 +173,8 @@ def _print_left(status: Status) -> None:
 
 def print_repeat(study: str, case: int, results: Path) -> int:
     """Solve a case again and compare; return the exit code, 0 if no result differs by more than rounding explains."""
-    again = repeat_case(find_study(study, results), case, results)
+    checked, folder = find_study(study, results)
+    again = repeat_case(checked, case, folder)
     print(again.command())
     differs = _print_differences(again.differences)
     if not differs:
@@ -209,8 +218,7 @@ def print_rerun(crate: Path, results: Path) -> int:
     if stored.name not in read_crate(crate) or not stored.is_file():
         raise InputError("crate", str(crate), "a crate that holds study.nc", "Run the study to its end first.")
     study = study_of_crate(crate)
-    if (results / study.name).resolve() == crate.resolve():
-        raise InputError("--results", str(results), "another folder than that of the crate", "Choose a new folder.")
+    _check_unoccupied(study, study_folder(study.name, results))
     plan = run_study(study, results)
     compared = compare_results(stored, plan.folder.gathered)
     differs = _print_differences(compared)
@@ -222,15 +230,25 @@ def print_rerun(crate: Path, results: Path) -> int:
     return int(differs)
 
 
+def _check_unoccupied(study: Study, folder: StudyFolder) -> None:
+    """Refuse a folder that holds anything but the unfinished results of the same study, which is then solved on."""
+    check(folder.root)
+    record = folder.record()
+    begun = record.get("study") in (None, study.merged()) and not folder.gathered.exists()
+    if folder.root.is_dir() and any(folder.root.iterdir()) and not (record and begun):
+        wrong = "stands there already, and stays as it is"
+        raise InputError("--results", str(folder.root), "a new folder", "Choose one with --results.", wrong)
+
+
 def print_plan(
     target: Path | None, results: Path, explain: bool, settings: list[str] | None, no_shortcuts: bool
 ) -> None:
     """Print the plan of a study file, or the stages of a case file or of the paper's example with key=value words."""
-    if target is None or not is_study(target):
+    if target is None or not names_study(target):
         _print_case(target, settings, no_shortcuts)
         return
     study = load_study(target)
-    for name, text in plan_rows(study, status_of(study, results)):
+    for name, text in plan_rows(study, status_of(study, study_folder(study.name, results))):
         print_text(text, name)
     _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
     print_doubts(study.doubts())

@@ -22,6 +22,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.identity import Cases
+from trackroller.study.store.ownership import free_for_workflow
 from trackroller.study.store.plan import Plan, read_plan, study_folder
 from trackroller.study.store.planning import working_plan
 
@@ -97,16 +98,20 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Tell = unheard) -
     Raises
     ------
     InputError
-        If the study is wrong.
+        If the study is wrong, its folder is somebody else's, or a file of somebody else stands where Snakemake would
+        delete it.
     WorkError
         If the study was edited after the main process had planned it.
     """
     study, results = load_study(config["study"], planned=not main), config["results"]
+    folder = study_folder(study.name, results)
+    if main:
+        free_for_workflow(folder.create().root, tell)
     if decides(study):  # its rule plans each generation
-        return Plan(study, study_folder(study.name, results).create(), {}, 0, 0, (), Cases(study))
+        return Plan(study, folder, {}, 0, 0, (), Cases(study))
     if main:
         return _held.enter_context(working_plan(study, results, tell=tell))
-    plan = read_plan(study, study_folder(study.name, results))
+    plan = read_plan(study, folder)
     if plan is None:
         raise WorkError(
             f"study '{study.name}' (or its materials, or the solver) was edited while the workflow runs. This workflow "

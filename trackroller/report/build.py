@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
 import logging
-import shutil
 import tempfile
 from collections.abc import Callable
 from functools import partial
@@ -17,14 +15,14 @@ from trackroller.analysis.sensitivity import analyse
 from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.errors import InputError
-from trackroller.files import interrupts_wait_for_files, whole_folder, write_whole
+from trackroller.files import interrupts_wait_for_files
 from trackroller.report.pages.study import contents, page_text, write_report
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, reporting
-from trackroller.study.store.seal import sealing
+from trackroller.study.store.ownership import PAGES, UNFINISHED, files_below, remove, remove_empty, standing
+from trackroller.study.store.seal import put, sealing
 
 log = logging.getLogger("trackroller")
-UNFINISHED = "unfinished"  # folder in the folder of a study
 
 
 @interrupts_wait_for_files()
@@ -32,7 +30,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     """Write `sensitivity.nc`, `figures/`, `report.html` and the crate beside the gathered results of a study.
 
     Two processes that report on the same study do so one after the other. A study that is not gathered yet gets
-    analysis, figures and report of its solved cases in the folder `unfinished/`, without digests and crate.
+    analysis, figures and report of its solved cases in the folder `unfinished/`, without a crate.
 
     Parameters
     ----------
@@ -49,13 +47,16 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     Raises
     ------
     InputError
-        If no case is solved yet.
+        If no case is solved yet, the folder is somebody else's, or a file of somebody else stands in the place of one.
     WorkError
         If a result was altered after it was written, or the folder cannot be written.
     """
     with reporting(folder, tell):
         results = read_results(folder.root)
         place = place_of_pages(results, folder)
+        for page in (place / name for name in PAGES):
+            if not page.is_dir():
+                standing(page, folder.root)  # a file of somebody else is refused before the work
         tell("analyse the results")
         view = results.view.analysed(write_analysis(results, place / "sensitivity.nc"))
         tell("draw the figures")
@@ -64,15 +65,15 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         report = write_pages(view, place / "figures", place / "report.html")
         if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
             write_crate(folder.root)
-            shutil.rmtree(folder.root / UNFINISHED, ignore_errors=True)
+            for path in files_below(folder.root / UNFINISHED):
+                remove(path, folder.root)
+            remove_empty(folder.root / UNFINISHED)
     return report
 
 
 def place_of_pages(results: StudyResults, folder: StudyFolder) -> Path:
-    """Return the folder for figures and pages of a study: its own, or `unfinished/` in it, which is never sealed."""
-    place = folder.root / UNFINISHED if results.unfinished else folder.root
-    place.mkdir(exist_ok=True)
-    return place
+    """Return the folder for figures and pages of a study: its own, or `unfinished/` in it."""
+    return folder.root / UNFINISHED if results.unfinished else folder.root
 
 
 def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path, list[Any]]:
@@ -108,25 +109,19 @@ def _analysis(indices: Callable[[], xr.Dataset]) -> xr.Dataset:
 def write_analysis(results: StudyResults, out: Path) -> xr.Dataset:
     """Write the sensitivity analysis of a study, or a file that says why there is none, and return it."""
     analysis = _analysis(partial(analyse, results))
-    with _sealed(out):
-        write_whole(out, lambda beside: analysis.to_netcdf(beside))
+    put(out, lambda beside: analysis.to_netcdf(beside))
     return analysis
 
 
-def _sealed(out: Path) -> contextlib.AbstractContextManager[None]:
-    """Record the digests of a result in the folder of a study; any other folder has no records."""
-    return sealing(out) if (out.parent / "plan").is_dir() else contextlib.nullcontext()
-
-
 def draw_figures(view: StudyView, out: Path) -> list[Any]:
-    """Draw all figures of a study and return them; the folder appears whole or not at all."""
+    """Draw all figures of a study and return them; they are put in place when all of them are drawn."""
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    with _sealed(out), whole_folder(out) as beside:
+    with sealing(out) as beside:
+        beside.mkdir()
         return draw_all(view, beside)
 
 
 def write_pages(view: StudyView, figures: Path, out: Path) -> Path:
     """Write the report and its tables, with the figures in a folder, and return the report's path."""
-    with _sealed(out), _sealed(out.with_name("tables")):
-        return write_report(view, figures, out)
+    return write_report(view, figures, out)

@@ -18,7 +18,7 @@ import jinja2
 from markupsafe import Markup, escape
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import write_text, write_whole
+from trackroller.study.store.seal import put, put_text
 
 _KINDS = {".svg": "image/svg+xml", ".png": "image/png"}
 _BROWSERS = ("chromium", "chromium-browser", "google-chrome", "chrome", "msedge")
@@ -104,10 +104,8 @@ def write_page(path: Path, text: str) -> Path:
     """
     check_page(path)
     if path.suffix.lower() == ".pdf":
-        write_whole(path, lambda beside: _print(text, beside))
-    else:
-        write_text(path, text)
-    return path
+        return put(path, lambda beside: _print(text, beside))
+    return put_text(path, text)
 
 
 def _browser() -> str | None:

@@ -13,9 +13,9 @@ import numpy as np
 import pandas as pd
 
 from trackroller.errors import InputError
-from trackroller.files import write_whole
 from trackroller.report import html
 from trackroller.report.tables.table import Table, cell
+from trackroller.study.store.seal import put
 
 
 def export(tables: Sequence[Table], folder: Path) -> list[Path]:
@@ -37,7 +37,7 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
             csv.writer(file).writerows([_inert(value) for value in row] for row in [table.heads, *table.rows])
         paths.append(path)
     book = folder / "tables.xlsx"
-    write_whole(book, lambda beside: _save(beside, tables))
+    put(book, lambda beside: _save(beside, tables))
     return [*paths, book]
 
 
@@ -59,16 +59,14 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     if path.suffix.lower() == ".csv":
         texts = table.select_dtypes(exclude="number")
         inert = table.assign(**{str(name): texts[name].map(_inert) for name in texts})
-        write_whole(path, lambda beside: inert.to_csv(beside, index=False))
-        return path
+        return put(path, lambda beside: inert.to_csv(beside, index=False))
     if path.suffix.lower() != ".xlsx":
         raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
     if len(table) > MOST_ROWS:
         remedy = "Write them as .csv."
         raise InputError("cases", len(table), f"at most {MOST_ROWS:,} cases in a workbook", remedy)
     sheet = Table("cases", "Cases", list(map(str, table.columns)), table.astype(object).to_numpy().tolist())
-    write_whole(path, lambda beside: _save(beside, [sheet]))
-    return path
+    return put(path, lambda beside: _save(beside, [sheet]))
 
 
 def _inert(value: Any) -> Any:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from trackroller.errors import InputError, WorkError
@@ -14,7 +13,8 @@ from trackroller.roller.record import solve_command
 from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import as_planned
 from trackroller.study.store import chunks
-from trackroller.study.store.plan import locate, study_folder
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.plan import locate
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -43,7 +43,7 @@ class Repeat:
         return solve_command(self.case | self.options)
 
 
-def repeat_case(study: Study, number: int, results: Path | str = "results") -> Repeat:
+def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     """Solve a case of a study again and compare it with the stored result.
 
     Parameters
@@ -52,8 +52,8 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
         The checked study.
     number : int
         Number of the case: the variable `case` of `study.nc`.
-    results : path
-        Parent of the study's folder.
+    folder : StudyFolder
+        Its folder.
 
     Returns
     -------
@@ -69,7 +69,6 @@ def repeat_case(study: Study, number: int, results: Path | str = "results") -> R
     """
     from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
-    folder = study_folder(study.name, results)
     study = as_planned(study, folder.record())
     design, inventory, place = locate(study, folder)
     if not 0 <= number < len(place):

@@ -82,8 +82,8 @@ class Runner:
             left, tell, progress = plan.open, self.tell, self.progress
             self.started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in left))
             for name in left:
-                executor = self.executor
-                tell(solve_chunk(plan.folder, name, study.materials, executor=executor, tell=tell, progress=progress))
+                how: dict[str, Any] = {"executor": self.executor, "tell": tell, "progress": progress}
+                tell(solve_chunk(plan.folder, name, study.materials, inputs=study.inputs, **how))
             yield plan
 
     @contextlib.contextmanager

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import datetime
 import json
 import logging
 import time
@@ -12,6 +13,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, ShapeError, WorkError
+from trackroller.files import Reads
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Count, StudyFolder, Tell, locked, unheard
@@ -111,6 +113,7 @@ def solve_chunk(
     executor: Executor = solve_here,
     tell: Tell = log.warning,
     progress: Count = unheard,
+    inputs: Reads | None = None,
 ) -> str:
     """Solve the cases of a chunk and write its file. A killed process loses the chunk that it works on.
 
@@ -128,6 +131,8 @@ def solve_chunk(
         Receives one line for each event that the user should read.
     progress : callable
         Receives the number of cases of each finished block, and how many of them failed.
+    inputs : dict, optional
+        Kind and digest of each file that the study was made from, by its path: none may have been edited.
 
     Returns
     -------
@@ -145,6 +150,7 @@ def solve_chunk(
                 folder.mark(name).touch()
                 return f"chunk {name}: already solved"
             cases = load_cases(folder, name)
+            check_inputs(folder, inputs or {})
             _check_unchanged(folder, cases, database)
             started = time.perf_counter()
             blocks = []
@@ -152,7 +158,8 @@ def solve_chunk(
                 blocks.append(block)
                 progress(*chunks.counts(block))
             spent = time.perf_counter() - started
-            chunk = chunks.join(blocks).sel(case=cases["case"].values)
+            date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
+            chunk = chunks.join(blocks).sel(case=cases["case"].values).assign_attrs({chunks.DATE: date})
             chunks.write(folder.chunk(name), chunk, packed=True)
             folder.mark(name).touch()
             return _summary(chunk, cases.attrs.get("words", f"chunk {name}"), spent)
@@ -170,8 +177,7 @@ def _summary(chunk: xr.Dataset, words: str, spent: float) -> str:
 
 
 def _check_unchanged(folder: StudyFolder, cases: xr.Dataset, database: MaterialDatabase | None) -> None:
-    """Raise `WorkError` unless the inputs, the materials and the solver are those of the plan."""
-    check_inputs(folder)
+    """Raise `WorkError` unless the materials and the solver are those of the plan."""
     if cases.attrs["identity"] != solver_and_materials(load_database() if database is None else database):
         raise WorkError(
             f"{folder.root}: the materials or the solver changed after the study was planned. Start the run again: it "

@@ -20,6 +20,7 @@ from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.ownership import check
 from trackroller.study.store.plan import chunk_size, locate, study_folder, unused_cases
 from trackroller.study.store.seal import altered
 
@@ -80,8 +81,14 @@ class Status:
         return self.missing / self.speed
 
 
-def find_study(study: str, results: Path | str = "results") -> Study:
-    """Find a study by the path of its file, by its results folder, or by its name.
+def find_study(study: str, results: Path | str = "results") -> tuple[Study, StudyFolder]:
+    """Find a study by the path of its file, by its results folder, or by the name of this folder.
+
+    Returns
+    -------
+    tuple of Study and StudyFolder
+        The study and its folder: the folder that was found, whatever the name of the study in it is; for a study file
+        the folder in which `trackroller run` keeps its results.
 
     Raises
     ------
@@ -89,34 +96,45 @@ def find_study(study: str, results: Path | str = "results") -> Study:
         If there is no such study; the message names the known ones.
     """
     path = Path(study)
-    if path.suffix in (".yaml", ".yml") or path.is_file():
-        return load_study(path)
-    folders = [StudyFolder(root) for root in (path, Path(results) / study)]
-    folder = next((f for f in folders if f.plan_file.is_file() or f.study_file.is_file()), None)
+    if path.is_file() or (path.suffix in (".yaml", ".yml") and not path.is_dir()):
+        checked = load_study(path)
+        return checked, study_folder(checked.name, results)
+    folder = find_folder(study, results)
     if folder is None:
         known = sorted(p.parent.name for p in Path(results).glob("*/plan.json"))
         close = nearest(study, known)
         allowed = f"a study file, or a study in {results}/: {', '.join(known) or 'none yet'}"
         raise InputError("study", study, allowed, f"Did you mean '{close}'?" if close else "", "is not there")
-    return study_of_folder(folder)
+    return study_of_folder(folder), folder
 
 
-def status_of(study: Study, results: Path | str = "results") -> Status:
+def find_folder(study: str, results: Path | str = "results") -> StudyFolder | None:
+    """Return the folder of a study by its path or by its name in the results folder, None if there is none."""
+    folders = [StudyFolder(root) for root in (Path(study), Path(results) / study)]
+    return next((f for f in folders if f.plan_file.is_file() or f.study_file.is_file()), None)
+
+
+def status_of(study: Study, folder: StudyFolder) -> Status:
     """Determine the state of a study from its files; nothing is written.
 
     Parameters
     ----------
     study : Study
         The checked study.
-    results : path
-        Parent of the study's folder.
+    folder : StudyFolder
+        Its folder.
 
     Returns
     -------
     Status
         Numbers of cases and the expected time. The time is proportional to the number of cases.
+
+    Raises
+    ------
+    InputError
+        If the folder is somebody else's, or holds a link.
     """
-    folder = study_folder(study.name, results)
+    check(folder.root)
     study = as_planned(study, folder.record())
     _, inventory, place = locate(study, folder)
     solved = np.flatnonzero(place >= 0)

@@ -9,6 +9,7 @@ from trackroller.study.store.folder import StudyFolder
 
 log_to(snakemake.log[0])
 folder = StudyFolder(Path(snakemake.output[0]).parent.parent)
-summary = solve_chunk(folder, snakemake.wildcards.chunk)
+inputs = {Path(path): (kind, digest) for path, (kind, digest) in snakemake.config["inputs"].items()}
+summary = solve_chunk(folder, snakemake.wildcards.chunk, inputs=inputs)
 logging.getLogger("trackroller").info(summary)
 show_progress(folder)

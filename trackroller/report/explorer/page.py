@@ -16,13 +16,13 @@ import numpy as np
 
 from trackroller.analysis.pareto import default_objectives, pareto
 from trackroller.analysis.table import StudyView
-from trackroller.files import write_text
 from trackroller.report.explorer.designs import design_columns
 from trackroller.report.explorer.pack import affordable_rows, extreme_rows, pack, sample_rows
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.html import render
 from trackroller.report.numbers import count, lives_in_years
 from trackroller.study.outputs import flat
+from trackroller.study.store.seal import put_text
 
 MODEL = "contact_model"  # a Pareto set compares designs solved with one model
 POLICY = "@content-security-policy@"  # stands in the templates where the policy is filled in
@@ -145,5 +145,4 @@ def write_explorer(view: StudyView, out: Path) -> Path:
         "notice": view.attrs.get("notice", ""),
         "explorer": explorer(view),
     }
-    write_text(out, secured(render("explorer.html.j2", content)))
-    return out
+    return put_text(out, secured(render("explorer.html.j2", content)))

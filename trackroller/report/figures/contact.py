@@ -24,6 +24,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, patches_of
 from trackroller.report.figures.contact_sections import sections
 from trackroller.report.numbers import number, rounded
+from trackroller.study.store.seal import sealing
 
 ARROWS = (17, 11)  # along the long and the short axis of the patch
 SLENDER = 4.0  # ratio of the axes above which a patch is not drawn to scale
@@ -186,13 +187,15 @@ def plot_case(ds: xr.Dataset, out_dir: Path) -> list[style.FigureInfo]:
     Raises
     ------
     InputError
-        If the data set has several cases.
+        If the data set has several cases, or a file of somebody else stands in the place of a figure.
     """
     if "case" in ds.dims:
         if ds.sizes["case"] != 1:
             raise InputError("ds", f"{ds.sizes['case']} cases", "one case at a time", "Use ds.isel(case=i).")
         ds = ds.isel(case=0)
-    return style.draw_all(figures_of(ds), Path(out_dir))
+    with sealing(Path(out_dir)) as beside:
+        beside.mkdir()
+        return style.draw_all(figures_of(ds), beside)
 
 
 def figures_of(ds: xr.Dataset) -> list[Callable[[], style.Drawn]]:

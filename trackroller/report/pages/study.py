@@ -16,7 +16,6 @@ from trackroller.analysis.looks import UNTIL
 from trackroller.analysis.pareto_designs import study_pareto
 from trackroller.analysis.ranking import headline, robust_design
 from trackroller.analysis.table import StudyView
-from trackroller.files import write_text
 from trackroller.methods import METHODS
 from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
@@ -37,6 +36,7 @@ from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.doubts import doubts
+from trackroller.study.store.seal import put_text, sealing
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -70,8 +70,9 @@ def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
         The path of the report.
     """
     content = contents(view)
-    write_text(Path(out_html), page_text(view, content, figures_dir))
-    export([t for key in PLACES for t in content["tables"][key]], Path(out_html).parent / "tables")
+    put_text(Path(out_html), page_text(view, content, figures_dir))
+    with sealing(Path(out_html).with_name("tables")) as beside:
+        export([t for key in PLACES for t in content["tables"][key]], beside)
     return Path(out_html)
 
 

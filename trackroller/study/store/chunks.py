@@ -16,13 +16,16 @@ import netCDF4
 import numpy as np
 import xarray as xr
 
-from trackroller.files import memory, write_whole
+from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
 from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.ownership import sums_up
+from trackroller.study.store.ownership import write as write_own
 from trackroller.study.store.seal import too_large
 
 FAILED = REGIMES.index("failed")
+DATE = "date_solved"  # attribute of a file: when its cases were solved; a copy of the file may have another date
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
 _LABELS = {"case": "fingerprint of the case", "reason": "why a case failed or misses its tolerance"}
 _SMALL = 64  # cases; smaller files gain nothing from compression
@@ -57,9 +60,14 @@ def counts(block: xr.Dataset) -> tuple[int, int]:
 
 
 def join(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
-    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up."""
+    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up.
+
+    The date is that of the newest block.
+    """
     blocks = list(blocks)
-    return joined(blocks).assign_attrs(seconds=sum(block.attrs.get("seconds", 0.0) for block in blocks))
+    seconds = sum(block.attrs.get("seconds", 0.0) for block in blocks)
+    date = max((block.attrs.get(DATE, "") for block in blocks), default="")
+    return joined(blocks).assign_attrs({"seconds": seconds, DATE: date})
 
 
 def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
@@ -76,7 +84,7 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
         with open(beside, "ab") as stream:
             stream.write(digest)
 
-    write_whole(path, save)
+    write_own(path, save)
 
 
 @contextlib.contextmanager
@@ -89,7 +97,7 @@ def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     if path.stat().st_size > memory():
         raise CorruptFile(path, "it is larger than the memory")
     content = path.read_bytes()
-    if hashlib.sha256(content[:-32]).digest() != content[-32:]:
+    if not sums_up(content):
         raise CorruptFile(path, "its content does not fit its checksum")
     with netCDF4.Dataset(path.name, memory=content[:-32]) as file:
         if excess := too_large(file, len(content)):
@@ -117,7 +125,8 @@ def read_state(path: Path) -> xr.Dataset:
     """Read regime and reason of solved cases alone, which is much faster than `read`."""
     with _opened(path) as (file, cases):
         state = {name: ("case", file[name][:]) for name in ("regime", "reason")}
-        return xr.Dataset(state, {"case": cases}, {"seconds": float(file.seconds)})
+        date = getattr(file, DATE, "")
+        return xr.Dataset(state, {"case": cases}, {"seconds": float(file.seconds), DATE: str(date)})
 
 
 def read_sound(

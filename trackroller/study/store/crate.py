@@ -20,12 +20,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.errors import InputError
-from trackroller.files import sha256, write_text
+from trackroller.files import sha256
 from trackroller.roller.differences import Difference, compare
+from trackroller.study.store import ownership
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.ownership import METADATA
 from trackroller.study.store.provenance import versions
-from trackroller.study.store.seal import METADATA, REPORT, check_sealed, files_of, read_result, recorded, sealing
+from trackroller.study.store.seal import REPORT, check_sealed, put_text, read_result, recorded
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -58,13 +60,10 @@ def write_crate(root: Path) -> Path:
     study = study_of_folder(StudyFolder(root))
     # a user may delete what a report made: `trackroller report` makes it again
     kept = [*DATA, *(name for name in REPORT if (root / name).exists())]
-    results = [root / name for name in kept if recorded(root / name) is not None]
-    inputs, written = files_of(root / INPUTS), [file for path in results for file in files_of(check_sealed(path))]
-    graph = _graph(study, root, *([file.relative_to(root).as_posix() for file in files] for files in (inputs, written)))
+    inputs, *results = (sorted(recorded(check_sealed(root / name)) or ()) for name in (INPUTS, *kept))
+    graph = _graph(study, root, inputs, [name for names in results for name in names])
     text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
-    with sealing(root / METADATA):
-        write_text(root / METADATA, text)
-    return root / METADATA
+    return put_text(root / METADATA, text)
 
 
 def _entry(place: str, kind: str | list[str], **more: Any) -> dict[str, Any]:
@@ -133,6 +132,7 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
     WorkError
         If the metadata file was altered after it was written.
     """
+    ownership.check_readable(Path(root))
     path = check_sealed(Path(root) / METADATA)
     try:
         graph = json.loads(path.read_text(encoding="utf-8"))["@graph"]

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import contextlib
 import errno
-import hashlib
 import json
-import shutil
+import os
 import time
+import warnings
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import IO, Any
 
 from trackroller.errors import InputError
-from trackroller.files import check_utf_8, disk_error, try_lock, write_text
+from trackroller.files import check_utf_8, disk_error, open_here, try_lock
+from trackroller.study.store import ownership
+from trackroller.study.store.ownership import MADE_BY, record_digest
 from trackroller.study.store.seal import is_sealed, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
@@ -29,16 +31,18 @@ def unheard(*facts: object) -> None:
 
 
 class StudyFolder:
-    """Paths of the files of one study, `results/NAME/`.
+    """Paths of the files of one study, `results/NAME/`; a folder that was renamed is the same study.
 
     Attributes
     ----------
+    root : pathlib.Path
+        The folder, which may be a link.
     design, gathered : pathlib.Path
         The cases of the study, and its gathered results.
     inputs, study_file : pathlib.Path
         Folder with the files that the study was made from, and the study file in it, with every default written out.
     plan_file : pathlib.Path
-        The record of the plan: its chunks, and the study and inputs that it was made from.
+        The record of the plan: its chunks, and the study and inputs that it was made from. It marks the folder as ours.
     lock : pathlib.Path
         Lock that processes share while they work from the plan; only its sole holder may change the plan.
     """
@@ -67,8 +71,9 @@ class StudyFolder:
         return self.root / "chunks" / f"{chunk}.nc"
 
     def solved_files(self) -> list[Path]:
-        """Return the files with results of solved cases."""
-        return sorted((self.root / "chunks").glob("*.nc"))
+        """Return the files with results of solved cases; files with names that no chunk has do not count."""
+        paths = sorted((self.root / "chunks").glob("*.nc"))
+        return [path for path in paths if ownership.CASES.fullmatch(f"chunks/{path.name}") and path.is_file()]
 
     def lost_files(self) -> list[Path]:
         """Return the files with solved cases that the plan counts on and that are gone."""
@@ -78,7 +83,7 @@ class StudyFolder:
         return [path for path in paths if not path.is_file()]
 
     def create(self) -> StudyFolder:
-        """Create the folders of the study.
+        """Create the folders of the study and mark them as ours.
 
         Returns
         -------
@@ -88,15 +93,16 @@ class StudyFolder:
         Raises
         ------
         InputError
-            If the path exists and is not a folder.
+            If the path exists and is not a folder, or the folder is somebody else's or holds a link.
         WorkError
             If the folder cannot be written.
         """
         check_utf_8(self.root.absolute(), "results folder")
+        ownership.check(self.root)
         try:
             for name in ("plan", "chunks"):
                 (self.root / name).mkdir(parents=True, exist_ok=True)
-            with open(self.lock, "a"):
+            with open_here(self.lock, "a"):
                 pass
         except OSError as exc:
             if exc.errno in NO_FOLDER:
@@ -104,16 +110,33 @@ class StudyFolder:
                 remedy = "Choose another with --results."
                 raise InputError("results folder", str(self.root), "the path of a folder", remedy, wrong) from None
             raise disk_error(exc, self.root) from None
+        self._mark()
         return self
+
+    def _mark(self) -> None:
+        """Write the mark of a new folder; give a folder of an earlier version its mark and records.
+
+        Only the sole holder of the lock does so, unless a process of an earlier version holds it.
+        """
+        for _ in range(100):
+            known = ownership.mark(self.root)
+            if MADE_BY.items() <= known.items():
+                return
+            with open(self.lock, "rb+") as lock:
+                if not try_lock(lock):
+                    time.sleep(0.05)
+                    continue
+                ownership.adopt(self.root)
+                if known.get("store_format") == STORE_FORMAT:
+                    self.write_record({key: value for key, value in known.items() if key != "store_format"})
+                elif not os.path.lexists(self.plan_file):
+                    self.write_record({})
+                return
 
     def record(self) -> dict[str, Any]:
         """Return the record of the plan; {} if there is none, it was altered, or its format is not this version's."""
-        try:
-            record = json.loads(self.plan_file.read_text(encoding="utf-8"))
-            sound = record.pop("digest") == _digest(record) and record.pop("store_format") == STORE_FORMAT
-            return record if sound else {}
-        except (OSError, ValueError, TypeError, KeyError, AttributeError, RecursionError):
-            return {}
+        record = ownership.mark(self.root)
+        return record if record.pop("store_format", None) == STORE_FORMAT else {}
 
     @property
     def of_another_solver(self) -> bool:
@@ -127,14 +150,11 @@ class StudyFolder:
             text = read_result(self.gathered).attrs.get("study")
         return {} if text is None else parse_mapping(text, str(self.plan_file))
 
-    def write_record(self, record: Mapping[str, Any]) -> None:
-        """Write the record of the plan with its digest."""
-        stored = {"store_format": STORE_FORMAT, **record}
-        write_text(self.plan_file, json.dumps({**stored, "digest": _digest(stored)}) + "\n")
-
-
-def _digest(record: Mapping[str, Any]) -> str:
-    return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
+    def write_record(self, record: Mapping[str, Any], tell: Tell = warnings.warn) -> None:
+        """Write the record of the plan with its digest, and the mark that the folder is ours."""
+        stored = {"store_format": STORE_FORMAT, **MADE_BY, **record}
+        text = json.dumps({**stored, "digest": record_digest(stored)}) + "\n"
+        ownership.write(self.plan_file, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"), tell)
 
 
 def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = None) -> None:
@@ -152,7 +172,7 @@ def locked(path: Path, shared: bool = False, tell: Tell | None = None) -> Iterat
 
     A file with content is never locked: on Windows a lock keeps every reader out, even the process that holds it.
     """
-    with open(path, "ab") as stream:
+    with open_here(path, "ab") as stream:
         wait_for_lock(stream, shared, tell)
         yield
 
@@ -162,12 +182,3 @@ def reporting(folder: StudyFolder, tell: Tell | None = None) -> Iterator[None]:
     """Keep others from making a report, gathering results and changing the plan."""
     with locked(folder.create().lock, shared=True), locked(folder.lock.with_name(".report"), tell=tell):
         yield
-
-
-def sweep(folder: StudyFolder) -> None:
-    """Remove temporary files and folders of killed processes; only the sole holder of the lock may call this."""
-    for path in (*folder.root.glob(".*.tmp"), *folder.root.glob("*/.*.tmp")):
-        if path.is_dir():
-            shutil.rmtree(path, ignore_errors=True)
-        else:
-            path.unlink(missing_ok=True)

@@ -9,18 +9,19 @@ from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any
 
+import netCDF4
 import numpy as np
 import xarray as xr
 
 from trackroller.errors import WorkError
-from trackroller.files import reserve, sha256, write_whole
+from trackroller.files import reserve, sha256
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
 from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan
-from trackroller.study.store.seal import forget_report, is_sealed, recorded, sealing
+from trackroller.study.store.seal import forget_report, is_sealed, put, recorded
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
@@ -31,8 +32,7 @@ def write_design(plan: Plan) -> None:
     title = f"Cases of the parameter study '{plan.study.name}' of locating-bearing track rollers"
     described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
     encoding = {str(name): {"_FillValue": None} for name in described.variables}
-    with sealing(path):
-        write_whole(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
+    put(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
 
 
 def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = None) -> Path:
@@ -72,20 +72,33 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
         damaged = "".join(f" Corrupt: {why}." for why in inventory.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
-    last = max(path.stat().st_mtime for path in inventory.paths)  # so that equal results are equal files
-    date = datetime.datetime.fromtimestamp(last, datetime.UTC).isoformat(timespec="seconds")
+    date = inventory.states.attrs[chunks.DATE] or _earlier_date(plan, inventory)  # equal results are equal files
 
     def save(beside: Path) -> None:
         results = labelled(study, study.drawn, design, collect(inventory, place, folder.root))
         results.assign_attrs({"date_created": date} | dict(attrs or {})).to_netcdf(beside, engine="netcdf4")
 
     before = recorded(folder.gathered) or {}
-    with reporting(folder), sealing(folder.gathered):
-        write_whole(folder.gathered, save)
+    with reporting(folder):
+        put(folder.gathered, save)
         if sha256(folder.gathered) not in before.values():
             forget_report(folder.root)
     tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered
+
+
+def _earlier_date(plan: Plan, inventory: Inventory) -> str:
+    """Return when cases were solved whose files do not tell it, as those of an earlier version: as gathered before.
+
+    The dates of the files count only if the study was not gathered yet: those of a copy may be others.
+    """
+    path = plan.folder.gathered
+    if is_sealed(path):
+        with netCDF4.Dataset(path) as file:
+            if getattr(file, "study", None) == plan.study.merged():
+                return str(file.date_created)
+    last = max(path.stat().st_mtime for path in inventory.paths)
+    return datetime.datetime.fromtimestamp(last, datetime.UTC).isoformat(timespec="seconds")
 
 
 def collect(found: Inventory, place: np.ndarray, scratch: Path) -> xr.Dataset:

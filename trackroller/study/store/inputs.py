@@ -2,22 +2,23 @@
 
 Each input is read once, when the study is loaded, and its SHA-256 is noted at that moment. `inputs/` receives the bytes
 with this digest. A study file is stored with every default written out, beside the file as the user wrote it in
-`inputs/given/`.
+`inputs/given/`. Where the files lie is not stored.
 """
 
 from __future__ import annotations
 
-import functools
 import hashlib
 from pathlib import Path
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import noted_reads, sha256, write_whole
+from trackroller.files import Reads, noted_reads, sha256
 from trackroller.materials import builtin_database, load_database
 from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
+from trackroller.study.store import ownership
 from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.seal import altered, recorded, sealing
 
 MATERIALS = "materials.yaml"
 
@@ -35,38 +36,35 @@ def store_inputs(study: Study, folder: StudyFolder) -> dict[str, dict[str, str]]
     Returns
     -------
     dict
-        For each file in `inputs/`: its `sha256`, and the `path` of the file that it is a copy of, '' for none.
+        For each file in `inputs/` its `sha256`.
 
     Raises
     ------
+    InputError
+        If a file of somebody else stands in the place of an input.
     WorkError
         If an input was edited after the study was loaded, or the folder cannot be written.
     """
-    stored = {}
+    contents = {}
     for path, (kind, digest) in study.inputs.items():
         content = path.read_bytes() if path.is_file() else b""
         _compare(path, digest, hashlib.sha256(content).hexdigest())
         names = {"table": path.name, "materials file": MATERIALS, "limit": f"limits/{path.name}"}
-        name = names.get(kind, f"given/{digest[:8]}-{path.name}")
-        stored[name] = {"sha256": digest, "path": str(path)}
-        _write(folder.inputs / name, digest, content)
+        contents[names.get(kind, f"given/{digest[:8]}-{path.name}")] = content
     table = None if study.config.table is None else Path(study.config.table).name
-    text = study.merged(table=table).encode()
-    stored[folder.study_file.name] = {"sha256": hashlib.sha256(text).hexdigest(), "path": ""}
-    _write(folder.study_file, stored[folder.study_file.name]["sha256"], text)
-    for old in folder.inputs.rglob("*"):
-        if old.is_file() and old.relative_to(folder.inputs).as_posix() not in stored:
-            old.unlink()
-    return stored
+    contents[folder.study_file.name] = study.merged(table=table).encode()
+    stored = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
+    known = {f"{folder.inputs.name}/{name}": digest for name, digest in stored.items()}
+    if recorded(folder.inputs) != known or altered(folder.inputs):
+        with sealing(folder.inputs) as beside:
+            for name, content in contents.items():
+                (beside / name).parent.mkdir(parents=True, exist_ok=True)
+                (beside / name).write_bytes(content)
+    return {name: {"sha256": digest} for name, digest in stored.items()}
 
 
-def _write(path: Path, digest: str, content: bytes) -> None:
-    if not path.is_file() or sha256(path) != digest:
-        write_whole(path, functools.partial(Path.write_bytes, data=content))
-
-
-def check_inputs(folder: StudyFolder) -> None:
-    """Compare the files that a study was made from with the digests in its record.
+def check_inputs(folder: StudyFolder, inputs: Reads) -> None:
+    """Compare the files that a study was made from with their digests when the study was loaded.
 
     An edited study file that says the same, as after an edit of a comment, counts as unchanged.
 
@@ -75,12 +73,10 @@ def check_inputs(folder: StudyFolder) -> None:
     WorkError
         If a file was edited or removed; the message has both digests.
     """
-    record = folder.record()
-    for stored in record.get("inputs", {}).values():
-        path = Path(stored["path"])
+    for path, (_, digest) in inputs.items():
         now = sha256(path) if path.is_file() else "no file"
-        if stored["path"] and now != stored["sha256"] and not _says_the_same(path, record["study"]):
-            _compare(path, stored["sha256"], now)
+        if now != digest and not _says_the_same(path, folder.record().get("study", "")):
+            _compare(path, digest, now)
 
 
 def _says_the_same(path: Path, study: str) -> bool:
@@ -110,6 +106,7 @@ def study_of_folder(folder: StudyFolder) -> Study:
         If the study file is not accepted.
     """
     record = folder.record()
+    ownership.check(folder.root)
     if not record and folder.plan_file.exists():
         raise WorkError(
             f"{folder.plan_file} was altered or damaged (its digest differs), or another version wrote it. Start "

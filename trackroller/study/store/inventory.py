@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from trackroller.study.store import chunks
+from trackroller.study.store import chunks, ownership
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import chunk_name
 
@@ -21,7 +21,8 @@ class Inventory:
     ----------
     states : xarray.Dataset
         `regime` (code of `REGIMES`), `reason` of a failure, `file` (index into `paths`) and `row` in that file, along
-        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s].
+        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s], and
+        `date_solved` the time at which the last case was solved, '' if an earlier version has solved all of them.
     paths : list of pathlib.Path
         Sound files.
     corrupt : dict
@@ -70,5 +71,5 @@ def forget_failed(folder: StudyFolder, found: Inventory) -> int:
         solved = block.isel(case=(block["regime"] != chunks.FAILED).values)
         if solved.sizes["case"]:
             chunks.write(folder.chunk(chunk_name(solved["case"].values)), solved, packed=True)
-        found.paths[number].unlink(missing_ok=True)
+        ownership.remove(found.paths[number], folder.root)
     return len(failed)

@@ -30,6 +30,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
 from trackroller.study.store.inventory import Inventory, take_inventory
+from trackroller.study.store.ownership import MADE_BY
 from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
@@ -77,7 +78,7 @@ class Plan:
 
 
 def study_folder(study_name: str, results: Path | str = "results") -> StudyFolder:
-    """Return the folder of a study's results."""
+    """Return the folder in which a run of a study keeps its results."""
     return StudyFolder(Path(results) / check_name(study_name))
 
 
@@ -230,6 +231,7 @@ def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
 def record_of(plan: Plan, inputs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the record of a plan, which `read_plan` reads: what it was made from, and its chunks."""
     return {
+        **MADE_BY,
         "key": plan_key(plan.study),
         "solver_digest": solver_digest(),
         "name": plan.study.name,

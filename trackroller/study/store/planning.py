@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError, WorkError
 from trackroller.files import try_lock
-from trackroller.study.store.folder import StudyFolder, Tell, sweep, unheard, wait_for_lock
+from trackroller.study.store import ownership
+from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder, unused_cases
-from trackroller.study.store.seal import altered, discard
+from trackroller.study.store.seal import discard
+from trackroller.yaml_file import parse_mapping
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -48,7 +50,8 @@ def working_plan(
     Raises
     ------
     InputError
-        If the design holds an invalid case, or the results folder cannot be a folder.
+        If the design holds an invalid case, the results folder cannot be a folder or is somebody else's, or a file of
+        somebody else stands in the place of a result.
     WorkError
         If another process works on another version of the study, an input was edited after the study was loaded, or the
         folder cannot be written.
@@ -72,7 +75,9 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
     """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
-    _remove_altered(folder, tell)
+    _check_same_study(study, folder)
+    for path in (folder.design, folder.gathered, folder.root / ownership.METADATA):
+        ownership.make_way(path, folder.root, lambda line: tell(f"{line}, and made anew"))
     inventory = _sound_inventory(folder, tell)
     if rerun_failed:
         tell(f"{forget_failed(folder, inventory)} failed cases are solved again")
@@ -87,41 +92,44 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
         ):
             tell(unused)
         discard(folder.design)
-    _keep(plan)
+    _keep(plan, tell)
     return plan
 
 
-def _remove_altered(folder: StudyFolder, tell: Tell) -> None:
-    """Remove design and gathered results unless they are as they were written; they are made anew."""
-    for path in (folder.design, folder.gathered):
-        if path.is_dir():
-            raise InputError(path.name, str(path), "a file", "Move the folder away.", "is a folder")
-        if path.exists() and altered(path):
-            tell(f"{path} is truncated or was altered (its SHA-256 differs): it is made anew")
-            discard(path)
+def _check_same_study(study: Study, folder: StudyFolder) -> None:
+    """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
+    earlier, now = folder.earlier(), parse_mapping(study.merged(), "study file")
+    other = earlier.get("name", study.name)
+    if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
+        remedy = "Give this study another name, choose another --results, or rename the folder."
+        wrong = f"holds the study '{other}', which has other inputs"
+        raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
 
 
 def _sound_inventory(folder: StudyFolder, tell: Tell) -> Inventory:
-    """Return the solved cases after damaged and temporary files are removed."""
+    """Return the solved cases after damaged files are moved away and temporary files are removed."""
     inventory = take_inventory(folder)
     for path, why in inventory.corrupt.items():
-        tell(f"corrupt results, their cases are solved again: {why}")
-        path.unlink(missing_ok=True)
-    sweep(folder)
+        kept = ownership.set_aside(folder.root, path)
+        tell(f"corrupt results, their cases are solved again, and the file is kept as {kept}: {why}")
+    ownership.sweep(folder.root)
     return inventory
 
 
-def _keep(plan: Plan) -> None:
+def _keep(plan: Plan, tell: Tell) -> None:
     """Write the record of a plan after its inputs, and remove the files of earlier plans."""
     folder = plan.folder
     record = record_of(plan, store_inputs(plan.study, folder))
     if record != folder.record():
-        folder.write_record(record)
+        folder.write_record(record, tell)
     for path in folder.lock.parent.iterdir():
-        if path.suffix in (".nc", ".solved", ".lock") and path.stem not in plan.chunks:
-            path.unlink(missing_ok=True)
+        of_chunk = path.suffix in (".nc", ".solved", ".lock") and not path.name.startswith(".")
+        if of_chunk and path.stem not in plan.chunks:
+            ownership.remove(path, folder.root)
     for name in plan.chunks:
+        mark = folder.mark(name)
+        ownership.make_way(mark, folder.root)
         if not folder.chunk(name).is_file():
-            folder.mark(name).unlink(missing_ok=True)
-        elif not folder.mark(name).is_file():  # a mark keeps its date, on which the workflow's rules depend
-            folder.mark(name).touch()
+            mark.unlink(missing_ok=True)
+        elif not mark.is_file():  # a mark keeps its date, on which the workflow's rules depend
+            mark.touch()

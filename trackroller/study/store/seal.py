@@ -1,8 +1,9 @@
 """Record the digests of results, and compare a result with its digest before it is read.
 
 The SHA-256 of each result stands in `plan/NAME.sha256`, in the format of `sha256sum`; a folder such as `figures/` has a
-line for each file. A result without such a record is compared with the RO-Crate beside it, if there is one. A lone
-netCDF file has neither and is read as it is.
+line for each file. The record also says that the result is ours, see `trackroller.study.store.ownership`. A result
+without such a record is compared with the RO-Crate beside it, if there is one. A lone netCDF file has neither and is
+read as it is.
 """
 
 from __future__ import annotations
@@ -10,25 +11,29 @@ from __future__ import annotations
 import contextlib
 import json
 import math
-from collections.abc import Iterator
+import os
+import shutil
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import netCDF4
 import xarray as xr
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import memory, sha256, write_text
+from trackroller.files import check_place, disk_errors, flush, memory, scratch_name, sha256, sync_folder
+from trackroller.study.store import ownership
+from trackroller.study.store.ownership import METADATA, read_record, write_record
 
-METADATA = "ro-crate-metadata.json"
 ANY_BYTES = 1_000_000_000  # any file may declare so many bytes
 MOST_PACKED = 200  # bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
 TEXT_BYTES = 100  # of a text in memory
 REPORT = ("sensitivity.nc", "report.html", "figures", "tables")  # what is made from study.nc
 
 
-def _record(path: Path) -> Path:
-    """Return the file with the digests of a result."""
-    return path.parent / "plan" / f"{path.name}.sha256"
+def _place(path: Path) -> tuple[Path, Path]:
+    """Return the folder that the record of a result names files from, and the record."""
+    root = ownership.root_of(path) or path.parent
+    return root, ownership.record_of(root, path)
 
 
 def files_of(path: Path) -> list[Path]:
@@ -38,42 +43,115 @@ def files_of(path: Path) -> list[Path]:
 
 
 @contextlib.contextmanager
-def sealing(path: Path) -> Iterator[None]:
-    """Record the digests of a result that is written within this context.
+def sealing(path: Path) -> Iterator[Path]:
+    """Yield a temporary path; what is made there takes the place of a result, and its digests are recorded.
 
-    The earlier record is removed first, so that a process stopped in between leaves a result without a record, not one
-    that looks altered. The description of the folder goes with data that it describes: it is written last of all.
+    Of a folder, each file is put in place; files that the folder holds beside stay. The record names old and new files
+    before the first is replaced, so that a process stopped in between leaves neither a result that looks altered nor a
+    file that looks like somebody else's. The description of the study goes with data that it describes: it is written
+    last of all. Outside of a study, a lone file has no record.
+
+    Raises
+    ------
+    InputError
+        If a link, or a file of somebody else, stands in the place of a file.
+    WorkError
+        If the files cannot be written.
     """
-    _record(path).unlink(missing_ok=True)
-    if path.suffix == ".nc":
-        for of_crate in (path.parent / METADATA, _record(path.parent / METADATA)):
-            of_crate.unlink(missing_ok=True)
-    yield
-    lines = [f"{sha256(file)}  ../{file.relative_to(path.parent).as_posix()}\n" for file in files_of(path)]
-    write_text(_record(path), "".join(lines))
+    check_place(path, "file to write")
+    root, beside = ownership.root_of(path), scratch_name(path)
+    if root is not None:
+        ownership.adopt(root)
+        ownership.note(root, beside)
+    try:
+        with disk_errors(path):
+            path.parent.mkdir(parents=True, exist_ok=True)
+        yield beside
+        with disk_errors(path):
+            _put(path, beside, root)
+    finally:
+        if beside.is_dir():
+            shutil.rmtree(beside, ignore_errors=True)
+        with contextlib.suppress(OSError):
+            beside.unlink(missing_ok=True)
+
+
+def _put(path: Path, beside: Path, root: Path | None) -> None:
+    """Put what was made at a temporary path in the place of a result."""
+    folder = beside.is_dir()
+    if root is None and not folder:
+        flush(beside)
+        os.replace(beside, path)
+        sync_folder(path.parent)
+        return
+    home = root or path  # a folder of figures in no study keeps its own record
+    record = ownership.record_of(root, path) if root else path / ownership.LONE
+    files = ownership.files_below(beside) if folder else [beside]
+    made = {path / file.relative_to(beside) if folder else path: file for file in files}
+    digests = {goal: sha256(file) for goal, file in made.items()}
+    for goal, digest in digests.items():
+        ownership.standing(goal, home, digest)
+    new = {goal.relative_to(home).as_posix(): {digest} for goal, digest in digests.items()}
+    ownership.make_way(record, home)
+    old = read_record(record)[1]
+    write_record(record, {name: old.get(name, set()) | new.get(name, set()) for name in {*old, *new}}, current=False)
+    if root is not None and path.suffix == ".nc":
+        discard(path.parent / METADATA)
+    if folder:
+        path.mkdir(exist_ok=True)
+    for goal, file in made.items():
+        goal.parent.mkdir(parents=True, exist_ok=True)
+        flush(file)
+        ownership.make_way(goal, home, same=digests[goal])
+        os.replace(file, goal)
+    for name in old.keys() - new.keys():
+        ownership.remove(home / name, home)
+    for place in {goal.parent for goal in made}:
+        sync_folder(place)
+    write_record(record, new, current=True)
+
+
+def put(path: Path, save: Callable[[Path], object]) -> Path:
+    """Write a file as a result, see `sealing`: `save` writes its content to the temporary path that it receives."""
+    with sealing(path) as beside, disk_errors(path):
+        save(beside)
+    return path
+
+
+def put_text(path: Path, text: str) -> Path:
+    """Write a text as a result, see `put`."""
+    return put(path, lambda beside: beside.write_text(text, encoding="utf-8", newline="\n"))
 
 
 def forget_report(root: Path) -> None:
-    """Remove the records of analysis, figures and report, which were made from earlier results of the study."""
+    """Mark analysis, figures and report as outdated: they were made from earlier results of the study."""
     for name in REPORT:
-        _record(root / name).unlink(missing_ok=True)
+        current, names = read_record(record := ownership.record_of(root, root / name))
+        if current:
+            write_record(record, names, current=False)
 
 
 def discard(path: Path) -> None:
     """Remove a result and its record, if there is one; it does not look lost."""
-    _record(path).unlink(missing_ok=True)
-    path.unlink(missing_ok=True)
+    ownership.clear(path)
+    if (root := ownership.root_of(path)) is not None:
+        ownership.remove(ownership.record_of(root, path), root)
 
 
 def recorded(path: Path) -> dict[str, str] | None:
-    """Return the recorded SHA-256 of a result by file, relative to the study's folder; None without a record."""
+    """Return the recorded SHA-256 of a result by file, relative to the study's folder; None without a record.
+
+    A result that is outdated, or that a killed process replaced in part, counts as one without a record.
+    """
+    record = _place(path)[1]
     try:
-        lines = _record(path).read_text(encoding="utf-8").splitlines()
+        text = record.read_text(encoding="utf-8")
     except FileNotFoundError:
         return None
     except (OSError, UnicodeDecodeError):
         return {}
-    return {name.removeprefix("../"): digest for digest, _, name in (line.partition("  ") for line in lines)}
+    known = {name: min(digests) for name, digests in read_record(record)[1].items()}
+    return None if text.startswith(ownership.OUTDATED) else known
 
 
 def altered(path: Path) -> str | None:
@@ -82,17 +160,20 @@ def altered(path: Path) -> str | None:
     Parameters
     ----------
     path : pathlib.Path
-        A file or folder in a study's folder.
+        A file or folder in a study's folder. A folder may hold further files.
     """
     known = recorded(path)
     if known is None:
         return None
-    now = {file.relative_to(path.parent).as_posix(): sha256(file) for file in files_of(path)}
+    root, record = _place(path)
+    now = {name: sha256(root / name) for name in known if (root / name).is_file()}
     if known != now and known != recorded(path):  # another process has just written the result
         return altered(path)
-    for name in sorted({*known, *now}):
-        if known.get(name) != now.get(name):
-            return _altered(path.parent / name, now.get(name), known.get(name), _record(path))
+    if not known and (files := files_of(path)):
+        return _altered(files[0], sha256(files[0]), None, record)
+    for name in sorted(known):
+        if known[name] != now.get(name):
+            return _altered(root / name, now.get(name), known[name], record)
     return None
 
 

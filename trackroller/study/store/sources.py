@@ -37,6 +37,7 @@ from functools import cache
 from pathlib import Path
 
 from trackroller.damage.own import digests
+from trackroller.study.store.ownership import write_text
 
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "trackroller.roller.solver"
@@ -129,8 +130,7 @@ def digest_file(folder: str | Path, *modules: str) -> str:
     path = Path(folder) / f"{modules[0].removeprefix('trackroller.')}.txt"
     digest = code_digest(modules) + "\n"
     if not path.is_file() or path.read_text(encoding="utf-8") != digest:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(digest, encoding="utf-8")
+        write_text(path, digest)
     return str(path)
 
 
