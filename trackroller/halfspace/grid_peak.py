@@ -30,6 +30,10 @@ WORTH = 0.9  # share of the highest seed that a seed needs for a climb
 # which nothing is added.
 SMOOTH = 0.05
 ERROR_SHARE = 0.3  # share of this change that is the estimated error; above SMOOTH it is the whole change
+# Of places with the same stress, as mirror images have, the one farther outward and ahead counts as the higher one. The
+# lean is the relative difference of stress for a half side; rounding differs far less, and the error far more.
+LEAN = 1e-6
+SHARP = 0.98  # share of the sharpest edge's step that another edge needs for seeds of its own
 STEEP = 0.35  # an edge has a larger step of pressure between neighbours, divided by the largest pressure
 ERROR_FLOOR = 2e-3  # relative error of the solved pressure itself
 
@@ -81,9 +85,16 @@ def _planes(load: GridLoad, depths: np.ndarray, poisson_ratio: np.ndarray) -> np
     return von_mises(np.moveaxis(planes_below(tractions, load.sides, depths, poisson_ratio, FRICTION_SIGNS), 2, -1))
 
 
-def _seeds(values: np.ndarray, load: GridLoad, depths: np.ndarray, count: int) -> list[np.ndarray]:
+def _lean(load: GridLoad, x, y, outward: float):
+    """Return the factor on the stress at places x, y [mm] that decides between mirror images, see LEAN."""
+    wide, long = load.size
+    return 1.0 + LEAN * (outward * (x - load.x.mean()) / wide + 0.5 * (y - load.y.mean()) / long)
+
+
+def _seeds(values: np.ndarray, load: GridLoad, depths: np.ndarray, count: int, outward: float) -> list[np.ndarray]:
     """Return the highest places of a scan (nz, ny, nx) that lie apart, down to the share WORTH of the highest."""
     half = np.array([*load.size, min(load.size)])
+    values = values * _lean(load, load.x, load.y[:, None], outward)
     order = np.argsort(values, axis=None)[::-1]
     places: list[np.ndarray] = []
     best = values.reshape(-1)[order[0]]
@@ -98,18 +109,20 @@ def _seeds(values: np.ndarray, load: GridLoad, depths: np.ndarray, count: int) -
 
 
 def _edge_seeds(value, load: GridLoad) -> list[np.ndarray]:
-    """Return the highest place below the sharpest edge of the pressure, which lies between the nodes, if any."""
+    """Return the highest place below each of the sharpest edges of the pressure, which lie between the nodes."""
     pressure = np.pad(load.pressure, ((0, 0), (1, 1)))
     step = np.abs(np.diff(pressure, axis=1))
-    sharpest = int(np.argmax(step.max(axis=0)))
-    if not step[:, sharpest].max() > STEEP * pressure.max():
+    sharpest = step.max(axis=0)
+    if not sharpest.max() > STEEP * pressure.max():
         return []
-    h = load.x[1] - load.x[0]
-    rows = np.flatnonzero(step[:, sharpest] > 0.5 * step[:, sharpest].max())
-    rows = rows[np.linspace(0, rows.size - 1, min(rows.size, EDGE_ROWS)).astype(int)]
-    x = load.x[0] + (sharpest - 0.5) * h
-    places = np.array([(x, load.y[j], h * z) for j in rows for z in EDGE_DEPTHS])
-    return [places[int(np.argmax(value(places)))]]
+    h, seeds = load.x[1] - load.x[0], []
+    for edge in np.flatnonzero(sharpest > SHARP * sharpest.max()).tolist():  # both ends of a flat are alike
+        rows = np.flatnonzero(step[:, edge] > 0.5 * sharpest[edge])
+        rows = rows[np.linspace(0, rows.size - 1, min(rows.size, EDGE_ROWS)).astype(int)]
+        x = load.x[0] + (edge - 0.5) * h
+        places = np.array([(x, load.y[j], h * z) for j in rows for z in EDGE_DEPTHS])
+        seeds.append(places[int(np.argmax(value(places)))])
+    return seeds
 
 
 def _climb(value, start: np.ndarray, steps: np.ndarray) -> tuple[np.ndarray, float]:
@@ -147,7 +160,7 @@ def _climb(value, start: np.ndarray, steps: np.ndarray) -> tuple[np.ndarray, flo
     return place, top
 
 
-def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int) -> Peak:
+def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int, outward: float) -> Peak:
     """Return the peaks of roller and guide below one patch, arrays (2,)."""
     coarse = load.coarse
     depths = min(load.size) * np.array(DEPTHS)
@@ -160,31 +173,35 @@ def _one_peak(load: GridLoad, poisson_ratio: np.ndarray, seeds: int) -> Peak:
         def value(points, grid=load, nu=poisson_ratio[body], sign=sign):
             return von_mises(body_stress(grid.stress_parts(points), nu, sign))
 
-        starts = _seeds(surface[body], load, depths[:1], seeds) + _seeds(below[body], coarse, depths[1:], seeds)
+        starts = _seeds(surface[body], load, depths[:1], seeds, outward)
+        starts += _seeds(below[body], coarse, depths[1:], seeds, outward)
         scanned = len(starts)
         starts += _edge_seeds(value, load)
         heights = [float(value(seed[None])[0]) for seed in starts]
         climbs = [k for k in np.argsort(heights)[::-1] if k >= scanned or heights[k] >= WORTH * max(heights)]
-        summits.append(_highest(value, [_climb(value, starts[k], 0.5 * steps) for k in climbs], coarse))
+        summits.append(_highest(value, [_climb(value, starts[k], 0.5 * steps) for k in climbs], coarse, outward))
     return Peak(*np.array(summits).T)
 
 
-def _highest(value, summits: list[tuple[np.ndarray, float]], coarse: GridLoad) -> tuple[float, ...]:
+def _highest(value, summits: list[tuple[np.ndarray, float]], coarse: GridLoad, outward: float) -> tuple[float, ...]:
     """Return stress, x, y, z, relative error and change of the highest summit, extrapolated from the coarse grid."""
-    best, possible = (-math.inf, *[math.nan] * 5), -math.inf
+    best, height, possible = (math.nan,) * 6, -math.inf, -math.inf
     for place, top in summits:
         change = (top - float(value(place[None], grid=coarse)[0])) / top
         smooth = abs(change) < SMOOTH
         extrapolated = top * (1.0 + change / 3.0) if smooth else top
         error = (ERROR_SHARE if smooth else 1.0) * abs(change)
         possible = max(possible, extrapolated * (1.0 + error))
-        if extrapolated > best[0]:
-            best = extrapolated, *place, error, abs(change)
+        leaning = extrapolated * float(_lean(coarse, place[0], place[1], outward))
+        if leaning > height:
+            best, height = (extrapolated, *place, error, abs(change)), leaning
     *peak, error, change = best
     return *peak, max(error, possible / best[0] - 1.0) + ERROR_FLOOR, change
 
 
-def find_grid_peaks(loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds: int = 2) -> Peak:
+def find_grid_peaks(
+    loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds: int = 2, outward: np.ndarray | None = None
+) -> Peak:
     """Find the peak von Mises stress of roller and guide below n patches with tractions on grids.
 
     Parameters
@@ -195,6 +212,9 @@ def find_grid_peaks(loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds:
         Poisson's ratios of roller and guide [1].
     seeds : int
         Number of places on the surface, and below it, from which the search climbs.
+    outward : numpy.ndarray, shape (n,), optional
+        Sign of x on the outer side of each contact; 1 if not given. Of two peaks that are alike, the outer one counts,
+        so that the peaks of mirrored contacts are mirror images.
 
     Returns
     -------
@@ -207,11 +227,12 @@ def find_grid_peaks(loads: Sequence[GridLoad], poisson_ratio: np.ndarray, seeds:
     singular and so is the stress; the estimated error is then large.
     """
     out = Peak.empty(len(loads))
+    signs = np.ones(len(loads)) if outward is None else outward
 
     def work(first: int, last: int) -> None:
         for i in range(first, last):
             if np.all(np.isfinite(loads[i].tractions)):
-                out.put(i, _one_peak(loads[i], poisson_ratio[i], seeds))
+                out.put(i, _one_peak(loads[i], poisson_ratio[i], seeds, float(signs[i])))
 
     share_rows(work, len(loads), 1)
     return out

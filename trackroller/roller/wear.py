@@ -56,6 +56,9 @@ VARIABLES = variables(
     ("start_box", ("contact", "side"), "mm", "", "ends and half length of the patch from which the solution started"),
 )
 FARTHEST = 1e9  # km
+# Relative difference of two damage rates up to which their mean is the arithmetic one, which is then right to its
+# square. The logarithmic mean divides two differences, of which rounding leaves nothing for nearly equal rates.
+ALIKE = 1e-6
 # Error of the largest pressure times the columns of elements, and over its `roughness` within NEAR columns: wear leaves
 # a ridge at the spin pole. The sum covers the difference to finer runs in 95 % of states of random rollers.
 COLUMN_ERROR, RIDGE_ERROR, NEAR = 0.5, 0.2, 3
@@ -272,7 +275,8 @@ def _of_lives(ds: xr.Dataset, per_km: np.ndarray) -> dict[str, Any]:
         rate = per_km / cycles
         one, two = rate[:-1], rate[1:]
         # between two states the damage rate follows a power of the stress, so that its logarithm is interpolated
-        mean = np.where((one > 0) & (two > 0) & (one != two), (two - one) / np.log(two / one), 0.5 * (one + two))
+        grows = (one > 0) & (two > 0) & (np.abs(two - one) > ALIKE * one)
+        mean = np.where(grows, (two - one) / np.log(two / one), 0.5 * (one + two))
     grown = mean * np.diff(travel)[:, None, None]
     damage = np.concatenate([np.zeros_like(rate[:1]), np.cumsum(grown, axis=0)]) + 0.0 * rate
     error = ds["life_error_estimate"].transpose("travel", "contact", "body").values

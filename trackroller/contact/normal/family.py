@@ -24,12 +24,14 @@ LATTICE = 1.6  # ratio of neighbouring lattice loads
 RESOLVED, RESOLVED_FINER = 0.15, 0.35
 FACTORS = 1, 2, 4, 8  # on the elements across
 PROBE = 8
+STEADY = 0.01  # relative change of the largest pressure, by twice the elements, up to which a ridge is resolved
 KEPT = 8  # number of solutions between lattice loads that are kept in memory
 OVERLAP = 1e-3  # least overlap outside the box that counts as contact, over the approach
 COARSE = 16  # elements along each axis of the first solutions, which find the box around the patch
 BOX_TOLERANCE = 3e-3  # relative change of the sides of the box at which it counts as found
 TOUCHES = 1e-9  # largest distance at which a patch ends at an edge, over the width of the box
 MARGIN = 0.08  # margin around the box over its sides; shear can move the patch
+LOWEST = 1e-6  # height up to which places count as the lowest ones, over the heights of the whole gap
 SAMPLES = 401  # points across for the first box and for the search of contact outside the box
 
 
@@ -136,13 +138,18 @@ class Family:
 
         Where the patch ends at an edge of the material the pressure is infinite on any elements; the factor is 1.
         """
-        box = self._around(load)
-        for factor in FACTORS[:-1]:
+        box, coarser, highest, smooth = self._around(load), 1, 0.0, False
+        for factor in FACTORS:
             pressure = self._pressure(box, load, (PROBE, factor * self.shape[1])).pressure
             if self._reaches(pressure, box):
                 return 1
-            if roughness(pressure) <= (RESOLVED if factor == 1 else RESOLVED_FINER):
-                return factor
+            # an edge of the elements may hide a ridge by chance, so that twice the elements have the last word
+            if smooth and abs(pressure.max() - highest) < STEADY * highest:
+                return coarser
+            smooth = roughness(pressure) <= (RESOLVED if factor == 1 else RESOLVED_FINER)
+            if smooth and factor == 1:
+                return 1
+            coarser, highest = factor, pressure.max()
         return FACTORS[-1]
 
     def _reaches(self, pressure: np.ndarray, box: Box) -> bool:
@@ -156,8 +163,11 @@ class Family:
         near = self._near and self._clipped(self._near.low, self._near.high, self._near.half)
         if near and near.low < near.high:  # a groove that became steep may end before the place of the similar patch
             return near
-        centre = float(self._samples[np.argmin(self._lateral)])
         lowest = float(self._lateral.min())
+        # the middle of the lowest places: on a flat, rounding alone decides which place is the lowest
+        above = (self._lateral - lowest) / (LOWEST * float(np.ptp(self._lateral)))
+        weight = np.maximum(1.0 - above, 0.0) * np.gradient(self._samples)
+        centre = float(weight @ self._samples / weight.sum())
         k_y = float(self.gap.curvature(np.array(centre)))
         wide = 0.1 * (self.limits[1] - self.limits[0])
         half = wide
@@ -229,11 +239,12 @@ class Family:
             low, high, half = filled.low, filled.high, filled.half
             width = high - low
             grows = self._outside(solution, box)
-            if solution.pressure[:, 0].any() and low <= box.low > self.limits[0]:
+            near = TOUCHES * width
+            if solution.pressure[:, 0].any() and low - near <= box.low > self.limits[0]:
                 grows = (min(grows[0], low - 0.3 * width), grows[1])
-            if solution.pressure[:, -1].any() and high >= box.high < self.limits[1]:
+            if solution.pressure[:, -1].any() and high + near >= box.high < self.limits[1]:
                 grows = (grows[0], max(grows[1], high + 0.3 * width))
-            taller = solution.pressure[0].any() and half >= box.half
+            taller = solution.pressure[0].any() and (1.0 + TOUCHES) * half >= box.half
             if grows == (np.inf, -np.inf) and not taller:
                 tight = self._clipped(low, high, half)
                 if (box.high - box.low) < 1.2 * (tight.high - tight.low) and box.half < 1.2 * half:

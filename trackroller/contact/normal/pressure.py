@@ -23,6 +23,7 @@ from trackroller.contact.settings import CONVERGED_PRESSURE
 # the iteration ends when the largest gap in the patch, divided by the approach, is below
 TOLERANCE = CONVERGED_PRESSURE
 ITERATIONS = 400
+MARGIN = 1e-6  # of the gap from which the iteration starts, over the range of the gap
 
 
 @dataclass(frozen=True)
@@ -142,7 +143,10 @@ def solve_normal(
     """
     ny, nx = gap.shape
     surface, area = _Surface(hx, hy, ny, nx), hx * hy
-    p = np.maximum(np.sqrt(np.maximum(np.quantile(gap, 0.5) - gap, 0.0)) if start is None else start, 0.0)
+    if start is None:
+        # on a flat many elements have the median of the gap: a margin takes all of them, whatever their last digits are
+        start = np.sqrt(np.maximum(np.quantile(gap, 0.5) + MARGIN * np.ptp(gap) - gap, 0.0))
+    p = np.maximum(start, 0.0)
     if not p.any():
         p = np.ones(gap.shape)
     p *= load / (p.sum() * area)

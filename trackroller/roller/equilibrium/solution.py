@@ -25,6 +25,9 @@ ROLLING, FULL_SLIP, LIFT_OFF, FAILED = (REGIMES.index(name) for name in ("rollin
 # jump between these states, and the balance may lie within such a jump.
 SOLVED, SOLVED_FALLING = 1e-6, 1e-2
 LEAST_FRICTION = 1e-100  # smaller friction coefficients count as zero; their forces would underflow
+# Share of the complete friction from which braking counts as full slip: loads in round numbers may need exactly the
+# complete friction, and rounding must not choose the regime then.
+COMPLETE = 1.0 - 1e-9
 NEARLY = 0.999  # share of the complete friction above which braking is compared with the contact law
 # Share of the complete friction up to which friction drives a roller whose slip varies over its patches by less than
 # the second number times the rolling radius. All contact laws gave 0.98 of it or more on 9000 random rollers.
@@ -175,7 +178,7 @@ def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, n
         return bounds, beyond & ~unsure, unsure
     # a locked roller has the complete friction along the track and no other, as in full slip
     complete = roller.friction * np.sum(roller.without_friction(), axis=0)
-    beyond = roller.motor_force > complete
+    beyond = roller.motor_force > COMPLETE * complete
     # a law by interpolation or by elements reaches the complete friction within its error only
     locks = np.flatnonzero(~beyond & (roller.motor_force > NEARLY * complete))
     if locks.size:

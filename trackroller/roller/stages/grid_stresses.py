@@ -62,7 +62,8 @@ class GridStresses(PatchStresses):
         flat, ratios = np.flatnonzero(asked), self.poisson_ratio[asked]
         loads = [self.load(place) for place in flat.tolist()]
         seeds = max(2, options.settings.peak.finalists)
-        peak = find_grid_peaks(loads, ratios, seeds)
+        outward = np.where(flat < results.scene.n, 1.0, -1.0)
+        peak = find_grid_peaks(loads, ratios, seeds, outward)
         ridges = RIDGE_ERROR * np.array([[roughness(load.pressure)] for load in loads]).reshape(-1, 1)
         patch = cast(GridPatch, results.patch)
         if not results.scene.model.refines:
@@ -76,7 +77,8 @@ class GridStresses(PatchStresses):
             rows = np.flatnonzero(allowed & (peak.error.max(axis=1) > goal))
             if times * patch.shape[1] > LARGEST_GRID or not rows.size:
                 break
-            finer = find_grid_peaks([self._refined(int(flat[i]), times) for i in rows], ratios[rows], seeds)
+            refined = [self._refined(int(flat[i]), times) for i in rows]
+            finer = find_grid_peaks(refined, ratios[rows], seeds, outward[rows])
             peak.put(rows, finer)
         peak.error[:] += ridges
         return peak
