@@ -156,7 +156,7 @@ def groups() -> dict[str, tuple[Cases, dict[str, Any]]]:
         "halfspace_fields": ([PROFILES[2]], preview | {"normal": "halfspace", "outputs": FIELDS}),
         "halfspace_kalker": ([PROFILES[0]], preview | {"normal": "halfspace", "contact_model": "kalker"}),
     }
-    for model in ("fastsim", "kalker_table", "kalker"):
+    for model in ("kalker_table", "kalker"):
         rolling = preview | {"contact_model": model}
         found |= {
             model: (ORDINARY, rolling),

@@ -125,15 +125,20 @@ def test_a_curve_names_what_it_leaves_out():
 
 
 def test_each_text_repeats_the_case():
-    values = {"axial_force": "70 N", "guide_curve_radius": "inf", "roller_material": "PA6", "contact_model": "fastsim"}
+    values = {
+        "axial_force": "70 N",
+        "guide_curve_radius": "inf",
+        "roller_material": "PA6",
+        "contact_model": "kalker_table",
+    }
     found = texts(values)
-    same = {"axial_force": 70.0, "guide_curve_radius": "inf", "roller_material": "PA6", "contact_model": "fastsim"}
+    same = {"axial_force": 70.0, "guide_curve_radius": "inf", "roller_material": "PA6", "contact_model": "kalker_table"}
     assert yaml.safe_load(found["YAML"]) == same
-    for word in ("axial_force=70.0", "guide_curve_radius=inf", "roller_material=PA6", "contact_model=fastsim"):
+    for word in ("axial_force=70.0", "guide_curve_radius=inf", "roller_material=PA6", "contact_model=kalker_table"):
         assert word in found["command"]
     place: dict = {}
     exec(found["Python"], place)
-    assert place["ds"].attrs["contact_model"] == "fastsim" and "PA6" in place["ds"].attrs["case"]
+    assert place["ds"].attrs["contact_model"] == "kalker_table" and "PA6" in place["ds"].attrs["case"]
 
 
 def test_text_and_fields_of_a_study_follow_each_other(tmp_path, monkeypatch):

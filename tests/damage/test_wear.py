@@ -76,7 +76,7 @@ def test_deepest_place_lies_between_the_nodes_and_mirrors():
     assert np.isnan(nowhere).all()
 
 
-@pytest.mark.parametrize("model", ["kalker", "sliding", "fastsim"])
+@pytest.mark.parametrize("model", ["kalker", "sliding"])
 @pytest.mark.parametrize("case", CASES)
 def test_volume_is_the_friction_energy_times_the_coefficient_over_friction(model, case):
     bodies = {"roller_material": steel(K), "guide_material": steel(2 * K)}

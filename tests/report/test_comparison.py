@@ -31,7 +31,7 @@ from trackroller.study.run import run_study
 from validation.benchmarks.contact_spin import spin
 from validation.contact_models.product import compare
 
-MODELS = ["sliding", "fastsim", "kalker"]
+MODELS = ["sliding", "kalker_table", "kalker"]
 FIGURES = {"models-error"}
 OUTPUTS = ["forces", "contact", "friction_work", "peak_stress", "life"]
 
@@ -184,12 +184,15 @@ def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_
     assert not set(drawn) & FIGURES and "The contact models cannot be compared: no case was solved" in text
 
 
-def test_without_kalker_fastsim_is_the_reference(tmp_path):
+def test_without_kalker_its_table_is_the_reference(tmp_path):
     factors = {"axial_force": {"values": [0, 20]}}
-    with xr.open_dataset(study(tmp_path, factors, models=["sliding", "fastsim"], outputs=["forces"])) as ds:
+    with xr.open_dataset(study(tmp_path, factors, models=["sliding", "kalker_table"], outputs=["forces"])) as ds:
         paired = ladder.pairs(view_of(ds))
         assert model_errors(view_of(ds))[1].name == "models-error"
-    assert paired.attrs["reference"] == "fastsim" and list(paired.contact_model.values) == ["sliding", "fastsim"]
+    assert paired.attrs["reference"] == "kalker_table" and list(paired.contact_model.values) == [
+        "sliding",
+        "kalker_table",
+    ]
     assert "cannot be compared with the reference" in " ".join(sentences(paired))
 
 
@@ -213,7 +216,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
     assert paired.sizes["design"] == (n if lost != "kalker" else n - 1)
     found = ladder.errors(paired).normal_force
     np.testing.assert_allclose(found.sel(contact_model="sliding").dropna("design"), 0.1, rtol=1e-9)
-    np.testing.assert_allclose(found.sel(contact_model="fastsim").dropna("design"), 0.02, rtol=1e-9)
+    np.testing.assert_allclose(found.sel(contact_model="kalker_table").dropna("design"), 0.02, rtol=1e-9)
     words = sentences(paired)
     assert "normal forces in 0 %" in words[1] and "normal forces in 100 %" in words[2]
 
@@ -255,7 +258,7 @@ def test_the_shipped_study_may_be_edited(tmp_path):
     ):
         study = {"base": base, "factors": factors, "outputs": OUTPUTS, "contact_model": MODELS, "accuracy": "preview"}
         found = compare(study, tmp_path / "results" / "contact_models")
-        assert set(found["models"]) == {"sliding", "fastsim"} and found["designs"] > 0
+        assert set(found["models"]) == {"sliding", "kalker_table"} and found["designs"] > 0
         text = (tmp_path / "results" / "contact_models" / "report.html").read_text(encoding="utf-8")
         assert "Contact models compared" in text and "200 N radial" not in text
         drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "figures").glob("*.svg")}

@@ -146,7 +146,6 @@ def test_driving_braking_and_the_slip_limit():
     "options",
     [
         {"contact_model": "sliding"},
-        {"contact_model": "fastsim", "outputs": (*FORCES, "peak_stress", "tractions", "subsurface")},
         {"contact_model": "kalker_table", "slip_terms": "curve"},
         {"outputs": (*FORCES, "life", "tractions", "subsurface"), "slip_terms": "profile"},
         {"outputs": (*FORCES, "life"), "accuracy": 0.01},

@@ -73,19 +73,6 @@ def test_little_friction_rolls_at_the_slip_of_the_limit(friction):
     assert near.slip.item() == pytest.approx(limit.slip.item(), rel=1e-5)
 
 
-def test_fastsim_draws_patches_too_slender_for_it_in_full_slip_and_fails_those_that_roll():
-    slender = {"guide_profile_radius": 6, "roller_profile_radius": -6.0001, "friction_coefficient": 0.1}
-    ds = tr.solve(
-        [tr.Case(**slender, motor_force=m) for m in (0, -190)],
-        ("contact", "tractions"),
-        contact_model="fastsim",
-        accuracy="preview",
-    )
-    assert ds.regime.values.tolist() == [FAILED, FULL_SLIP]
-    assert np.isfinite(ds.shear_rolling.values[1]).all() and np.isnan(ds.slip_rolling.values[1]).all()
-    assert ds.patch_x.values[1].max() < ds.semi_axis_lateral.values[1].max()
-
-
 def test_friction_at_the_end_of_the_range_of_numbers_is_none():
     case = dict(friction_coefficient=5e-324, contact_angle=5.0, axis_distance=48, radial_force=-16)
     ds = solved(*(tr.Case(**case, axial_force=a, motor_force=0.0) for a in (-0.03, 0.03)))

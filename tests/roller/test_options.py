@@ -12,10 +12,12 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
 from trackroller.roller.accuracy import own_errors
+from trackroller.roller.dataset import solved_by
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.study.file.load import parse_study
 
@@ -37,8 +39,19 @@ def test_every_word_of_an_option_is_explained_and_every_option_is_in_the_help():
 
 
 def test_contact_models_keep_their_numbers():
-    """`contact_model_used` of older files is read with these numbers: new models come at the end."""
-    assert CONTACT_MODELS[:4] == ["sliding", "fastsim", "kalker", "kalker_table"]
+    """New models come at the end, and a file of an earlier version states the meaning of its own numbers."""
+    assert CONTACT_MODELS[:3] == ["sliding", "kalker", "kalker_table"]
+    older = xr.Dataset({"contact_model_used": ("case", [2, 0], {"flag_meanings": "sliding fastsim kalker"})})
+    assert solved_by(older).tolist() == ["kalker", "sliding"]
+
+
+def test_the_simplified_theory_is_refused_with_what_to_take_instead():
+    for refused in (
+        lambda: tr.solve(tr.Case(), contact_model="fastsim"),
+        lambda: parse_study({"name": "s", "contact_model": ["fastsim"], "factors": {"axial_force": {"values": [0.0]}}}),
+    ):
+        with pytest.raises(tr.InputError, match=r"contact_model = 'fastsim'.*kalker_table, which is cheaper and more"):
+            refused()
 
 
 def test_the_table_serves_the_exact_theory_where_its_measured_error_suffices():
@@ -71,7 +84,7 @@ parameters.OPTIONS["dummy"] = options.Option(
     "dummy", "first", "a choice for this test", {"first": "one", "second": "other"}, by_model=True)
 import dataclasses
 from trackroller.parameters.contact_models import DECLARED
-for name in ("sliding", "fastsim"):
+for name in ("sliding", "kalker_table"):
     DECLARED[name] = dataclasses.replace(DECLARED[name], options=(*DECLARED[name].options, "dummy"))
 import numpy as np
 import trackroller as tr
@@ -127,7 +140,7 @@ def test_a_new_option_appears_everywhere_once_it_is_declared():
 
 def used(model, **more):
     ds = tr.solve(tr.Case(), outputs="forces", contact_model=model, **more)
-    return ds, ds.contact_model_used.attrs["flag_meanings"].split()[int(ds.contact_model_used)]
+    return ds, solved_by(ds).item()
 
 
 def test_the_table_of_the_exact_theory_is_a_model_with_a_name():
@@ -148,7 +161,7 @@ def test_the_table_of_the_exact_theory_is_a_model_with_a_name():
 def test_where_the_table_does_not_serve_the_exact_theory_is_named():
     law = {"kind": "linear", "speed": 300.0, "lowest": 0.8}
     falling = tr.solve([tr.Case(), tr.Case(friction_law=law)], "forces", contact_model="kalker", accuracy="preview")
-    assert falling.contact_model_used.values.tolist() == [3, 2]
+    assert solved_by(falling).tolist() == ["kalker_table", "kalker"]
     with pytest.raises(tr.InputError, match=r"^friction_law = .*kalker_table.*Take contact_model: kalker"):
         tr.solve(tr.Case(friction_law=law), "forces", contact_model="kalker_table")
     assert used("kalker", accuracy="preview", slip_terms="profile")[1] == "kalker"

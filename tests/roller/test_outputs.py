@@ -42,7 +42,7 @@ def test_what_is_shown_stands_on_the_sheet_with_its_value():
 
 
 @pytest.mark.parametrize("motor", [-30.0, 0.0, 25.0])
-@pytest.mark.parametrize("model", ["kalker", "fastsim"])
+@pytest.mark.parametrize("model", ["kalker", "kalker_table"])
 def test_the_drive_gives_the_power_of_the_transmitted_force_and_of_friction(motor, model):
     """M_xR / r_A = (1 + xi) F_A + W_f per distance, with W_f integrated over the patches."""
     case = tr.Case(motor_force=motor)

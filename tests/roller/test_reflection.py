@@ -32,7 +32,6 @@ def both(cases, **options):
     ("model", "count", "outputs", "options"),
     [
         ("sliding", 30, PLAIN, {}),
-        ("fastsim", 12, PLAIN, {"slip_terms": ("profile", "curve")}),
         ("kalker_table", 20, PLAIN, {}),
         ("kalker", 20, PLAIN, {}),
         ("kalker", 2, EVERY, {}),

@@ -65,7 +65,7 @@ def test_shortcuts_change_the_sections_within_their_quadrature():
     )
 
 
-@pytest.mark.parametrize("model", ["fastsim", "kalker"])
+@pytest.mark.parametrize("model", ["kalker_table", "kalker"])
 def test_shortcuts_change_no_number_of_the_iterating_models_beyond_their_residual(model):
     few, outputs = scenes(2), ("forces", "contact", "friction_work")
     told = {"outputs": outputs, "contact_model": model, "accuracy": "preview"}
@@ -115,7 +115,7 @@ def test_stopped_cases_would_have_failed_and_the_others_are_untouched():
     assert np.array_equal(cut.normal_force, whole.normal_force), "what is known already stays"
 
 
-@pytest.mark.parametrize("model", ["sliding", "fastsim"])
+@pytest.mark.parametrize("model", ["sliding", "kalker_table"])
 def test_the_bound_that_stops_is_below_the_peak(model):
     rng = np.random.default_rng(8)
     cases = [

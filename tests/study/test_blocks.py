@@ -10,7 +10,7 @@ from trackroller.study.store import identity
 
 STUDY = {
     "name": "blocks",
-    "factors": {"axial_force": {"linspace": [0, 6, 7]}, "contact_model": {"values": ["sliding", "fastsim"]}},
+    "factors": {"axial_force": {"linspace": [0, 6, 7]}, "contact_model": {"values": ["sliding", "kalker_table"]}},
 }
 
 

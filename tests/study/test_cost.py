@@ -10,7 +10,7 @@ from trackroller.study.file.load import parse_study
 FALLING = {"kind": "exponential", "speed": 200.0, "lowest": 0.4}
 
 
-@pytest.mark.parametrize("contact_model", ["sliding", "fastsim", "kalker"])
+@pytest.mark.parametrize("contact_model", ["sliding", "kalker"])
 def test_a_falling_law_costs_more_than_a_constant_one(contact_model):
     options = {"contact_model": contact_model, "outputs": ("forces",)}
     assert rate(options, FALLING) < 0.5 * rate(options)

@@ -83,7 +83,7 @@ def finest_tolerance(model, *outputs):
     return float(hit[1])
 
 
-@pytest.mark.parametrize("model", ["sliding", "fastsim"])
+@pytest.mark.parametrize("model", ["sliding"])
 def test_a_tolerance_takes_the_cheapest_rung_that_keeps_it_and_refuses_what_is_out_of_reach(model):
     reached = finest_tolerance(model)
     before: ac.Accuracy | None = None
@@ -95,16 +95,6 @@ def test_a_tolerance_takes_the_cheapest_rung_that_keeps_it_and_refuses_what_is_o
         if model != "sliding" and before is not None:
             assert chosen.elements >= before.elements
         before = chosen
-
-
-def test_fewer_outputs_need_less():
-    """Forces alone do not pay for the peaks of a model with elements, and keep tolerances that peaks do not reach."""
-    reached = finest_tolerance("fastsim", OUTPUTS)
-    forces, everything = (
-        ac.accuracy_settings(1.001 * reached, "fastsim", outputs).elements for outputs in (("forces",), OUTPUTS)
-    )
-    assert forces < everything
-    assert finest_tolerance("fastsim", ("forces",)) < 0.5 * reached
 
 
 def test_presets_are_rungs_in_order():
@@ -152,19 +142,16 @@ def test_split_pole_is_where_the_slip_of_the_circle_vanishes():
 @pytest.mark.slow
 def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
     """Two designs through all parts, files, summary, figures and report; orders come out as they must."""
-    monkeypatch.setattr(tradeoff_settings, "ELEMENTS", {"kalker": (8, 12), "fastsim": (10, 20, 40)})
+    monkeypatch.setattr(tradeoff_settings, "ELEMENTS", {"kalker": (8, 12)})
     monkeypatch.setattr(tradeoff_settings, "SEARCHES", tradeoff_settings.SEARCHES[:5:2])
     monkeypatch.setattr(tradeoff_settings, "FORCE_NODES", (6, 12, 20))
     for place in (tradeoff_settings, tradeoff_summary):
-        monkeypatch.setattr(place, "REFERENCE_ELEMENTS", {"kalker": 16, "fastsim": 80})
-    text = (
-        "tradeoff: {sliding: {designs: 3, parts: 2}, fastsim: {designs: 2, parts: 1}, kalker: {designs: 1, parts: 1}, "
-        "stages: 4}\n"
-    )
+        monkeypatch.setattr(place, "REFERENCE_ELEMENTS", {"kalker": 16})
+    text = "tradeoff: {sliding: {designs: 3, parts: 2}, kalker: {designs: 1, parts: 1}, stages: 4}\n"
     sizes = tmp_path / "tradeoff.yaml"
     sizes.write_text(text, encoding="utf-8")
     names = tradeoff.load_sizes(sizes).names()
-    assert names == ["kalker-0", "fastsim-0", "sliding-0", "sliding-1", "stages-0"]
+    assert names == ["kalker-0", "sliding-0", "sliding-1", "stages-0"]
     for name in names:
         tradeoff.write_part(name, str(sizes), str(tmp_path / f"{name}.nc"))
     out = tmp_path / "out"

@@ -14,7 +14,6 @@ from dataclasses import replace
 import numpy as np
 
 from trackroller.contact.common import Elastic
-from trackroller.contact.fastsim.model import FastsimModel
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.normal.patches import Patches
@@ -26,7 +25,7 @@ from trackroller.errors import InputError, check_names
 from trackroller.parameters.contact_models import declare
 
 CLASSES: dict[str, type[ContactModel]] = {
-    model.declaration.name: model for model in (SlidingModel, FastsimModel, KalkerModel, TableModel)
+    model.declaration.name: model for model in (SlidingModel, KalkerModel, TableModel)
 }
 
 

@@ -6,7 +6,6 @@ contact frame are those of `trackroller.contact.common`.
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
@@ -83,7 +82,6 @@ class ContactModel:
     declaration: ModelDeclaration  # name, options, cost and promised accuracy
     on_solved_patches: ClassVar[type[ContactModel] | None] = None  # the model on solved patches, made with `Patches`
     elastic = True  # the surfaces move elastically along the patch, so that parts of it can adhere
-    most_slender = math.inf  # largest axis ratio of an ellipse that the model solves
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution
     elements = 1  # along each axis of a patch; only models with windows set it

@@ -69,7 +69,7 @@ class Accuracy:
     elements : int
         Elements along each axis of the patch for the rolling contact models.
     grid_elements : int
-        Elements of FASTSIM and of patches whose pressure is solved; 0: as many as `elements`.
+        Elements of patches whose pressure is solved; 0: as many as `elements`.
     peak_elements : int
         Elements of the tractions from which a model finds the peak stress; 0: as many as `elements`.
     doublings : int

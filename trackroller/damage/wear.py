@@ -25,7 +25,7 @@ from trackroller.numerics.parameter import Parameter
 KM_PER_HOUR = 0.06  # for 1 m/min
 # Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
 # finer elements. Measures of single patches, such as the roughness of the depth, did not tell the error any better.
-ERROR = {"kalker": 0.5, "kalker_table": 0.5, "sliding": 0.8, "fastsim": 1.5}
+ERROR = {"kalker": 0.5, "kalker_table": 0.5, "sliding": 0.8}
 TIE = 1e-9  # relative difference below which the outer one of two depths counts as the deeper one
 
 

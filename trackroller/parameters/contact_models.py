@@ -169,21 +169,10 @@ _BUILT_IN = (
         falling=Cost.measured("sliding", "falling"),
     ),
     ModelDeclaration(
-        "fastsim",
-        "simplified theory of rolling contact (Kalker's FASTSIM)",
-        rank=2,
-        options=("slip_terms",),
-        slip_terms=("profile", "curve"),
-        friction_laws=True,
-        ladder="fastsim",
-        cost=Cost.measured("fastsim"),
-        falling=Cost.measured("fastsim", "falling"),
-    ),
-    ModelDeclaration(
         "kalker",
         "exact theory of rolling contact; by its table at accuracy preview or if it keeps the tolerance",
         converged_up_to=1e-4,
-        rank=4,
+        rank=3,
         options=("slip_terms",),
         normals=("hertz", "halfspace"),
         slip_terms=("profile", "curve"),
@@ -199,7 +188,7 @@ _BUILT_IN = (
         "kalker_table",
         "table of solutions of the exact theory; the exact theory outside its range and beside a nearly lifted contact",
         converged_up_to=1e-4,
-        rank=3,
+        rank=2,
         options=("slip_terms",),
         slip_terms=("curve",),
         ladder="kalker",
@@ -209,6 +198,8 @@ _BUILT_IN = (
         cost=Cost.measured("kalker_table"),
     ),
 )
+# Models of earlier versions, with what to take instead.
+GONE = {"fastsim": "Take contact_model: kalker_table, which is cheaper and more accurate."}
 # Cost of solved patches (`normal: halfspace`) by kalker; other models take less.
 SOLVED_PATCHES = Cost((0.2, 0.4, 0.7), (0.03, 0.2, 2.8))
 

@@ -10,7 +10,7 @@ from typing import Any
 from trackroller.damage import LIMITS, verdict
 from trackroller.damage.own import hint
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters.contact_models import DECLARED, MEANINGS
+from trackroller.parameters.contact_models import DECLARED, GONE, MEANINGS
 
 QUANTITIES = ("forces", "peak", "life")  # that may have tolerances of their own
 
@@ -32,6 +32,8 @@ class Option:
     kind : str
         "word" (one of `values`), "words" (several of them), "number" (within `bounds`), "accuracy" (a word, such a
         number, or numbers by quantity), "condition" (see `trackroller.roller.stop`) or "switch" (true or false).
+    gone : dict of str
+        Words of earlier versions, with what to take instead.
     bounds : tuple of float
         Numbers between which a number must lie; the bounds themselves are not allowed.
     by_model : bool
@@ -53,6 +55,7 @@ class Option:
     meaning: str
     values: Mapping[str, str] = field(default_factory=dict)
     kind: str = "word"
+    gone: Mapping[str, str] = field(default_factory=dict)
     bounds: tuple[float, float] = (0, 1)
     by_model: bool = False
     required: bool = False
@@ -138,6 +141,8 @@ class Option:
         if not isinstance(value, str) or value not in self.values:
             if self.name == "outputs" and (how := hint(value)):
                 raise InputError(where, value, self.allowed(), how)
+            if isinstance(value, str) and value in self.gone:
+                raise InputError(where, value, self.allowed(), self.gone[value])
             raise unknown_name(where, value, self.values)
         return value
 
@@ -183,6 +188,7 @@ _OPTIONS = (
         "kalker",
         "how friction is distributed over the patch",
         MEANINGS,
+        gone=GONE,
         factor=True,
     ),
     Option(

@@ -78,7 +78,7 @@ VALIDITY: dict[str, ValidityFlag] = {
     ),
     "steep_friction": ValidityFlag(
         "friction falls faster with the slip speed than the surfaces follow",
-        "mu p_max v max(-df/dv)/G above 1 (kalker, fastsim): friction falls faster with the slip speed "
+        "mu p_max v max(-df/dv)/G above 1 (kalker): friction falls faster with the slip speed "
         "than elastic surfaces follow; a patch has several states or none, and the roller may not roll steadily",
         "The roller may not roll steadily: use a friction law that falls less steeply.",
     ),

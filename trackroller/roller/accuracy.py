@@ -65,7 +65,7 @@ Ladders = Mapping[str, tuple[Rung, ...]]
 
 @functools.cache
 def ladders() -> Ladders:
-    """Return the measured ladders `forces`, `peak`, `fastsim`, `kalker`, each sorted by rising cost."""
+    """Return the measured ladders `forces`, `peak`, `kalker`, each sorted by rising cost."""
     text = resources.files("trackroller.roller").joinpath("accuracy.json").read_text(encoding="utf-8")
     return read_ladders(json.loads(text)["ladders"])
 
@@ -111,7 +111,7 @@ PROMISES = {"preview": (2e-2, 5e-3), "standard": (4e-3, 2e-5), "reference": (3e-
 # Elements of `kalker` across a patch. They are fixed, because too few designs are measured to distinguish neighbouring
 # numbers of elements. A choice from the ladder would change with the sample.
 ELEMENTS = {"preview": 12, "standard": 28, "reference": 56}
-# Elements of FASTSIM and of solved patches, which do not interpolate between their elements.
+# Elements of solved patches, which do not interpolate between their elements.
 GRID_ELEMENTS = {"preview": 20, "standard": 40, "reference": 80}
 
 

@@ -140,6 +140,16 @@ def validity_bit(name: str) -> int:
     return 1 << list(VALIDITY).index(name)
 
 
+def solved_by(ds: xr.Dataset) -> np.ndarray:
+    """Return the name of the contact model that solved each case, object array in the shape of `contact_model_used`.
+
+    The numbers have the meanings that the data set states: files of earlier versions number the models otherwise.
+    """
+    used = ds.variables["contact_model_used"]
+    names = np.array(str(used.attrs["flag_meanings"]).split(), dtype=object)
+    return np.asarray(names[used.values], dtype=object)
+
+
 COMMENTS = {
     "pair_life_hours": "shorter life of roller and guide; the life of the roller where guide_overrollings_per_hour is "
     "not given and the guide's hours are unknown (first_to_fail is unknown there)",

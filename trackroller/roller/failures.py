@@ -9,10 +9,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.contact.hertz import shape
-from trackroller.contact.models import CLASSES
 from trackroller.contact.slip import turning_of
-from trackroller.parameters import CONTACT_MODELS
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import FAILED, ROLLING
 from trackroller.roller.geometry import contact_geometry
@@ -52,8 +49,6 @@ def with_reasons(
     if not (failed | loose).any():
         return ds
     residual, bits = (np.atleast_1d(ds[name].values) for name in ("residual", "validity"))
-    asked = np.full(len(regime), CONTACT_MODELS.index(options.contact_model))
-    used = np.atleast_1d(ds["contact_model_used"].values) if "contact_model_used" in ds else asked
     reasons = np.full(len(regime), "", dtype=object)
     for i in np.flatnonzero(failed | loose).tolist():
         if lost and i in lost:
@@ -63,12 +58,12 @@ def with_reasons(
         if np.isfinite(residual[i]):  # one digit, so that cases of one kind are counted together
             words += f", residual {residual[i]:.0e}"
         case = table.take(np.array([i]))
-        reasons[i] = ". ".join([words, *_hints(case, options, CONTACT_MODELS[used[i]], bool(bits[i] & STEEP))])
+        reasons[i] = ". ".join([words, *_hints(case, options, bool(bits[i] & STEEP))])
     attrs = {"long_name": "why a case failed or misses its tolerance"}
     return ds.assign(reason=(ds["regime"].dims, reasons if ds["regime"].dims else reasons[0], attrs))
 
 
-def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -> list[str]:
+def _hints(case: CaseTable, options: Options, steep: bool) -> list[str]:
     """Return why a single case has no solution, as far as known, and what to do about it."""
     if "curve" in options.slip_terms and _beyond_the_axis(case):
         return [
@@ -88,8 +83,6 @@ def _hints(case: CaseTable, options: Options, contact_model: str, steep: bool) -
             f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
             "give `smooth`, the standard deviation of the noise in mm, or 'auto'"
         )
-    if _axis_ratio(case) > CLASSES[contact_model].most_slender:
-        hints.append(f"The patches are too slender for {contact_model}: contact_model: kalker goes further")
     return hints
 
 
@@ -97,14 +90,6 @@ def _beyond_the_axis(case: CaseTable) -> bool:
     """Return True if the contacts lie beyond the axis of a concave guide, where the turning is not defined."""
     cosine = np.cos(contact_geometry(vars(case)).contact_angle)
     return bool(np.isnan(turning_of(case.guide_curve_radius, case.guide_profile_radius, cosine)[0]))
-
-
-def _axis_ratio(case: CaseTable) -> float:
-    """Return the longer over the shorter semi-axis of the ellipse."""
-    geometry = contact_geometry(vars(case))
-    ellipse = shape(geometry.curvature_lateral, geometry.curvature_rolling, np.ones(1))
-    ratio = float(ellipse.lateral[0] / ellipse.rolling[0])
-    return max(ratio, 1.0 / ratio)
 
 
 @lru_cache(maxsize=256)

@@ -85,7 +85,7 @@ def solve(
         default these four), "friction_work", "tractions", "subsurface", "limits", one a limit.
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
-        "fastsim" (simplified theory), or "sliding" (full slip everywhere, as published). "kalker" uses its table at
+        or "sliding" (full slip everywhere, as published). "kalker" uses its table at
         accuracy "preview", and for forces within a tolerance that the table keeps.
     spin_model : str
         Assumption 0, 1, 2 of the publication on the spin pole, for "sliding": "concentric", "edge", "skewed" (default).
@@ -115,7 +115,7 @@ def solve(
     shortcuts : bool
         Whether symmetry and repetition among the cases are used (default), so that mirrored rollers have mirrored bits.
     slip_terms : str or collection of str
-        What the rigid slip of fastsim and kalker counts beyond the tangent of a straight guide: "profile", the slip by
+        What the rigid slip of kalker counts beyond the tangent of a straight guide: "profile", the slip by
         eq. (20), which sliding always counts, and "curve", the turning of the roller with the guide's curve.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.

@@ -20,7 +20,7 @@ from trackroller.roller.dataset import validity_bit
 from validation.benchmarks.command import run
 from validation.tradeoff.sample import wide_designs
 
-RUNS = ("sliding:standard", "fastsim:standard", "kalker:preview", "kalker:standard")
+RUNS = ("sliding:standard", "kalker:preview", "kalker:standard")
 SPEED = 100.0  # characteristic slip speed of every law [mm/s]; the travel velocity sets the slip speed over it
 
 

@@ -35,7 +35,7 @@ from validation.tradeoff.errors import percentiles, relative_errors
 from validation.tradeoff.measure import reference_solution
 from validation.tradeoff.sample import SINGULAR
 
-MODELS = ("sliding", "fastsim", "kalker_table", "kalker")
+MODELS = ("sliding", "kalker_table", "kalker")
 TOLERANCES = (0.1, 0.03, 0.01, 0.003)
 FORCES, COMPLETE = ("forces", "contact"), ("forces", "contact", "friction_work", "peak_stress", "life")
 TRUTH = replace(PRESETS["reference"], elements=120, grid_elements=120)

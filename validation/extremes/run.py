@@ -17,8 +17,8 @@ from validation.extremes.random_cases import random_extremes
 from validation.extremes.scenes import BASE, Scene, scaled
 
 Record = dict[str, Any]
-ACCURACIES = {"sliding": "standard", "kalker": "standard", "fastsim": "preview"}
-RANDOM = {"sliding": 3000, "kalker": 600, "fastsim": 300}
+ACCURACIES = {"sliding": "standard", "kalker": "standard"}
+RANDOM = {"sliding": 3000, "kalker": 600}
 SEED = 7
 
 

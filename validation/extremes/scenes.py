@@ -70,7 +70,7 @@ class Scene:
     constant: tuple[str, ...] = ()
     pairs: bool = False
     limit: bool = False
-    models: tuple[str, ...] = ("sliding", "kalker", "fastsim")
+    models: tuple[str, ...] = ("sliding", "kalker")
     reach: tuple[str, ...] = ()
     close: bool = False
     build: Callable[[float], CaseDict] | None = None
@@ -222,7 +222,7 @@ def _geometry() -> tuple[Scene, ...]:
             "k_x/k_y",
             10.0 ** np.arange(-5, 5.5),
             _of_ellipticity,
-            reach=("kalker", "fastsim"),
+            reach=("kalker",),
         ),
         _series(
             "near circle",
@@ -236,7 +236,6 @@ def _geometry() -> tuple[Scene, ...]:
             "alpha [deg]",
             (0.01, 0.1, 1, 10, 30, 60, 80, 89, 89.9, 89.99),
             _steep,
-            reach=("fastsim",),
         ),
         _series(
             "outer curve to straight",
@@ -259,7 +258,7 @@ def _geometry() -> tuple[Scene, ...]:
             (1e3, 1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
             lambda v: {"guide_curve_radius": -r_a * (1 + v), **_loads(1e-2)},
             falling=("max_pressure",),
-            reach=("kalker", "fastsim"),
+            reach=("kalker",),
         ),
         _series(
             "close groove",
@@ -267,7 +266,7 @@ def _geometry() -> tuple[Scene, ...]:
             (1e1, 1e0, 1e-2, 1e-4, 1e-6, 1e-8),
             lambda v: {"roller_profile_radius": -6.0 * (1 + v), **_loads(1e-2)},
             falling=("max_pressure",),
-            reach=("kalker", "fastsim"),
+            reach=("kalker",),
         ),
         _series(
             "size",
@@ -315,7 +314,7 @@ def _borders() -> tuple[Scene, ...]:
             _border(1.0),
             _brake,
             pairs=True,
-            models=("sliding", "fastsim"),
+            models=("sliding",),
         ),
         # table and elements reach the complete friction within their error
         _series(

@@ -33,7 +33,6 @@ SERIES = {
     ("equilibrium", "sliding", "quadrature"): "sliding, forces only: Gauss points",
     ("peak", "sliding", "search"): "sliding, complete: search of the peak",
     ("peak", "sliding", "grid"): "sliding: peak as the highest grid point",
-    ("elements", "fastsim", "elements"): "FASTSIM, complete: elements across",
     ("elements", "kalker", "elements"): "Kalker, complete: elements across",
     ("ellipse", "sliding", "published"): "published table of the ellipse",
 }
@@ -42,7 +41,6 @@ CONVERGENCE = {
     ("stress", "sliding", "plane waves", "stress"): "stress: waves and chords",
     ("stress", "sliding", "bilinear elements", "stress"): "stress: bilinear elements",
     ("peak", "sliding", "grid", "peak_stress"): "peak as the highest grid point",
-    ("elements", "fastsim", "elements", "friction_force"): "FASTSIM: friction force",
     ("elements", "kalker", "elements", "friction_force"): "Kalker: friction force",
     ("elements", "kalker", "elements", "peak_stress"): "Kalker: peak stress",
 }
@@ -87,7 +85,7 @@ def pareto(summary: dict[str, Any], quantity: str) -> Drawn | None:
     style.head(figure, f"What accuracy of the {words} costs", "filled: 99 % of the designs lie below; hollow: median")
     _names(axes, taken, letters)  # last: legend and title decide where the points come to lie
     caption = (
-        f"Error of the {words} against a converged solution of the same contact model (sliding, fastsim, kalker), over "
+        f"Error of the {words} against a converged solution of the same contact model (sliding, kalker), over "
         "the processor time of a case, which is divided by that of a complete case of sliding at standard. Filled "
         "marks: 99th percentile of the designs; hollow marks: median; rings: presets. Labels: Gauss points, quadrature "
         "and effort of the search, or elements across the patch."
@@ -222,7 +220,7 @@ def convergence(summary: dict[str, Any]) -> Drawn | None:
     figure.legend(loc="outside lower left", ncols=1, handlelength=2.6, labelspacing=0.25)
     style.head(figure, "How fast the stages converge", "median error over the designs; order: slope of the line")
     caption = (
-        "Median error of single stages of sliding, fastsim and kalker against their discretisation, with the observed "
+        "Median error of single stages of sliding and kalker against their discretisation, with the observed "
         "order (least squares in logarithms; points at the rounding error are left out)."
     )
     return figure, style.FigureInfo(

@@ -11,7 +11,6 @@ from trackroller.errors import InputError
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.accuracy import (
     ELEMENTS,
-    GRID_ELEMENTS,
     PROMISES,
     accuracy_settings,
     rounded_up,
@@ -21,7 +20,7 @@ from trackroller.study.cost import rate
 from validation.benchmarks.trade import COMPLETE, QUANTITIES
 
 PLANNED = ("preview", 0.1, 0.03, 0.01, 0.003, "standard", "reference")
-MODELS = ("sliding", "fastsim", "kalker")
+MODELS = ("sliding", "kalker")
 TOLERANCES = (1e-1, 3e-2, 1e-2, 3e-3, 1e-3, 3e-4, 1e-4, 3e-5)
 
 
@@ -44,8 +43,8 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
         "counts": ", ".join(f"{sample[f'designs_{m}']:,} for `{m}`" for m in MODELS if f"designs_{m}" in sample),
         "tolerances": [(f"{t:g}", *(_settings(t, model) for model in MODELS)) for t in TOLERANCES],
         "promises": ". ".join(
-            f"`{name}` allows {peak:g} of the peak and {force:g} of the forces, with {ELEMENTS[name]} elements in "
-            f"`kalker` and {GRID_ELEMENTS[name]} in `fastsim`"
+            f"`{name}` allows {peak:g} of the peak and {force:g} of the forces, "
+            f"with {ELEMENTS[name]} elements in `kalker`"
             for name, (peak, force) in PROMISES.items()
         ),
         "limits": ", ".join(

@@ -23,8 +23,8 @@ from validation.tradeoff.paper import paper_table
 from validation.tradeoff.sample import SEED, sample
 from validation.tradeoff.stages import measure_stages
 
-MODELS = ("sliding", "fastsim", "kalker")
-BLOCKS = {"sliding": 128, "fastsim": 64, "kalker": 16}  # designs that all settings solve in turn
+MODELS = ("sliding", "kalker")
+BLOCKS = {"sliding": 128, "kalker": 16}  # designs that all settings solve in turn
 
 
 @dataclass(frozen=True)

@@ -42,8 +42,8 @@ SEARCHES = (
     ("d", 6, 0.001),
     ("e", 5, 0.0005),
 )
-ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40, 56), "fastsim": (10, 14, 20, 28, 40, 56, 80)}
-REFERENCE_ELEMENTS = {"kalker": 80, "fastsim": 160}
+ELEMENTS = {"kalker": (8, 12, 16, 20, 28, 40, 56)}
+REFERENCE_ELEMENTS = {"kalker": 80}
 FINE = PeakSettings(12, 16, 24, 48, 16, 12, 0.001, 0.0)
 # No search exceeds the true peak, so the largest result of several fine searches is the best known value.
 REFERENCE_SEARCHES = (

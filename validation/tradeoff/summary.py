@@ -11,7 +11,7 @@ import xarray as xr
 
 from trackroller.analysis.pareto import pareto_mask
 from trackroller.parameters import ACCURACIES
-from trackroller.roller.accuracy import ELEMENTS, FORCE_QUANTITIES, GRID_ELEMENTS, preset_rungs, read_ladders
+from trackroller.roller.accuracy import ELEMENTS, FORCE_QUANTITIES, preset_rungs, read_ladders
 from validation.tradeoff.errors import QUANTITIES, observed_order, percentiles, tolerance_bound
 from validation.tradeoff.settings import REFERENCE_ELEMENTS
 
@@ -19,13 +19,11 @@ MOST_RUNGS = 10
 LADDERS = {
     ("equilibrium", "sliding"): "forces",
     ("peak", "sliding"): "peak",
-    ("elements", "fastsim"): "fastsim",
     ("elements", "kalker"): "kalker",
 }
 _JUDGED_BY = {
     "forces": (FORCE_QUANTITIES,),
     "peak": (("peak_stress",),),
-    "fastsim": (FORCE_QUANTITIES, ("peak_stress",)),
     "kalker": (FORCE_QUANTITIES, ("peak_stress",)),
 }
 REFERENCE_ORDER = 1.8  # ASSUME: of element models towards their reference, as observed
@@ -60,7 +58,7 @@ def presets(chosen: dict[str, list[Record]]) -> dict[str, Record]:
             part: dict(rung.settings)
             for part, rung in zip(("forces", "peak"), preset_rungs(name, measured), strict=True)
         }
-        | {"kalker": {"elements": ELEMENTS[name]}, "fastsim": {"elements": GRID_ELEMENTS[name]}}
+        | {"kalker": {"elements": ELEMENTS[name]}}
         for name in ACCURACIES
     }
 

@@ -17,7 +17,6 @@ from trackroller.report.words.comparison import FRICTION, by_drive, short
 # distinguished by dash and mark as well as by colour
 LOOKS: dict[str, dict[str, Any]] = {
     "sliding": {"color": "#000000", "linestyle": "-", "marker": "o"},
-    "fastsim": {"color": "#d55e00", "linestyle": ":", "marker": "s"},
     "kalker_table": {"color": "#56b4e9", "linestyle": "-.", "marker": "v"},
 }
 LEAST = 6e-4  # error at the lower end of the axes [1]

@@ -7,8 +7,9 @@ import xarray as xr
 from contourpy import contour_generator
 from matplotlib.path import Path
 
-from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS
 from trackroller.report.numbers import capital, level_text, listing, long_name, rounded, setting
+from trackroller.roller.dataset import solved_by
 from trackroller.roller.record import CASE, inputs_of, is_default
 
 SLIGHT = 1e-3  # share of the largest pressure; smaller values are residuals of the solution, not loads
@@ -70,7 +71,7 @@ class Patch:
     @property
     def spin_pole(self) -> tuple[float, float] | None:
         """Return the place of the spin pole of full sliding [mm]; other contact models have no spin pole."""
-        if "spin_pole_lateral" not in self.ds or CONTACT_MODELS[int(self.ds["contact_model_used"])] != "sliding":
+        if "spin_pole_lateral" not in self.ds or solved_by(self.ds).item() != "sliding":
             return None
         return float(self.ds["spin_pole_lateral"]), float(self.ds.get("spin_pole_rolling", 0.0))
 

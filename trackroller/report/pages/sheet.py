@@ -15,7 +15,7 @@ import xarray as xr
 
 from trackroller.analysis.columns import at_surface
 from trackroller.materials import Material
-from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, OPTIONS, REGIMES
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, OPTIONS, REGIMES
 from trackroller.parameters.example import not_given_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
@@ -43,7 +43,7 @@ from trackroller.report.words.assumptions import (
 from trackroller.report.words.sentence import phrase
 from trackroller.report.words.wear import run_in
 from trackroller.roller import record
-from trackroller.roller.dataset import VARIABLES, shown, validity_bit
+from trackroller.roller.dataset import VARIABLES, shown, solved_by, validity_bit
 from trackroller.roller.limits import Limits, limits
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
@@ -172,7 +172,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
 
 def _used(ds: xr.Dataset, option: str) -> str:
     """Name the contact model that solved the case if it is not the chosen one; an empty text for other options."""
-    used = CONTACT_MODELS[int(ds["contact_model_used"])]
+    used = solved_by(ds).item()
     return f" (solved by {used})" if option == "contact_model" and used != ds.attrs[option] else ""
 
 

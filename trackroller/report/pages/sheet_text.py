@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.parameters import BODIES, CONTACT_MODELS, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet import collect
 from trackroller.report.pages.spectrum import assumed, block_table, life_rows, limit_table, warnings
@@ -17,6 +17,7 @@ from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import sentences
+from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
@@ -104,10 +105,11 @@ def as_json(ds: xr.Dataset) -> str:
     for name, words in (
         ("regime", REGIMES),
         ("first_to_fail", FIRST_TO_FAIL),
-        ("contact_model_used", CONTACT_MODELS),
     ):
         if name in content:
             content[name]["meaning"] = np.array(words)[ds[name].values].tolist()
+    if "contact_model_used" in content:
+        content["contact_model_used"]["meaning"] = solved_by(ds).tolist()
     duty = duty_of(ds)
     if duty is not None:
         for name in (n for n, of in content.items() if of["units"] == "h" and "life" in n):

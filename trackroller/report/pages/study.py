@@ -35,6 +35,7 @@ from trackroller.report.words.pareto import pareto_sentence, pareto_table
 from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
+from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.study.store.seal import put_text, sealing
 
@@ -170,8 +171,8 @@ def models_used(ds: xr.Dataset) -> list[inputs.Row]:
     """Say how many cases each contact model solved, where another model than the chosen one solved some of them."""
     if "contact_model_used" not in ds or "contact_model" in ds.coords:
         return []
-    used = ds["contact_model_used"].values
-    counts = {name: cases for i, name in enumerate(parameters.CONTACT_MODELS) if (cases := int((used == i).sum()))}
+    used = solved_by(ds)
+    counts = {name: int((used == name).sum()) for name in sorted(set(used.ravel().tolist()))}
     if not counts or list(counts) == [ds.attrs.get("contact_model")]:
         return []
     said = ", ".join(f"{name} in {cases}" for name, cases in counts.items())

@@ -27,7 +27,7 @@ from trackroller.report.words.levels import group_texts, span
 from trackroller.report.words.sentence import phrase
 
 FRICTION = "friction_coefficient"
-NAMES = {"sliding": "The sliding model", "fastsim": "FASTSIM", "kalker_table": "The table of the exact theory"}
+NAMES = {"sliding": "The sliding model", "kalker_table": "The table of the exact theory"}
 MOST = 0.9  # a level is good enough if this share of its cases is
 IN_SHORT = ("normal_force", "friction_force", "friction_energy", "peak_stress", "life")
 FEWEST = 3  # smallest number of cases, rolling in both models, for a sentence
