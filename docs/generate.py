@@ -12,8 +12,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
 
 from trackroller import parameters as p
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.parameters.validity import VALIDITY
-from trackroller.roller.accuracy import PRESETS
 from trackroller.roller.dataset import COMMENTS, VARIABLES
 from validation.pages import TEMPLATES
 from validation.pages import render as render_written
@@ -105,13 +105,16 @@ def render() -> str:
     lines += ["### regime\n", "`regime` is an integer; each row has one.\n"]
     lines += _table(("value", "regime"), [(i, name) for i, name in enumerate(p.REGIMES)])
     lines += [
-        "### first_to_fail, contact_model_used, stopped\n",
+        "### first_to_fail, contact_model_used, accuracy_used, stopped\n",
         "`first_to_fail` (with `life`) is the body that fails first in hours: "
         + ", ".join(f"{i} {name}" for i, name in enumerate(p.FIRST_TO_FAIL))
         + f". {COMMENTS['first_to_fail'].capitalize()}. `pair_life_hours`: {COMMENTS['pair_life_hours']}.\n",
         "`contact_model_used` is the model that solved the case. The table serves `kalker` at accuracy",
-        "`preview` and for forces within a tolerance that it keeps. Outside its range `kalker` serves `kalker_table`: "
+        "`preview`. Outside its range `kalker` serves `kalker_table`: "
         + ", ".join(f"{i} {name}" for i, name in enumerate(p.CONTACT_MODELS))
+        + ".",
+        "`accuracy_used` (if `accuracy` is a tolerance) is the rung whose result the case has: "
+        + ", ".join(f"{i} {name}" for i, name in enumerate(PRESETS))
         + ".",
         "`stopped` (with `stop_if`): 1 where the condition holds.\n",
     ]
@@ -122,10 +125,10 @@ def render() -> str:
 
 
 def presets() -> str:
-    """Return the table of accuracy presets."""
+    """Return the table of the rungs of accuracy."""
     heads = (
-        "preset",
-        "tolerance of the peak",
+        "rung",
+        "error of the peak in full sliding",
         "Gauss points per smooth piece of the slip integrals",
         "quadrature of scan / climb / polish / summit",
         "floor of the error estimate",
@@ -136,7 +139,7 @@ def presets() -> str:
     for name, v in PRESETS.items():
         orders = f"{v.peak.scan} / {v.peak.climb} / {v.peak.polish} / {v.peak.summit}"
         rows.append(
-            (f"`{name}`", f"{v.tolerance:g}", v.force_nodes, orders, f"{v.peak.floor:g}", v.elements, USES[name])
+            (f"`{name}`", f"{v.peak_error:g}", v.force_nodes, orders, f"{v.peak.floor:g}", v.elements, USES[name])
         )
     return "\n".join(_table(heads, rows))
 

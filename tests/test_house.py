@@ -37,8 +37,6 @@ ORDER = (
     "cli",
     "__init__",
 )
-# circles that are still there; each is turned by the step of the redesign that moves its files
-CIRCLES = ({"trackroller.roller.expected_errors", "trackroller.roller.options"},)
 
 
 @dataclass
@@ -56,20 +54,10 @@ class House:
     upward: list[str] = field(default_factory=list)
     imports: dict[str, set[str]] = field(default_factory=dict)
 
-    def circle(self, without: tuple[set[str], ...] = ()) -> list[str]:
-        """Return the modules of one import circle, an empty list if there is none.
-
-        Parameters
-        ----------
-        without : tuple of set of str
-            Imports between two modules of one of these sets do not count.
-        """
-        graph = {
-            module: {other for other in found if not any({module, other} <= known for known in without)}
-            for module, found in self.imports.items()
-        }
+    def circle(self) -> list[str]:
+        """Return the modules of one import circle, an empty list if there is none."""
         try:
-            graphlib.TopologicalSorter(graph).prepare()
+            graphlib.TopologicalSorter(self.imports).prepare()
         except graphlib.CycleError as error:
             return list(error.args[1])
         return []
@@ -127,14 +115,7 @@ def test_no_room_imports_a_later_room(house):
 
 
 def test_no_files_import_each_other_in_a_circle(house):
-    assert house.circle(without=CIRCLES) == []
-
-
-@pytest.mark.parametrize("known", CIRCLES, ids=lambda known: min(known))
-def test_a_circle_that_is_excused_is_still_there(house, known):
-    """An excuse for a circle that is gone would let it come back."""
-    inside = {module: found & known for module, found in house.imports.items() if module in known}
-    assert House(imports=inside).circle()
+    assert house.circle() == []
 
 
 def test_the_survey_finds_what_it_looks_for(tmp_path):
@@ -151,4 +132,3 @@ def test_the_survey_finds_what_it_looks_for(tmp_path):
     assert house.upward == ["trackroller/contact/hertz.py:2 imports trackroller.roller.case"]
     circle = {"trackroller.contact.hertz", "trackroller.roller.case"}
     assert set(house.circle()) == circle
-    assert house.circle(without=(circle,)) == []

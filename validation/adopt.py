@@ -3,10 +3,9 @@
     python -m validation.adopt [TARGET ...] [--results FOLDER]
 
 Targets are those of `validation/Snakefile`; without a target, all that FOLDER (default `results`) holds. What was not
-measured again stays. `tradeoff` also writes the ladders of settings of the package. The presets follow from the
-ladders, so numbers of solutions may change. Studies solve their cases anew by themselves then, because the ladders are
-part of the solver's digest. `benchmarks` also writes the costs that `plan` uses, and `kalker_table` the table of the
-package.
+measured again stays. `tradeoff` also writes the costs that `plan` uses and the errors that results state; studies solve
+their cases anew by themselves then, because these errors are part of the solver's digest. `kalker_table` also writes
+the table of the package.
 """
 
 from __future__ import annotations
@@ -23,44 +22,58 @@ from PIL import Image
 
 from trackroller.contact.table import spline
 from trackroller.parameters import contact_models
-from trackroller.roller import accuracy
-from validation.benchmarks import groove, programs, scaling, trade
+from trackroller.parameters.accuracy import RUNGS
+from trackroller.roller import expected_errors
+from validation.benchmarks import groove, programs, scaling
 
 DOCS = Path(__file__).resolve().parents[1] / "docs"
 DATA, FIGURES = DOCS / "data", DOCS / "figures"
-LADDERS = Path(accuracy.__file__).with_name("accuracy.json")
+ERRORS = Path(expected_errors.__file__).with_name(expected_errors.FILE)
 TABLE = Path(spline.__file__).with_name(spline.TABLE)
 COSTS = contact_models.FILE
 TARGETS = ("extremes", "tradeoff", "paper", "contact_models", "kalker_table", "benchmarks")
 # figures that the pages show, by target: pattern of their names, and colours of the reduced palette, if it is reduced
 PICTURES = {
     "extremes": ("extremes_*.png", 0),
-    "tradeoff": ("tradeoff_*.png", 0),
+    "tradeoff": ("tradeoff*.png", 0),
     "paper": ("paper_*.png", 96),
     "contact_models": ("models-*.png", 64),
 }
 
 
-def ladders() -> str:
-    """Return the text of the file of ladders from the stored data."""
-    summary = json.loads((DATA / "tradeoff.json").read_text(encoding="utf-8"))
-    content = {
-        "made_by": "python -m validation.adopt tradeoff, from `snakemake -s validation/Snakefile tradeoff`",
-        "sample": summary["sample"],
-        "ladders": summary["ladders"],
-    }
-    return json.dumps(content, indent=1) + "\n"
+MADE_BY = "python -m validation.adopt tradeoff, from `snakemake -s validation/Snakefile tradeoff`"
+
+
+def _measured() -> Any:
+    return json.loads((DATA / "tradeoff.json").read_text(encoding="utf-8"))
+
+
+def errors() -> str:
+    """Return the text of the file of expected errors from the stored data: median, 95 and 99 %, and bound."""
+    models: dict[str, Any] = {}
+    for row in _measured()["rungs"]:
+        levels = {name: [float(f"{float(v):.3g}") for v in own] for name, own in row["levels"].items()}
+        models.setdefault(row["model"], {})[row["accuracy"]] = levels
+    return json.dumps({"made_by": MADE_BY, "models": models}, indent=1) + "\n"
 
 
 def costs() -> str:
     """Return the text of the file of costs from the stored data: those of forces, and of peaks in addition."""
-    content: dict[str, Any] = {"made_by": "python -m validation.adopt benchmarks, from validation.benchmarks.trade"}
-    measured = json.loads((DATA / "trade.json").read_text(encoding="utf-8"))
-    for kind, rows in (("models", measured["rows"]), ("falling", measured["falling"])):
+    measured = _measured()
+    ordinary, wide = measured["costs"].values()
+    both = [
+        own | {name: 0.5 * (own[name] + other[name]) for name in ("complete", "forces")}
+        for own, other in zip(ordinary, wide, strict=True)
+    ]
+    content: dict[str, Any] = {"made_by": MADE_BY}
+    for kind, rows in (("models", both), ("falling", measured["falling"])):
         models = content[kind] = {}
         for row in rows:
-            forces, complete = row["forces"], max(row["complete"], row["forces"])
-            models.setdefault(row["model"], {})[str(row["accuracy"])] = [round(forces, 4), round(complete - forces, 4)]
+            if row["accuracy"] in RUNGS:
+                forces, complete = row["forces"], max(row["complete"], row["forces"])
+                own = [round(forces, 4), round(complete - forces, 4)]
+                models.setdefault(row["model"], {})[row["accuracy"]] = own
+    content["shares"] = measured["shares"]
     return json.dumps(content, indent=1) + "\n"
 
 
@@ -84,11 +97,6 @@ def adopt(target: str, results: Path) -> None:
         One of `TARGETS`.
     results : Path
         The folder that holds the folders of the targets.
-
-    Raises
-    ------
-    SystemExit
-        If the trade-off left out a contact model: its ladder would be empty.
     """
     folder = results / target
     if target == "benchmarks":
@@ -97,20 +105,17 @@ def adopt(target: str, results: Path) -> None:
                 shutil.copy(folder / f"{name}.json", DATA)
         measured = json.loads((DATA / "scaling.json").read_text(encoding="utf-8"))
         scaling.draw(measured["by_size"], measured["by_accuracy"], FIGURES)
-        trade.draw(json.loads((DATA / "trade.json").read_text(encoding="utf-8")), FIGURES)
-        COSTS.write_text(costs(), encoding="utf-8")
         groove.draw(json.loads((DATA / "groove.json").read_text(encoding="utf-8")), FIGURES)
         return
     data = folder / f"{target}.json"
-    if target == "tradeoff" and not all(json.loads(data.read_text(encoding="utf-8"))["ladders"].values()):
-        raise SystemExit("a ladder is empty: measure all contact models first")
     shutil.copy(data, DATA)
     if target in PICTURES:
         copy_figures(folder / "figures", *PICTURES[target])
         if target != "contact_models":  # its template writes the captions
             shutil.copy(folder / "figures" / "index.json", DATA / f"{target}_figures.json")
     if target == "tradeoff":
-        LADDERS.write_text(ladders(), encoding="utf-8")
+        ERRORS.write_text(errors(), encoding="utf-8")
+        COSTS.write_text(costs(), encoding="utf-8")
     if target == "kalker_table":
         shutil.copy(folder / "kalker_table.npz", TABLE)
 

@@ -16,7 +16,7 @@ from trackroller.contact.models import contact_model
 from trackroller.contact.sliding import integrals
 from trackroller.contact.slip import Slip
 from trackroller.errors import InputError
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.equilibrium import Loads, solve_equilibrium

@@ -18,7 +18,7 @@ from trackroller.contact.kalker import Creepage, KalkerSettings, extrapolation, 
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.slip import Slip, turning_of
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.geometry import curvatures, rolling_radius
 
 # 58 equilibria by CONTACT (open-source release 2025) on 40x40 and 60x60 elements, first order: extrapolated here

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from trackroller.contact.kalker import columns
+from trackroller.contact.kalker import newton as columns
 
 
 def _derivative(height, rng):

@@ -25,7 +25,7 @@ from trackroller.contact.normal import sliding as normal_sliding
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.grid_peak import GridLoad, find_grid_peaks
 from trackroller.halfspace.stress import body_stress, stress_from_tractions
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.options import Options
 
 PARABOLAS = {"guide_profile": {"parabola": 6.0}, "roller_profile": {"parabola": -7.0}}
@@ -128,7 +128,7 @@ def test_stress_parts_of_a_grid_are_those_of_its_tractions():
 def test_peak_below_a_grid_matches_the_peak_below_the_ellipse(shift):
     from trackroller.halfspace.ellipse import patch_rows
     from trackroller.halfspace.peak import find_peaks
-    from trackroller.roller.accuracy import PRESETS
+    from trackroller.parameters.accuracy import PRESETS
 
     e, grid = hertz_patch(40)
     slip, mu, nu = slip_of(shift), np.array([0.3]), np.array([[0.33, 0.3]])

@@ -10,7 +10,7 @@ from scipy.integrate import quad
 import trackroller as tr
 from trackroller.contact.common import Ellipse
 from trackroller.damage.wear import deepest, mass_loss, wear_depth
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.dataset import validity_bit
 
 QUENCHED = "1.7225-quenched-tempered"

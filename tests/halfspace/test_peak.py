@@ -8,11 +8,9 @@ import trackroller as tr
 from trackroller.contact.common import Ellipse
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
-from trackroller.halfspace.ellipse_kernels import GRADES
-from trackroller.halfspace.peak import find_peaks
-from trackroller.halfspace.peak_seeds import MOST_ON_RIDGE, ridge_points
+from trackroller.halfspace.peak import MOST_ON_RIDGE, find_peaks, ridge_points
 from trackroller.halfspace.stress import von_mises
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 
 
 def patch(a=1.0, b=1.0, mu=0.0, shift=0.0, fixed=0.0, alpha=0.5, model=2):
@@ -204,7 +202,7 @@ def test_accuracy_is_a_ladder():
     peaks = {name: solve_sliding(cases, accuracy=name).peak_stress for name in ("preview", "standard", "reference")}
     off = [float(np.nanmedian(np.abs(peaks[n] / peaks["reference"] - 1))) for n in ("preview", "standard")]
     assert off[1] < off[0] < 0.01
-    assert solve_sliding(cases[:1], accuracy=1e-3).attrs["accuracy"] == "0.001"
+    assert solve_sliding(cases[:1], accuracy=0.02).attrs["accuracy"] == "0.02"
 
 
 def test_friction_brings_the_peak_to_the_surface():
@@ -234,24 +232,3 @@ def test_ridge_points_lie_where_sliding_begins():
     assert ridge_points(UNIFORM, finer).shape == (2 * MOST_ON_RIDGE, 3)
     few = ridge_points(UNIFORM, np.ascontiguousarray(fields[0, :, ::4, ::4]))  # no more points than the line has
     assert len(np.unique(few, axis=0)) == len(few) < MOST_ON_RIDGE
-
-
-def test_graded_elements_give_the_stresses_of_equal_ones():
-    """A smooth field on 480 x 480 equal elements and on 160 x 128 that are dense around a point; the mirror image."""
-    row = patch(a=0.5, b=0.8, mu=0.4)
-    graded, grades = row.copy(), {}
-    for axis, (mid, width, count) in {"x": (0.3, 0.1, 160), "y": (-0.2, 0.2, 128)}.items():
-        start, end = np.arcsinh((-1.0 - mid) / width), np.arcsinh((1.0 - mid) / width)
-        for name, value in zip(GRADES[:4], (mid, width, start, end - start), strict=True):
-            graded[name.replace("_x", f"_{axis}")] = value
-        grades[axis] = mid + width * np.sinh(start + (end - start) * (np.arange(count) + 0.5) / count)
-
-    def field(x, y):
-        angle = 2.0 * x - y[:, None]
-        return np.stack([np.cos(angle), np.sin(angle)]) * (0.6 + 0.4 * np.sin(3.0 * x) * np.cos(2.0 * y[:, None]))
-
-    equal = (2.0 * np.arange(480) + 1.0) / 480 - 1.0
-    points = np.array([[0.15, -0.16, 0.0], [-0.3, 0.4, 0.0], [0.1, 0.2, 0.15], [0.45, 0.5, 0.0]])
-    one = stress_parts(row, points, 48, 48, field(equal, equal))
-    other = stress_parts(graded, points, 48, 48, field(grades["x"], grades["y"]))
-    np.testing.assert_allclose(other, one, atol=4e-4 * np.abs(one).max())

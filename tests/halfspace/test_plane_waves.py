@@ -4,12 +4,12 @@ import numba
 import numpy as np
 import pytest
 
-from trackroller.halfspace import ellipse_kernels, ellipse_rays
-from trackroller.halfspace.ellipse_kernels import PATCH, PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, Place
+from trackroller.halfspace import ellipse
+from trackroller.halfspace.ellipse import PATCH, PRESSURE, PRESSURE_NU, SHEAR, SHEAR_NU, Place
 from trackroller.halfspace.kernels import point_kernel
 from validation.derivations.plane_waves import plane_wave_stress
 
-sum_waves, sum_rays = ellipse_kernels.sum_waves, ellipse_rays.sum_rays
+sum_waves, sum_rays = ellipse.sum_waves, ellipse.sum_rays
 
 
 @numba.njit()
@@ -24,9 +24,9 @@ def ray(patch, place, rule, work, out):
 
 def scratch(**values):
     """Return a scratch array of the kernels with one entry a row."""
-    work = np.zeros(ellipse_kernels.SCRATCH)
+    work = np.zeros(ellipse.SCRATCH)
     for name, value in values.items():
-        work[getattr(ellipse_kernels, name)] = value
+        work[getattr(ellipse, name)] = value
     return work
 
 

@@ -115,7 +115,7 @@ def test_constraints_and_stop_if_take_units():
 
 def test_options_and_duty_take_units():
     assert Options(failure_probability="10 %").failure_probability == 0.1
-    assert Options(accuracy="1 %", outputs=("forces",)).settings == Options(accuracy=0.01, outputs=("forces",)).settings
+    assert Options(accuracy="1 %", outputs=("forces",)).accuracy == 0.01
     study = tr.load_study({**HEAD, "accuracy": "1 %", "failure_probability": "1 %"})
     assert (study.config.accuracy, study.config.failure_probability) == (0.01, 0.01)
     assert checked_duty({"hours_per_day": "960 min", "days_per_year": "25 weeks"}) == {

@@ -9,7 +9,7 @@ import pytest
 import trackroller as tr
 from trackroller.contact.kalker import batch, correction
 from trackroller.contact.kalker.correction import Correction
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.equilibrium import corrected, solve_equilibrium
 from trackroller.roller.options import Options

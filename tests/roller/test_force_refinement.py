@@ -8,7 +8,7 @@ import pytest
 import trackroller as tr
 from trackroller.contact.kalker import batch, correction, extrapolation
 from trackroller.contact.sliding_model import SlidingModel
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.case import to_table
 from trackroller.roller.equilibrium import solve_equilibrium
 from trackroller.roller.options import Options
@@ -76,7 +76,7 @@ def test_peaks_take_the_finer_tractions_of_the_forces(designs):
     own, (patch, slip) = scene.model.correction, scene.contacts(solve_equilibrium(scene.loads, scene.model.law))
     rows, friction = np.zeros(2, int), scene.loads.friction[[0, 0]]
     own.solve(patch, slip, friction, rows)
-    refined = own.finer[0].known.copy()
+    refined = own.finer.known.copy()
     assert refined.any()
     again = own.on_finer(patch, slip, friction, rows, own.solution(patch, slip, friction, rows))
     assert again.converged.all() and (again.steps[refined] == 0).all()

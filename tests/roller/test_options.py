@@ -16,7 +16,6 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.parameters import CONTACT_MODELS, OPTIONS, options_text
-from trackroller.roller.accuracy import own_errors
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.study.file.load import parse_study
@@ -54,14 +53,12 @@ def test_the_simplified_theory_is_refused_with_what_to_take_instead():
             refused()
 
 
-def test_the_table_serves_the_exact_theory_where_its_measured_error_suffices():
-    def used(accuracy, *outputs, law=""):
-        return model_in_use(Options(contact_model="kalker", accuracy=accuracy, outputs=outputs or ("forces",)), law)
+def test_the_table_serves_the_exact_theory_at_preview_only():
+    def used(accuracy, law=""):
+        return model_in_use(Options(contact_model="kalker", accuracy=accuracy), law)
 
-    bound = own_errors("kalker_table")["friction_force"].p99
-    assert used(1.1 * bound) == used(1.1 * bound, "forces", "contact") == used("preview", "life") == "kalker_table"
-    assert used(0.8 * bound) == used("standard") == used(0.2, "forces", "peak_stress") == used(0.2, "friction_work")
-    assert used("standard") == used("preview", law='{"kind": "linear", "lowest": 0.5, "speed": 50}') == "kalker"
+    assert used("preview") == "kalker_table" and used("standard") == used("reference") == "kalker"
+    assert used("preview", law='{"kind": "linear", "lowest": 0.5, "speed": 50}') == "kalker"
 
 
 def test_a_spin_model_needs_the_contact_model_that_has_one():

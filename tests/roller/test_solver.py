@@ -159,7 +159,7 @@ def test_a_table_of_hertz_is_refused_where_there_is_no_ellipse():
 def test_blocks_keep_the_flags_of_each_body():
     """Rows that are taken from joined blocks keep the validity flags of roller and guide."""
     n = 3
-    plain = {name: np.arange(n) for name in ("regime", "converged", "bits", "model", "stopped")}
+    plain = {name: np.arange(n) for name in ("regime", "converged", "bits", "model", "rung", "stopped")}
     blocks = [Block({"force": np.arange(n) + k}, **plain, bodies=np.arange(2 * n).reshape(n, 2) + k) for k in (0, 10)]
     found = join(blocks).take(np.array([4, 0]))
     assert found.bodies.tolist() == [[12, 13], [0, 1]]

@@ -1,4 +1,4 @@
-"""The expected cost of a study counts friction laws; `validation.benchmarks.trade` measures it."""
+"""The expected cost of a study counts friction laws; `validation.tradeoff` measures it."""
 
 from __future__ import annotations
 

@@ -64,7 +64,7 @@ def test_solver_depends_on_late_imports_and_data():
     names = {path.relative_to(sources.PACKAGE).as_posix() for path in sources.source_files(sources.SOLVER)}
     wanted = """roller/geometry.py roller/case.py roller/options.py roller/requirements.py roller/stop.py
     parameters/__init__.py parameters/numbers.py parameters/options.py
-    roller/accuracy.json contact/table/kalker_table.npz contact/kalker_linear.csv
+    roller/expected_errors.json contact/table/kalker_table.npz contact/kalker_linear.csv
     contact/profiles.py contact/drawn_profiles.py damage/fatigue.py numerics/quadrature.py"""
     assert set(wanted.split()) <= names
     assert not any(name.startswith(("study/", "report/", "cli/", "analysis/")) for name in names)
@@ -104,7 +104,7 @@ CHANGES = {
         "1.001 / np.asarray(roller_profile_radius)",
         True,
     ),
-    "data": (Path("roller") / "accuracy.json", '"seed"', '"seeds"', True),
+    "data": (Path("roller") / "expected_errors.json", '"standard"', '"standards"', True),
     "docstring": (GEOMETRY, '"""', '"""Other words. ', False),
     "comment": (GEOMETRY, "    return np.asarray(", "    # why\n\n    return np.asarray(", False),
     "another room": (Path("study") / "status.py", "import numpy as np", "import numpy", False),

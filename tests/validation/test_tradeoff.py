@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -11,16 +11,16 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.contact.slip import pole_split, rolling_slip
-from trackroller.errors import InputError
-from trackroller.roller import accuracy as ac
+from trackroller.parameters.accuracy import PRESETS, RUNGS
 from trackroller.roller.expected_errors import expected_errors
+from trackroller.roller.options import Options
 from validation import adopt as adopted
-from validation.tradeoff import __main__ as tradeoff_program
-from validation.tradeoff import parts as tradeoff
-from validation.tradeoff import settings as tradeoff_settings
-from validation.tradeoff import summary as tradeoff_summary
+from validation.benchmarks.command import plain
+from validation.paper.table_2 import paper_table
+from validation.tradeoff import page
 from validation.tradeoff.errors import observed_order, percentiles, relative_errors, tolerance_bound
-from validation.tradeoff.measure import reference_solution
+from validation.tradeoff.figures import draw_all
+from validation.tradeoff.measure import measure
 from validation.tradeoff.sample import sample
 
 OUTPUTS = ("forces", "contact", "peak_stress", "life")
@@ -74,40 +74,18 @@ def test_errors_are_relative_to_their_scales_and_another_regime_is_infinite():
     assert np.isinf(relative_errors(other, ds)["normal_force"]).tolist() == [False, True]
 
 
-def finest_tolerance(model, *outputs):
-    """Return the finest tolerance of a model, as the refusal of a finer one tells it."""
-    with pytest.raises(InputError, match=f"the finest tolerance that {model} reaches here is") as refusal:
-        ac.accuracy_settings(1e-12, model, *outputs)
-    hit = re.search(r"reaches here is ([\d.e-]+)", str(refusal.value))
-    assert hit is not None
-    return float(hit[1])
-
-
-@pytest.mark.parametrize("model", ["sliding"])
-def test_a_tolerance_takes_the_cheapest_rung_that_keeps_it_and_refuses_what_is_out_of_reach(model):
-    reached = finest_tolerance(model)
-    before: ac.Accuracy | None = None
-    for tolerance in np.geomspace(0.9, 1.001 * reached, 12):
-        chosen = ac.accuracy_settings(float(tolerance), model)
-        errors = expected_errors(chosen, model)
-        assert errors["peak_stress"].bound <= tolerance * (1 + 1e-6)
-        assert max(errors[q].bound for q in ac.FORCE_QUANTITIES) <= tolerance
-        if model != "sliding" and before is not None:
-            assert chosen.elements >= before.elements
-        before = chosen
-
-
-def test_presets_are_rungs_in_order():
-    promised = [ac.PRESETS[name] for name in ("preview", "standard", "reference")]
-    for finer, coarser in zip(promised[1:], promised, strict=False):
-        assert finer.force_nodes >= coarser.force_nodes and finer.elements >= coarser.elements
-        bounds = [expected_errors(p, "sliding")["peak_stress"].bound for p in (finer, coarser)]
+def test_rungs_are_in_order():
+    for finer, coarser in zip(RUNGS[1:], RUNGS, strict=False):
+        one, other = PRESETS[finer], PRESETS[coarser]
+        assert one.force_nodes >= other.force_nodes and one.elements >= 2 * other.elements
+        options = [Options(contact_model="sliding", accuracy=name) for name in (finer, coarser)]
+        bounds = [expected_errors(own, "sliding", True)["peak_stress"].bound for own in options]
         assert bounds[0] < bounds[1]
 
 
 def test_results_carry_their_expected_error():
     """Attributes state the measured error of the setting; that of life is k times that of the peak (S-N curve)."""
-    ds = solve_sliding(tr.Case(), accuracy=1e-2)
+    ds = solve_sliding(tr.Case())
     assert (
         0 < ds.peak_stress.attrs["expected_relative_error"] <= ds.peak_stress.attrs["relative_error_99_percent"] < 0.02
     )
@@ -115,17 +93,6 @@ def test_results_carry_their_expected_error():
     exponent = np.log(5e6 / 1e4) / np.log(2.0)
     np.testing.assert_allclose(ds.life_error_estimate, exponent * ds.error_estimate)
     assert ds.life_cycles.attrs["expected_relative_error"] > ds.peak_stress.attrs["expected_relative_error"]
-
-
-@pytest.mark.slow
-def test_tolerances_hold_on_a_fresh_sample():
-    """At most one case in fifty exceeds its tolerance, for forces and peaks; benchmarks/tolerance.py has more."""
-    cases = sample(40, seed=4711)
-    reference, _ = reference_solution(cases, "sliding", OUTPUTS)
-    for tolerance in (2e-2, 3e-3):
-        errors = relative_errors(solve_sliding(cases, outputs=OUTPUTS, accuracy=tolerance), reference)
-        worst = np.max([errors[q] for q in (*ac.FORCE_QUANTITIES, "peak_stress")], axis=0)
-        assert np.sum(worst > tolerance) <= 1
 
 
 def test_split_pole_is_where_the_slip_of_the_circle_vanishes():
@@ -140,35 +107,21 @@ def test_split_pole_is_where_the_slip_of_the_circle_vanishes():
 
 
 @pytest.mark.slow
-def test_measurement_runs_from_parts_to_page(tmp_path, monkeypatch):
-    """Two designs through all parts, files, summary, figures and report; orders come out as they must."""
-    monkeypatch.setattr(tradeoff_settings, "ELEMENTS", {"kalker": (8, 12)})
-    monkeypatch.setattr(tradeoff_settings, "SEARCHES", tradeoff_settings.SEARCHES[:5:2])
-    monkeypatch.setattr(tradeoff_settings, "FORCE_NODES", (6, 12, 20))
-    for place in (tradeoff_settings, tradeoff_summary):
-        monkeypatch.setattr(place, "REFERENCE_ELEMENTS", {"kalker": 16})
-    text = "tradeoff: {sliding: {designs: 3, parts: 2}, kalker: {designs: 1, parts: 1}, stages: 4}\n"
-    sizes = tmp_path / "tradeoff.yaml"
-    sizes.write_text(text, encoding="utf-8")
-    names = tradeoff.load_sizes(sizes).names()
-    assert names == ["kalker-0", "sliding-0", "sliding-1", "stages-0"]
-    for name in names:
-        tradeoff.write_part(name, str(sizes), str(tmp_path / f"{name}.nc"))
-    out = tmp_path / "out"
-    out.mkdir()
-    tradeoff.write_gathered([str(tmp_path / f"{n}.nc") for n in names], str(sizes), str(out / "tradeoff.nc"))
-    tradeoff_program.show(out / "tradeoff.nc")
-    found = json.loads((out / "tradeoff.json").read_text(encoding="utf-8"))
-    orders = {(o["stage"], o["method"], o["quantity"]): o["order"] for o in found["orders"]}
-    assert 1.0 < orders["tractions", "grid", "friction_force"] < 3.0
-    assert orders["stress", "bilinear elements", "stress"] > 0.4
-    published = next(r for r in found["settings"] if r["stage"] == "ellipse" and r["label"] == "published")
-    assert published["errors"]["semi_axes"][0] > 1e-4, "linear interpolation in the printed table"
-    paper = {r["what"]: r for r in found["paper_table"]}
-    assert paper["converged"]["inner"] == pytest.approx(389.8, rel=3e-3)
-    assert paper["converged"]["peak"] == pytest.approx(412.3, rel=2e-3)
-    figures = {p.stem for p in (out / "figures").glob("*.svg")}
-    assert {"tradeoff_peak_stress", "tradeoff_normal_force", "tradeoff_convergence"} <= figures
+def test_the_measurement_gives_what_the_page_and_the_package_need(tmp_path):
+    found = json.loads(json.dumps(plain(measure(few=1, repeats=1))))
+    draw_all(found, tmp_path)
+    assert (tmp_path / "tradeoff.png").is_file() and (tmp_path / "index.json").is_file()
+    kept = json.loads((adopted.DATA / "tradeoff.json").read_text(encoding="utf-8"))
+    assert found.keys() == kept.keys() and found["designs"] == {"ordinary": 1, "wide": 1, "sliding": 1}
+    shown = page.facts({"tradeoff": found})
+    assert shown.keys() == page.facts({"tradeoff": kept}).keys() and len(shown["rung_rows"]) == 18
+    assert found["shares"]["kalker"]["forces"]["0.01"][:2] == [0.0, 1.0]  # the table cannot keep 0.01
+
+
+def test_the_table_of_the_paper_is_computed_anew():
+    rows = {row["what"]: row for row in paper_table()}
+    assert rows["converged"]["inner"] == pytest.approx(389.8, rel=3e-3)
+    assert rows["converged"]["peak"] == pytest.approx(412.3, rel=2e-3)
 
 
 def test_forces_of_patches_that_reach_the_equator_converge():
@@ -186,26 +139,17 @@ def test_forces_of_patches_that_reach_the_equator_converge():
         guide_material="PA6",
     )
     rough, fine = (
-        solve_sliding(case, outputs=("forces", "contact"), accuracy=tradeoff_settings.accuracy_of(n)) for n in (12, 40)
+        solve_sliding(case, outputs=("forces", "contact"), accuracy=replace(PRESETS["standard"], force_nodes=n))
+        for n in (12, 40)
     )
     equator = 2.1 * np.tan(np.radians(90 - 75) / 2)
     assert (fine.semi_axis_lateral > equator).all()
     np.testing.assert_allclose(rough.normal_force, fine.normal_force, rtol=1e-6)
 
 
-@pytest.mark.parametrize(
-    "text", ["sliding: 3", "tradeoff: 3", "tradeoff: {sliding: 3}", "tradeoff: {slidin: {designs: 3, parts: 1}}"]
-)
-def test_wrong_sizes_are_refused(tmp_path, text):
-    path = tmp_path / "t.yaml"
-    path.write_text(text, encoding="utf-8")
-    with pytest.raises(InputError):
-        tradeoff.load_sizes(path)
-
-
-def test_the_ladders_of_the_package_are_those_of_the_kept_data():
-    assert adopted.LADDERS.read_text(encoding="utf-8") == adopted.ladders(), "run: python -m validation.adopt tradeoff"
+def test_the_errors_of_the_package_are_those_of_the_kept_data():
+    assert adopted.ERRORS.read_text(encoding="utf-8") == adopted.errors(), "run: python -m validation.adopt tradeoff"
 
 
 def test_the_costs_of_the_package_are_those_of_the_kept_data():
-    assert adopted.COSTS.read_text(encoding="utf-8") == adopted.costs(), "run: python -m validation.adopt benchmarks"
+    assert adopted.COSTS.read_text(encoding="utf-8") == adopted.costs(), "run: python -m validation.adopt tradeoff"

@@ -30,6 +30,7 @@ PLAIN_RESULTS = (
     "stopped",
     "energy_residual",
     "contact_model_used",
+    "accuracy_used",
 )
 OF_BODIES = ("validity_body", "life_to_first_limit_hours", "limiting_mechanism")
 SURFACE_SHARE = 0.01  # of the smaller semi-axis: a peak above this depth counts as lying at the surface

@@ -18,10 +18,11 @@ from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Accuracy, Rollers
+from trackroller.contact.settings import Rollers
 from trackroller.contact.sliding_model import SlidingModel
 from trackroller.contact.table.model import TableModel
 from trackroller.errors import InputError, check_names
+from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import declare
 
 CLASSES: dict[str, type[ContactModel]] = {

@@ -6,7 +6,6 @@ contact frame are those of `trackroller.contact.common`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol
 
 import numpy as np
@@ -84,7 +83,6 @@ class ContactModel:
     elastic = True  # the surfaces move elastically along the patch, so that parts of it can adhere
     full_sliding = False  # the shear follows from an ellipse and a slip field in closed form; it needs no grid
     knows_tractions = True  # forces and `surface` come from one solution
-    elements = 1  # along each axis of a patch; only models with windows set it
     refines = False  # `surface` is exact for any number of elements of a refined patch
     difference_step = 1e-3  # relative step of derivatives, above the noise of the model
     residual = 1e-7  # relative residual of the equilibrium that the model can reach
@@ -102,9 +100,9 @@ class ContactModel:
 
     @classmethod
     def errors(cls) -> dict[str, tuple[float, float, float, float]]:
-        """Return measured errors of the forces by quantity: median, 95 and 99 %, bound; `ModelDeclaration.own_errors`.
+        """Return the constant errors of the forces by quantity: median, 95 and 99 %, bound; empty for other models.
 
-        Quantities are those of `roller.accuracy.FORCE_QUANTITIES`.
+        Quantities are `friction_force`, over mu F_N, and `spin_moment`, over mu F_N sqrt(a b).
         """
         return {}
 
@@ -123,31 +121,19 @@ class ContactModel:
         """
         return None
 
-    def finer_shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int = 1) -> Any:
-        """Return `shares` after `doublings` of the elements of the patches, and whether this has converged, (m,).
+    def finer_shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+        """Return `shares` from twice the elements of the patches, and whether these have converged, (m,).
 
         None if the model does not refine patches.
         """
         return None
 
-    def pole_stress(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, doublings: int) -> Any:
-        """Return the stress near the spin pole over p_max, and what elements miss of it, (m,) each; 0 if unknown.
+    def pole_stress(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the stress near the spin pole over p_max that the elements may miss, (m,); 0 if unknown or resolved.
 
-        The elements are those of the patch after `doublings`.
+        Such a stress is expected only beside a small adhesion area.
         """
-        return np.zeros(len(rows)), np.zeros(len(rows))
-
-    def windows(
-        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, residual: float, doublings: int
-    ) -> Iterator[Any]:
-        """Return an iterator over the tractions of one patch on finer and finer elements around its adhesion area.
-
-        Each item is a function and the number of elements in this area. The function takes how many points of the
-        traction to give along each side of an element; it returns the traction and the grading of its points. The
-        other elements are those of the patch after `doublings`. In the windows, the residual of the friction law is at
-        most `residual` times mu p_max. A model without finer elements gives no item.
-        """
-        return iter(())
+        return np.zeros(len(rows))
 
     def power(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""

@@ -6,7 +6,8 @@ from trackroller.contact import sliding
 from trackroller.contact.common import Works
 from trackroller.contact.normal.models import GridSlidingModel
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Accuracy, Rollers
+from trackroller.contact.settings import Rollers
+from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import DECLARED
 
 FINER = 2  # points of sliding tractions on a grid, over the elements of the rolling contact models

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.halfspace.ellipse import Room, fields_of, refinement, unit_rule
-from trackroller.halfspace.peak_climb import Target, lengths, scan
+from trackroller.halfspace.peak import Target, lengths, scan
 from trackroller.numerics.compiled import compiled
 from trackroller.numerics.threads import share_rows
 

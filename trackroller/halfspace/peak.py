@@ -1,38 +1,491 @@
 """The largest von Mises stress in the closed half-space below a sliding Hertzian ellipse.
 
 A coarse scan over surface and depth finds seeds; both bodies share its stress evaluations. From each seed a pattern
-search climbs (`peak_climb`); points on the surface and on the edge of the patch are allowed. The highest point is
+search with parabolas climbs; points on the surface and on the edge of the patch are allowed. The highest point is
 evaluated again with finer quadrature.
+
+Coordinates are normalised: x over a, y over b, depth over the smaller semi-axis. Stresses are per unit p_max. The
+compiled functions treat one patch; with NumPy the arrays of a few points cost more than their stresses.
 """
 
 from __future__ import annotations
 
 import dataclasses
+import math
 from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.halfspace.ellipse import FIELD, Room, fields_of, refinement
-from trackroller.halfspace.peak_climb import (
-    Rules,
-    Target,
-    has_ridges,
-    lengths,
-    no_climbs,
-    polish,
-    scan,
-    set_steps,
-    standing,
-    stress_at,
-    sweep,
-)
-from trackroller.halfspace.peak_near import climb_near
-from trackroller.halfspace.peak_seeds import along_turn, best_seeds, ridge_points, scan_points, spike
+from trackroller.halfspace.ellipse import FIELD, Room, fields_of, near_parts, refinement, unit_rule
 from trackroller.halfspace.peak_settings import PeakSettings
+from trackroller.halfspace.rigid_slip import pole_offset, slip_zeros
+from trackroller.halfspace.stress import FRICTION_SIGNS, von_mises_of_parts
 from trackroller.numerics.compiled import assign, compiled, woven
 from trackroller.numerics.rows import Rows
 from trackroller.numerics.threads import share_rows
+
+Rings = tuple[tuple[float, int], ...]
+
+
+def _scan_points(surface: Rings, below: tuple[tuple[float, Rings], ...]) -> np.ndarray:
+    """Return points (rho cos, rho sin, depth) in normalised coordinates, (m, 3); rings are radii and counts."""
+    rows = [(0.0, 0.0, 0.0), (1.0, 0.0, 0.0), (-1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, -1.0, 0.0)]
+    for rho, count in surface:
+        angles = 2 * np.pi * (np.arange(count) + 0.5 * (count == 12)) / count
+        rows += [(rho * math.cos(t), rho * math.sin(t), 0.0) for t in angles]
+    for depth, rings in below:
+        rows.append((0.0, 0.0, depth))
+        for rho, count in rings:
+            angles = 2 * np.pi * (np.arange(count) + 0.5 * (rho == 0.4)) / count
+            rows += [(rho * math.cos(t), rho * math.sin(t), depth) for t in angles]
+    return np.array(rows)
+
+
+_DEEP = ((0.5, ((0.45, 6),)), (0.75, ((0.45, 4),)))
+SCAN = _scan_points(
+    ((0.3, 6), (0.53, 10), (0.75, 12), (0.92, 12), (1.0, 12)),
+    ((0.12, ((0.4, 6), (0.8, 6))), (0.2, ((0.95, 8),)), (0.3, ((0.4, 6), (0.8, 6))), *_DEEP),
+)
+# For tractions with adhesion: in random designs the peaks lie below the centre, or on the surface far from the rim.
+SCAN_ADHESION = _scan_points(((0.3, 6), (0.53, 10), (0.78, 8), (1.0, 8)), ((0.3, ((0.6, 5),)), *_DEEP))
+
+MOST_ON_RIDGE, OF_GRID = 128, 84  # points on the line where sliding begins, for each OF_GRID points of the grid
+STICKS = 1.0 - 1e-4  # square of the traction over its bound below which an element sticks
+NEAR_RIM = 0.98  # distance from the centre up to which the ridge is followed
+SEED_WORTH = 0.85  # least stress of a seed over the largest
+
+SPLIT = (0.02, 0.06)  # distances from the pole over the semi-axis at which a spike begins to count, and counts in full
+
+
+def scan_points(patches: np.ndarray, slender: bool, adhesion: bool) -> np.ndarray:
+    """Return the points of the scans, (n, m, 3): common points and points on the line where the lateral slip vanishes.
+
+    The slip changes direction sharply on this line, which carries ridges of stress. In `slender` patches the slip turns
+    within a fraction of the long axis; lines on both sides of this line and across the pole are added.
+
+    Parameters
+    ----------
+    patches : numpy.ndarray, shape (n,)
+        Records of `ellipse.patch_rows`.
+    slender : bool
+        True for slender patches.
+    adhesion : bool
+        True for tractions with adhesion, which turn smoothly: fewer points are enough, unless they are slender.
+    """
+    if adhesion and not slender:
+        return np.broadcast_to(SCAN_ADHESION, (len(patches), *SCAN_ADHESION.shape))
+    pole = np.clip(patches["pole_x"] / patches["a"], -1.0, 1.0)[:, None]
+    share = np.array([0.15, 0.4, 0.6, 0.85])
+    x = np.concatenate([pole - share * (1.0 + pole), pole + share * (1.0 - pole)], axis=1)
+    u = np.stack([x, _fold(patches, x)], axis=2)
+    if slender:
+        u = np.concatenate(
+            [u, *_beside_turn(u[:, : 2 * share.size], pole, patches["a"][:, None], patches["b"][:, None])], axis=1
+        )
+    u /= np.maximum(np.hypot(u[..., 0], u[..., 1]), 1.0)[..., None]
+    turning = np.concatenate([u, np.zeros((*u.shape[:2], 1))], axis=2)
+    return np.concatenate([np.broadcast_to(SCAN, (len(patches), *SCAN.shape)), turning], axis=1)
+
+
+@compiled
+def ridge_points(patch, field):
+    """Return surface points on the line where sliding begins, (m, 3); at most MOST_ON_RIDGE for each OF_GRID elements.
+
+    Where a patch begins to slide, the traction changes with the root of the distance. Stresses at the surface have a
+    cusp there. Nearly all peaks that a coarse scan misses lie on this line.
+
+    Parameters
+    ----------
+    patch : record
+        Record of `ellipse.patch_rows`.
+    field : numpy.ndarray, shape (2, ny, nx)
+        Traction over its bound on a grid.
+    """
+    _, ny, nx = field.shape
+    slides = np.empty((ny, nx), np.bool_)
+    for j in range(ny):
+        for i in range(nx):
+            slides[j, i] = field[0, j, i] ** 2 + field[1, j, i] ** 2 >= STICKS
+    line, count = np.empty((ny * nx, 3)), 0
+    for j in range(ny):
+        for i in range(nx):
+            if slides[j, i]:
+                continue
+            x, y = 2.0 * ((i + 0.5) / nx) - 1.0, 2.0 * ((j + 0.5) / ny) - 1.0
+            if x * x + y * y >= NEAR_RIM**2:
+                continue
+            beside = (j > 0 and slides[j - 1, i]) or (j + 1 < ny and slides[j + 1, i])
+            if beside or (i > 0 and slides[j, i - 1]) or (i + 1 < nx and slides[j, i + 1]):
+                line[count, 0], line[count, 1], line[count, 2] = x, y, 0.0
+                count += 1
+    most = MOST_ON_RIDGE * max(1, nx // OF_GRID)
+    if count > most:
+        for k in range(most):
+            assign(line[k], line[int(k * ((count - 1) / (most - 1)))])
+        count = most
+    return line[:count]
+
+
+def _fold(patches: np.ndarray, x: np.ndarray) -> np.ndarray:
+    """Return the y at which the lateral slip vanishes at x, both (n, m), normalised."""
+    a, *line = (patches[name][:, None] for name in ("a", "k0", "k1", "k2"))
+    return pole_offset(x * a, a, *line) / patches["b"][:, None]
+
+
+def spike(patches: np.ndarray) -> np.ndarray:
+    """Return the friction over p_max at points where the slip vanishes apart from the spin pole, (n,); 0 if none.
+
+    The rolling slip, eq. (21), vanishes at two x. The pole of eq. (22) is the first of them up to terms of second
+    order. Where both slips vanish under pressure, the stress of the model grows as a logarithm of the distance from
+    this point, times this friction.
+    """
+    sine, cosine, radius, shift = (patches[name] for name in ("sine", "cosine", "radius", "shift"))
+    with np.errstate(invalid="ignore"):
+        x = np.stack(slip_zeros(sine, cosine, radius, shift), axis=1) / patches["a"][:, None]
+    x = np.nan_to_num(x, nan=2.0)  # no zero: a point outside the patch
+    apart = np.abs(x - (patches["pole_x"] / patches["a"])[:, None])
+    inside = np.maximum(1.0 - x * x - _fold(patches, x) ** 2, 0.0)
+    share = np.clip((apart - SPLIT[0]) / (SPLIT[1] - SPLIT[0]), 0.0, 1.0)
+    return np.where(patches["fixed"] == 0.0, patches["friction"] * (share * np.sqrt(inside)).max(axis=1), 0.0)
+
+
+def _beside_turn(fold: np.ndarray, pole: np.ndarray, a: np.ndarray, b: np.ndarray) -> list[np.ndarray]:
+    """Return points (n, m, 2) beside the line `fold`, and on and beside the chord x = pole."""
+    width = np.minimum(a, b) / np.maximum(a, b)
+    shifts = [np.stack([np.zeros_like(width), k * np.minimum(a / b, 1.0)], axis=2) for k in (-1.0, 1.0)]
+    chord = np.array([-0.95, -0.75, -0.5, -0.25, 0.0, 0.25, 0.5, 0.75, 0.95])
+    lines = []
+    for k in (-3.0, -1.0, 0.0, 1.0, 3.0):
+        x = np.clip(pole + k * width, -1.0, 1.0)
+        y = np.sqrt(1.0 - x * x) * chord
+        lines.append(np.stack([np.broadcast_to(x, y.shape), y], axis=2))
+    return [fold + shift for shift in shifts] + lines
+
+
+@compiled
+def along_turn(patch, u, out):
+    """Write the unit vector along which the slip changes its direction least at a point u (3,) into `out` (2,).
+
+    In a patch long in x this is the direction of y; in a patch long in y it is the line without lateral slip.
+    """
+    out[0], out[1] = 0.0, 1.0
+    if patch.a <= patch.b:
+        slope = (patch.k1 if u[0] * patch.a < patch.pole_x else patch.k2) * patch.a / patch.b
+        length = math.sqrt(1.0 + slope * slope)
+        out[0], out[1] = 1.0 / length, slope / length
+
+
+@compiled
+def best_seeds(points, values, count, apart):
+    """Return the indices of up to `count` scan points (m, 3) with the largest `values` (m,).
+
+    The points are `apart` from each other; they have at least the share SEED_WORTH of the largest value.
+    """
+    left, chosen, number = values.copy(), np.empty(count, np.int64), 0
+    enough = SEED_WORTH * values.max()
+    while number < count:
+        best = left.argmax()
+        if not left[best] > enough:
+            break
+        chosen[number] = best
+        number += 1
+        for k in range(left.size):
+            if ((points[k] - points[best]) ** 2).sum() < apart * apart:
+                left[k] = 0.0
+    return chosen[:number]
+
+
+PROPORTIONS = np.array([1.0, 1.6, 1.0])  # of the first steps along radius, circumference and depth
+RIDGE_WORTH, LITTLE_FRICTION = 0.75, 0.15  # stress at the surface over the largest, and friction, that ridges need
+# The plane waves of a scan: 24 of them, a multiple of the lanes of vector registers, cost less than 18.
+LEAST_WAVES = 8
+MORE_RAYS = 2  # points of the polish on the surface of a patch with adhesion beyond those below the surface
+
+
+class Rules(NamedTuple):
+    """Quadrature rules for the steps of a search: pairs of one for the plane waves and one for the rays.
+
+    `ridge` serves the polish on the surface, where tractions with adhesion cause ridges of stress.
+    """
+
+    scan: tuple[np.ndarray, np.ndarray]
+    climb: tuple[np.ndarray, np.ndarray]
+    polish: tuple[np.ndarray, np.ndarray]
+    ridge: tuple[np.ndarray, np.ndarray]
+    summit: tuple[np.ndarray, np.ndarray]
+
+    @classmethod
+    def of(cls, settings: PeakSettings, factor: int, quick: bool) -> Rules:
+        """Return the rules of patches whose rules are refined by a factor."""
+        scan, climb, polish, summit = settings.scan, settings.climb, settings.polish, settings.summit
+        orders = (
+            (max(scan, LEAST_WAVES * quick), scan),
+            (climb, climb),
+            (max(polish, 12), polish),
+            (max(polish, 12), polish + MORE_RAYS * quick),
+            (summit, summit),
+        )
+        return cls(*((unit_rule(waves * factor), unit_rule(rays * factor)) for waves, rays in orders))
+
+
+class Target(NamedTuple):
+    """The patch of a search.
+
+    Attributes
+    ----------
+    patch : record
+        Record of `ellipse.patch_rows`.
+    field : numpy.ndarray, shape (2, ny, nx)
+        Traction field.
+    poisson_ratio : numpy.ndarray, shape (2,)
+        Poisson's ratios of roller and guide [1].
+    unit : numpy.ndarray, shape (3,)
+        Units of normalised points [mm], see `lengths`.
+    slender : bool
+        True if the quadrature rules of the patch are refined.
+    room : Room
+        Work space of the thread.
+    """
+
+    patch: np.void
+    field: np.ndarray
+    poisson_ratio: np.ndarray
+    unit: np.ndarray
+    slender: bool
+    room: Room
+
+
+class Climbs(NamedTuple):
+    """Points that climb towards the highest stress in one patch; those of the roller come first.
+
+    Attributes
+    ----------
+    u, f : numpy.ndarray, shape (m, 3) and (m,)
+        Normalised points and their stress; -1 for a climb that was given up.
+    gained : numpy.ndarray, shape (m,)
+        Increase of the stress in the last sweep.
+    step : numpy.ndarray, shape (m, 3)
+        Steps along radius, circumference and depth.
+    along : numpy.ndarray, shape (m, 2)
+        Direction of the first axis.
+    """
+
+    u: np.ndarray
+    f: np.ndarray
+    gained: np.ndarray
+    step: np.ndarray
+    along: np.ndarray
+
+
+def lengths(rows: np.ndarray) -> np.ndarray:
+    """Return the units of normalised points, (n, 3) [mm]: a, b, and the smaller semi-axis for the depth."""
+    a, b = rows["a"], rows["b"]
+    return np.stack([a, b, np.minimum(a, b)], axis=1)
+
+
+@compiled
+def stresses_at(target, body, u, rules):
+    """Return the von Mises stresses (m,) in `body` (0 or 1) at normalised points u (m, 3)."""
+    parts = near_parts(target.patch, target.field, u * target.unit, rules, target.room)
+    out = np.empty(len(u))
+    for k in range(len(u)):
+        out[k] = von_mises_of_parts(parts[k], target.poisson_ratio[body], FRICTION_SIGNS[body])
+    return out
+
+
+@compiled
+def stress_at(target, body, u, rules):
+    """Return the von Mises stress in `body` (0 or 1) at a normalised point u (3,)."""
+    return stresses_at(target, body, u.reshape(1, 3), rules)[0]
+
+
+@compiled
+def scan(target, points, rules):
+    """Return the von Mises stresses of both bodies at normalised points (m, 3), as (2, m)."""
+    parts = near_parts(target.patch, target.field, points * target.unit, rules, target.room)
+    out = np.empty((2, len(points)))
+    for body in range(2):
+        for k in range(len(points)):
+            out[body, k] = von_mises_of_parts(parts[k], target.poisson_ratio[body], FRICTION_SIGNS[body])
+    return out
+
+
+@woven
+def set_steps(climbs, size):
+    """Set the steps of all climbs to `size`."""
+    for k in range(climbs.f.size):
+        assign(climbs.step[k], size * PROPORTIONS)
+
+
+@compiled
+def _project(u):
+    """Move a point u (3,) to the nearest point of the closed half-space below the patch."""
+    r = math.sqrt(u[0] * u[0] + u[1] * u[1])
+    if r > 1.0:
+        u[0] /= r
+        u[1] /= r
+    u[2] = max(u[2], 0.0)
+
+
+@compiled
+def try_place(target, climbs, k, u, rules):
+    """Move climb k to the point nearest to u (3,) if the stress is higher there."""
+    _project(u)
+    value = stress_at(target, 2 * k // climbs.f.size, u, rules)
+    if value > climbs.f[k]:
+        assign(climbs.u[k], u)
+        climbs.f[k] = value
+
+
+@woven
+def _axes(target, climbs, k, axes):
+    """Write the axes (3, 3) of the pattern of climb k: radius, circumference and depth.
+
+    Slender patches have narrow ridges; inside the rim the first axis lies along the ridge.
+    """
+    x, y = climbs.u[k, 0], climbs.u[k, 1]
+    r = math.sqrt(x * x + y * y)
+    c, s = (x / r, y / r) if r > 1e-9 else (1.0, 0.0)
+    if target.slender and x * x + y * y < 0.998:
+        c, s = climbs.along[k, 0], climbs.along[k, 1]
+    axes[:] = 0.0
+    axes[0, 0], axes[0, 1], axes[1, 0], axes[1, 1], axes[2, 2] = c, s, -s, c, 1.0
+
+
+@woven
+def _along(target, climbs, k, axis, d, rules):
+    """Search along axis d (3,): both sides, then the top of the parabola; return the move over the step."""
+    u_0, f_0, step = climbs.u[k].copy(), climbs.f[k], climbs.step[k, d]
+    sides, heights = np.empty((2, 3)), np.full(2, f_0)
+    assign(sides[0], u_0 + step * axis)
+    assign(sides[1], u_0 - step * axis)
+    fresh = np.empty(2, np.bool_)
+    for side in range(2):
+        _project(sides[side])
+        fresh[side] = np.abs(sides[side] - u_0).sum() >= 1e-12
+    found, count = stresses_at(target, 2 * k // climbs.f.size, sides[fresh], rules), 0
+    for side in range(2):
+        if fresh[side]:
+            heights[side] = found[count]
+            count += 1
+        if heights[side] > climbs.f[k]:
+            assign(climbs.u[k], sides[side])
+            climbs.f[k] = heights[side]
+    curve = heights[0] - 2.0 * f_0 + heights[1]
+    if curve < 0.0:
+        jump = min(max(0.5 * step * (heights[1] - heights[0]) / curve, -2.0 * step), 2.0 * step)
+        if abs(jump) > 0.05 * step and abs(abs(jump) - step) > 0.05 * step:
+            try_place(target, climbs, k, u_0 + jump * axis, rules)
+    distance = np.abs(climbs.u[k] - u_0).sum()
+    if distance < 0.5 * step:
+        climbs.step[k, d] = 0.35 * step
+    elif target.slender and distance > 1.5 * step:
+        climbs.step[k, d] = 1.5 * step
+    return distance / step
+
+
+@woven
+def _turn(climbs, k, start, keep):
+    """Make the direction of the last move of climb k its first axis (Rosenbrock). The move began at `start` (3,).
+
+    With `keep`, both axes exchange their steps if the new first axis is closer to the old second one.
+    """
+    x, y = climbs.u[k, 0] - start[0], climbs.u[k, 1] - start[1]
+    length = math.sqrt(x * x + y * y)
+    if length > 1e-5:
+        x, y = x / length, y / length
+        if keep and abs(x * climbs.along[k, 0] + y * climbs.along[k, 1]) < 0.7:
+            climbs.step[k, 0], climbs.step[k, 1] = climbs.step[k, 1], climbs.step[k, 0]
+        climbs.along[k, 0], climbs.along[k, 1] = x, y
+
+
+@compiled
+def sweep(target, climbs, k, rules, smallest, ridge):
+    """Search along radius, circumference and depth in turn; return whether climb k still moves.
+
+    The whole move of the sweep is then repeated up to `ridge` times while the stress rises, each time over twice the
+    last length. This follows ridges oblique to the axes. If `ridge` is above 1, the axes also keep their steps, see
+    `_turn`.
+    """
+    before, start, axes = climbs.f[k], climbs.u[k].copy(), np.empty((3, 3))
+    _axes(target, climbs, k, axes)
+    moved = 0.0
+    for d in range(3):
+        moved = max(moved, _along(target, climbs, k, axes[d], d, rules))
+    move = climbs.u[k] - start
+    if (move**2).sum() > 1e-8:
+        for _ in range(ridge):
+            height = climbs.f[k]
+            try_place(target, climbs, k, climbs.u[k] + move, rules)
+            if not climbs.f[k] > height:
+                break
+            move *= 2.0
+    if target.slender:
+        _turn(climbs, k, start, ridge > 1)
+    climbs.gained[k] = climbs.f[k] - before
+    widest = climbs.step[k].max()
+    still = climbs.gained[k] < 1e-6 * climbs.f[k] and moved < 1e-9 and widest < 4.0 * smallest
+    return not (widest < smallest or still)
+
+
+@compiled
+def no_climbs(count, step):
+    """Return climbs that are still given up, `count` in each body, with a first step."""
+    steps, along = step * PROPORTIONS * np.ones((2 * count, 3)), np.zeros((2 * count, 2))
+    along[:, 1] = 1.0
+    return Climbs(np.zeros((2 * count, 3)), np.full(2 * count, -1.0), np.zeros(2 * count), steps, along)
+
+
+@compiled
+def polish(target, climbs, k, rules, smallest, sweeps):
+    """Let climb k rise, up to `sweeps` times, until it no longer moves; `smallest` is the last step."""
+    for number in range(sweeps):
+        if not sweep(target, climbs, k, rules, smallest, int(number > 0)):
+            break
+
+
+@compiled
+def standing(climbs, share, gap, most):
+    """Return which climbs stand, (m,): up to `most` of each body; the others are given up.
+
+    The highest climb and those above its `share` stand. Of points closer than `gap` only the highest stands.
+    """
+    count = climbs.f.size // 2
+    stand = np.zeros(climbs.f.size, np.bool_)
+    for body in range(2):
+        first = body * count
+        left = climbs.f[first : first + count].copy()
+        enough = share * left.max()
+        for _ in range(min(most, count)):
+            best = left.argmax()
+            if not left[best] >= enough:
+                break
+            stand[first + best] = True
+            left[best] = -1.0
+            for other in range(count):
+                if ((climbs.u[first + other] - climbs.u[first + best]) ** 2).sum() < gap * gap:
+                    left[other] = -1.0
+    for k in range(climbs.f.size):
+        if not stand[k]:
+            climbs.f[k] = -1.0
+    return stand
+
+
+@woven
+def has_ridges(target, points, values):
+    """Return whether a stress at the surface is not far below the largest in one of the bodies."""
+    if target.patch.friction <= LITTLE_FRICTION:
+        return False
+    for body in range(2):
+        surface = 0.0
+        for k in range(len(points)):
+            if points[k, 2] == 0.0:
+                surface = max(surface, values[body, k])
+        if surface > RIDGE_WORTH * values[body].max():
+            return True
+    return False
+
 
 APART = (0.5, 0.2)  # distance of seeds in ordinary and in slender patches
 ROUGH = 48  # most elements along an axis for the first climbs, which search below merged elements
@@ -54,8 +507,6 @@ class Patches(NamedTuple):
         See `lengths`.
     points : numpy.ndarray, shape (n, m, 3)
         Points of the scans.
-    near : numpy.ndarray, shape (n, 2, 3)
-        Peaks at hand.
     """
 
     rows: np.ndarray
@@ -65,7 +516,6 @@ class Patches(NamedTuple):
     poisson_ratio: np.ndarray
     units: np.ndarray
     points: np.ndarray
-    near: np.ndarray
 
 
 class Effort(NamedTuple):
@@ -79,7 +529,6 @@ class Effort(NamedTuple):
     gridded: bool
     adhesion: bool
     quick: bool
-    close: bool
 
 
 @dataclass(frozen=True)
@@ -107,26 +556,17 @@ class Peak(Rows):
         for field in dataclasses.fields(self):
             getattr(self, field.name)[rows] = getattr(peak, field.name)
 
-    def higher(self, other: Peak) -> Peak:
-        """Return the higher peak of each body."""
-        above = other.stress > self.stress
-        return Peak(*(np.where(above, getattr(other, f.name), getattr(self, f.name)) for f in dataclasses.fields(self)))
-
 
 @compiled
 def _search_rows(first, last, patches, rules, effort, room, out):
     """Write stress, place and relative error of the peaks of patches `first` to `last` into `out` (n, 2, 6)."""
     for i in range(first, last):
         row, nu, unit = patches.rows[i], patches.poisson_ratio[i], patches.units[i]
-        fine = Target(row, patches.fields[i], nu, unit, effort.slender or effort.close, room)
-        if effort.close:
-            line = ridge_points(row, patches.fields[i])
-            climbs = climb_near(fine, patches.near[i], line, rules.scan, rules.climb, rules.ridge, effort.smallest)
-        else:
-            rough = Target(row, patches.rough[i], nu, unit, effort.slender, room)
-            climbs = _climbed(fine, rough, patches.points[i], rules, effort)
+        fine = Target(row, patches.fields[i], nu, unit, effort.slender, room)
+        rough = Target(row, patches.rough[i], nu, unit, effort.slender, room)
+        climbs = _climbed(fine, rough, patches.points[i], rules, effort)
         _write_highest(fine, climbs, rules.summit, out[i])
-        if effort.gridded and not effort.close:
+        if effort.gridded:
             coarse = Target(row, patches.coarse[i], nu, unit, effort.slender, room)
             for body in range(2):
                 other = stress_at(coarse, body, out[i, body, 1:4], rules.summit)
@@ -214,7 +654,6 @@ def find_peaks(
     fields: np.ndarray | None = None,
     coarse: np.ndarray | None = None,
     quick: bool = False,
-    near: Peak | None = None,
 ) -> Peak:
     """Find the peak von Mises stress of roller and guide below n ellipses.
 
@@ -234,9 +673,6 @@ def find_peaks(
     quick : bool
         Polish the best seeds at once, without climbs below few elements. On 12 elements across, whose own error is
         larger, the peaks err as much as after climbs.
-    near : Peak, optional
-        Peaks at hand, for graded fields. The search climbs from their places, and from the boundary of the adhesion
-        area around which the field is dense; it looks nowhere else.
 
     Returns
     -------
@@ -251,7 +687,6 @@ def find_peaks(
     patches = np.ascontiguousarray(patches)
     out = Peak.empty(len(patches))
     finer, units = refinement(patches), lengths(patches)
-    places = np.zeros((len(patches), 2, 3)) if near is None else np.stack([near.x, near.y, near.z], 2) / units[:, None]
     for factor in np.unique(finer):
         group = np.flatnonzero(finer == factor)
         chosen = fields_of(fields, group)
@@ -260,12 +695,11 @@ def find_peaks(
         some = Patches(
             patches[group],
             chosen,
-            _rough(chosen) if near is None else chosen,
+            _rough(chosen),
             np.ascontiguousarray(other, dtype=FIELD),
             np.ascontiguousarray(poisson_ratio[group], dtype=float),
             units[group],
             np.ascontiguousarray(scan_points(patches[group], slender, adhesion)),
-            places[group],
         )
         # tractions on grids need no finer rules: at the same order, stresses err as little as in round patches
         rules = Rules.of(settings, int(factor) if fields is None else 1, quick)
@@ -278,7 +712,6 @@ def find_peaks(
             fields is not None,
             adhesion,
             quick,
-            near is not None,
         )
         out.put(group, _found(some, rules, effort))
     out.error[:] += _hidden_error(patches, settings, out.stress, fields is None)

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -26,7 +27,7 @@ YARDSTICK = 1.9e-3
 
 @cache
 def _ratios() -> Any:
-    """Return the measured costs of forces and of peaks, by friction law, contact model and accuracy.
+    """Return the measured costs of forces and of peaks, by friction law, contact model and rung, and shares of rungs.
 
     Each cost is a ratio to `YARDSTICK`.
     """
@@ -35,7 +36,7 @@ def _ratios() -> Any:
 
 @dataclass(frozen=True)
 class Cost:
-    """Seconds of one core a case at the accuracies preview, standard and reference.
+    """Seconds of one core a case on the rungs preview, standard and reference.
 
     Parameters
     ----------
@@ -43,37 +44,57 @@ class Cost:
         For the balance of the roller.
     peaks : tuple of float
         For the search of the peak stresses, in addition.
-    tolerances : tuple of (float, float, float)
-        Measured tolerances from large to small, each with its seconds for forces and peaks.
+    shares : mapping
+        Measured shares of the cases that a tolerance solves on each rung: by quantity, `forces` or `peak`, and by
+        tolerance. Without them every case counts on every rung.
     """
 
     forces: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
     peaks: tuple[float, float, float] = (1e-2, 1e-2, 1e-2)
-    tolerances: tuple[tuple[float, float, float], ...] = ()
+    shares: Mapping[str, Mapping[float, tuple[float, float, float]]] = field(default_factory=dict)
 
     @classmethod
     def measured(cls, name: str, friction: str = "models") -> Cost:
-        """Return the cost of a built-in model from the ratios of `validation.benchmarks.trade`."""
-        spent = {word: [YARDSTICK * ratio for ratio in both] for word, both in _ratios()[friction][name].items()}
-        forces, peaks = zip(*(spent[level] for level in LEVELS), strict=True)
-        tolerances = sorted((float(word), *both) for word, both in spent.items() if word not in LEVELS)
-        return cls(forces, peaks, tuple(tolerances[::-1]))
+        """Return the cost of a built-in model from the ratios of `validation.tradeoff`."""
+        ratios = _ratios()
+        spent = [[YARDSTICK * ratio for ratio in ratios[friction][name][level]] for level in LEVELS]
+        shares = {
+            quantity: {float(tolerance): tuple(own) for tolerance, own in by_tolerance.items()}
+            for quantity, by_tolerance in ratios["shares"][name].items()
+        }
+        forces, peaks = zip(*spent, strict=True)
+        return cls(forces, peaks, shares)
 
-    def at(self, accuracy: str | float) -> tuple[float, float]:
-        """Return the seconds for forces and peaks at a preset or tolerance; a power law joins measured tolerances."""
-        if accuracy in LEVELS:
-            return self.forces[LEVELS.index(accuracy)], self.peaks[LEVELS.index(accuracy)]
-        tolerance = float(accuracy)
-        if len(self.tolerances) < 2:
-            level = 1 if tolerance >= 1e-3 else 2
-            return self.forces[level], self.peaks[level]
-        tolerance = min(tolerance, self.tolerances[0][0])
-        last = len(self.tolerances) - 2
-        k = next((i for i in range(last) if tolerance >= self.tolerances[i + 1][0]), last)
-        (rough, *dear), (fine, *dearer) = self.tolerances[k : k + 2]
-        share = math.log(rough / tolerance) / math.log(rough / fine)
-        forces, peaks = (a * (b / a) ** share for a, b in zip(dear, dearer, strict=True))
+    def at(self, accuracy: str | Mapping[str, float]) -> tuple[float, float]:
+        """Return the seconds for forces and peaks on a rung, or within tolerances by quantity."""
+        shares = self.shares_of(accuracy)
+        forces, peaks = (sum(map(math.prod, zip(shares, own, strict=True))) for own in (self.forces, self.peaks))
         return forces, peaks
+
+    def shares_of(self, accuracy: str | Mapping[str, float]) -> tuple[float, float, float]:
+        """Return the expected shares of the cases that are solved on each rung.
+
+        A case is solved at `preview` if that may keep all of its tolerances, and on a finer rung if one tolerance needs
+        it.
+        """
+        if isinstance(accuracy, str):
+            at = [float(level == accuracy) for level in LEVELS]
+            return at[0], at[1], at[2]
+        known = [self._between(self.shares[name], number) for name, number in accuracy.items() if self.shares.get(name)]
+        if not known:
+            return 1.0, 1.0, 1.0
+        columns = [[own[k] for own in known] for k in range(len(LEVELS))]
+        return min(columns[0]), max(columns[1]), max(columns[2])
+
+    @staticmethod
+    def _between(shares: Mapping[float, tuple[float, float, float]], tolerance: float) -> list[float]:
+        """Return the shares at a tolerance, linear in its logarithm between the measured tolerances."""
+        known = sorted(shares)
+        tolerance = min(max(tolerance, known[0]), known[-1])
+        high = next(i for i, own in enumerate(known) if tolerance <= own)
+        low = max(high - 1, 0)
+        part = math.log(tolerance / known[low]) / math.log(known[high] / known[low]) if high > low else 1.0
+        return [a + part * (b - a) for a, b in zip(shares[known[low]], shares[known[high]], strict=True)]
 
 
 @dataclass(frozen=True)
@@ -101,21 +122,14 @@ class ModelDeclaration:
         Whether friction may depend on the slip speed.
     remedy : str
         What to do where a word is refused.
-    ladder : str
-        Ladder of measured settings in `roller/accuracy.json` from which a tolerance is met: "forces" for quadrature,
-        otherwise elements. Empty if the errors of the model were not measured; a tolerance is refused then.
-    by_case : bool
-        Whether the stages estimate the error of each case, so that a tolerance is met case by case.
-    own_errors : bool
-        Whether the errors of the forces are those that the method `errors` of the class returns.
-    interpolates : bool
-        Whether the model interpolates between its elements, so that `Accuracy.elements` serve; otherwise
-        `Accuracy.grid_elements`.
+    known_errors : bool
+        Whether the errors of the forces are known, so that a tolerance can be asked for: estimated case by case, stated
+        by the method `errors` of the class, or measured (`roller/expected_errors.json`).
     rough_peaks : bool
-        Whether the errors of the forces outweigh those of the search for the peak stress, so that a preset takes the
-        search and its elements from the next coarser preset.
+        Whether the errors of the forces outweigh those of the search for the peak stress, so that a rung takes the
+        search and its elements from the next coarser rung.
     cheaper : str
-        Model that stands in for this one at accuracy preview, and for forces within a tolerance that it keeps.
+        Model that stands in for this one at accuracy preview.
     cost : Cost
         Measured cost; orders of magnitude.
     falling : Cost, optional
@@ -133,10 +147,7 @@ class ModelDeclaration:
     slip_terms: tuple[str, ...] = ()
     friction_laws: bool = False
     remedy: str = "Take contact_model: kalker."
-    ladder: str = ""
-    by_case: bool = False
-    own_errors: bool = False
-    interpolates: bool = False
+    known_errors: bool = False
     rough_peaks: bool = False
     cheaper: str = ""
     cost: Cost = Cost()
@@ -151,7 +162,7 @@ class ModelDeclaration:
             raise InputError(option, value, f"{words} only, with contact_model: {self.name}", self.remedy)
 
 
-# The costs of the built-in models are measured on random designs, see `validation.benchmarks.trade`.
+# The costs of the built-in models are measured on random designs, see `validation.tradeoff`.
 _BUILT_IN = (
     ModelDeclaration(
         "sliding",
@@ -164,22 +175,20 @@ _BUILT_IN = (
         friction_laws=True,
         remedy="Take contact_model: kalker, or leave 'curve' out: in full sliding it changes no force, it only "
         "lengthens slip and friction work.",
-        ladder="forces",
+        known_errors=True,
         cost=Cost.measured("sliding"),
         falling=Cost.measured("sliding", "falling"),
     ),
     ModelDeclaration(
         "kalker",
-        "exact theory of rolling contact; by its table at accuracy preview or if it keeps the tolerance",
+        "exact theory of rolling contact; by its table at accuracy preview",
         converged_up_to=1e-4,
         rank=3,
         options=("slip_terms",),
         normals=("hertz", "halfspace"),
         slip_terms=("profile", "curve"),
         friction_laws=True,
-        ladder="kalker",
-        by_case=True,
-        interpolates=True,
+        known_errors=True,
         cheaper="kalker_table",
         cost=Cost.measured("kalker"),
         falling=Cost.measured("kalker", "falling"),
@@ -191,9 +200,7 @@ _BUILT_IN = (
         rank=2,
         options=("slip_terms",),
         slip_terms=("curve",),
-        ladder="kalker",
-        own_errors=True,
-        interpolates=True,
+        known_errors=True,
         rough_peaks=True,
         cost=Cost.measured("kalker_table"),
     ),
@@ -201,7 +208,7 @@ _BUILT_IN = (
 # Models of earlier versions, with what to take instead.
 GONE = {"fastsim": "Take contact_model: kalker_table, which is cheaper and more accurate."}
 # Cost of solved patches (`normal: halfspace`) by kalker; other models take less.
-SOLVED_PATCHES = Cost((0.2, 0.4, 0.7), (0.03, 0.2, 2.8))
+SOLVED_PATCHES = Cost((0.2, 0.4, 0.7), (0.03, 0.2, 2.8), Cost.measured("kalker").shares)
 
 DECLARED: dict[str, ModelDeclaration] = {}
 MEANINGS: dict[str, str] = {}  # values of the option `contact_model`

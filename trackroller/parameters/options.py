@@ -10,9 +10,8 @@ from typing import Any
 from trackroller.damage import LIMITS, verdict
 from trackroller.damage.own import hint
 from trackroller.errors import InputError, unknown_name
+from trackroller.parameters.accuracy import QUANTITIES
 from trackroller.parameters.contact_models import DECLARED, GONE, MEANINGS
-
-QUANTITIES = ("forces", "peak", "life")  # that may have tolerances of their own
 
 
 @dataclass(frozen=True)
@@ -143,7 +142,8 @@ class Option:
                 raise InputError(where, value, self.allowed(), how)
             if isinstance(value, str) and value in self.gone:
                 raise InputError(where, value, self.allowed(), self.gone[value])
-            raise unknown_name(where, value, self.values)
+            number = ("a relative tolerance such as 0.01",) * (self.kind == "accuracy")
+            raise unknown_name(where, value, (*self.values, *number))
         return value
 
     def attribute(self, value: Any, contact_model: str) -> Any:
@@ -206,7 +206,7 @@ _OPTIONS = (
     Option(
         "accuracy",
         "standard",
-        "discretisation: a preset, or a relative tolerance of forces and peak stress, which kalker meets case by case",
+        "discretisation: one of three rungs, or a relative tolerance, met case by case on the first rung that keeps it",
         {
             "preview": "for a first look",
             "standard": "for studies",

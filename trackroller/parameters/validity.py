@@ -97,7 +97,7 @@ VALIDITY: dict[str, ValidityFlag] = {
     ),
     "tolerance_missed": ValidityFlag(
         "the estimated error exceeds the tolerance",
-        "estimated error above the tolerance of the option accuracy on the finest elements",
+        "estimated error above the tolerance of the option accuracy on every rung",
         "Take a larger tolerance, or the estimated errors as they are: adhesion covers less than an element there.",
     ),
 }

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.parameters import REGIMES
 
-_PLAIN = ("regime", "converged", "bits", "model", "stopped")  # fields with one entry a case
+_PLAIN = ("regime", "converged", "bits", "model", "rung", "stopped")  # fields with one entry a case
 
 
 @dataclass
@@ -24,6 +24,8 @@ class Block:
         Flags as in `dataset.FLAGS`; `bits` are the validity flags.
     model : numpy.ndarray of int, shape (n,)
         Number of the contact model in `CONTACT_MODELS`.
+    rung : numpy.ndarray of int, shape (n,)
+        Number of the accuracy in `RUNGS`; 0 for settings that are no rung.
     bodies : numpy.ndarray of int, shape (n, 2), optional
         Validity flags of each body.
     """
@@ -33,6 +35,7 @@ class Block:
     converged: np.ndarray
     bits: np.ndarray
     model: np.ndarray
+    rung: np.ndarray
     stopped: np.ndarray
     bodies: np.ndarray | None = None
 

@@ -12,6 +12,7 @@ from trackroller import __version__
 from trackroller.damage import verdict, with_limits
 from trackroller.damage.limit import variables
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, LIMITS, REGIMES
+from trackroller.parameters.accuracy import RUNGS
 from trackroller.parameters.validity import VALIDITY
 
 if TYPE_CHECKING:
@@ -46,7 +47,7 @@ _GROUPS = {
         ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _SHOWN | _ODD),
         ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N"),
         ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N"),
-        ("error_over_tolerance", (), "1", "", "largest estimated error over its tolerance, if kalker has a tolerance"),
+        ("error_over_tolerance", (), "1", "", "largest estimated error over its tolerance, if accuracy is a tolerance"),
         ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
         ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track", _SHOWN),
@@ -82,6 +83,13 @@ _GROUPS = {
             "J m-1",
             "-(xi F_A + phi M_R)",
             "friction energy per distance that the forces and moments imply",
+        ),
+        (
+            "friction_energy_error_estimate",
+            _C,
+            "1",
+            "delta(W_f)/W_f",
+            "estimated relative error of the friction energy from discretisation",
         ),
         ("energy_residual", (), "1", "", "relative difference of friction energy and work of the drive"),
     ),
@@ -160,6 +168,7 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
     "regime": ("regime of the case", REGIMES),
     "converged": ("the residual is within its limit (attribute converged_up_to of residual)", ("no", "yes")),
     "contact_model_used": ("contact model that solved the case", CONTACT_MODELS),
+    "accuracy_used": ("accuracy whose result the case has, if a tolerance was asked for", RUNGS),
     "first_to_fail": ("body that fails first, in hours", FIRST_TO_FAIL),
     "limiting_mechanism": ("limit of the body that is reached first", (*LIMITS, "unknown")),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),

@@ -1,19 +1,25 @@
-"""The errors of discretisation that settings are expected to have, as they were measured."""
+"""The errors of discretisation that options are expected to have, as they were measured."""
 
 from __future__ import annotations
 
 import functools
+import json
 from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib import resources
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trackroller.contact.friction_laws import law_of
-from trackroller.contact.settings import Accuracy, converged_up_to
+from trackroller.contact.models import CLASSES
+from trackroller.contact.settings import converged_up_to
 from trackroller.numerics.numbers import rounded_up
-from trackroller.parameters import CONTACT_MODELS
+from trackroller.parameters import OPTIONS
+from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS, settings_of
 from trackroller.parameters.contact_models import DECLARED
-from trackroller.roller.accuracy import Levels, ladders, own_errors
+from trackroller.roller.dataset import solved_by
+from trackroller.roller.options import model_in_use
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -21,6 +27,7 @@ if TYPE_CHECKING:
     from trackroller.roller.options import Options
     from trackroller.roller.table import CaseTable
 
+FILE = "expected_errors.json"  # measured errors by contact model, rung and quantity
 _QUANTITY_OF = {
     "normal_force": "normal_force",
     "lateral_force": "friction_force",
@@ -38,40 +45,47 @@ _QUANTITY_OF = {
 _RELATIVE_TO = {"friction_force": "mu F_N", "spin_moment": "mu F_N sqrt(a b)"}  # other quantities: to themselves
 
 
-@functools.lru_cache(maxsize=64)
-def expected_errors(settings: Accuracy, contact_model: str) -> dict[str, Levels]:
-    """Return the measured errors of settings by quantity; the errors of the stages are added.
+@dataclass(frozen=True)
+class Levels:
+    """Measured relative errors over the sample of designs: percentiles, and `bound`, which 99 % of all cases keep."""
 
-    Quantities whose settings were not measured are missing.
+    median: float
+    p95: float
+    p99: float
+    bound: float
+
+
+@functools.cache
+def _measured() -> Any:
+    text = resources.files("trackroller.roller").joinpath(FILE).read_text(encoding="utf-8")
+    return json.loads(text)["models"]
+
+
+def expected_errors(options: Options, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
+    """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
+
+    The measurements hold for the rungs, ellipses, constant friction and the rigid slip that each model has by itself.
     """
-    declared = DECLARED[contact_model]
-    if declared.own_errors:
-        return own_errors(contact_model)
-    rungs, ladder = ladders(), declared.ladder
-    if not ladder:
+    if options.normal != "hertz" or options.slip_terms or not constant_friction or options.tolerance is not None:
         return {}
-    own: dict[str, dict[str, Any]]
-    own = {
-        "forces": {"force_nodes": settings.force_nodes, "coarse_nodes": settings.coarse_nodes},
-        "peak": {"peak": list(vars(settings.peak).values())},
-    }
-    if ladder != "forces":
-        elements = settings.elements if declared.interpolates else settings.on_grids
-        own = {ladder: {"elements": elements}, "peak": own["peak"]}
-    total: dict[str, Levels] = {}
-    unknown: set[str] = set()
-    for ladder, wanted in own.items():
-        rung = next((r for r in rungs[ladder] if all(r.settings[k] == v for k, v in wanted.items())), None)
-        if rung is None:
-            unknown.update(rungs[ladder][0].errors)
-            continue
-        for name, levels in rung.errors.items():
-            total[name] = _sum(total[name], levels) if name in total else levels
-    return {name: levels for name, levels in total.items() if name not in unknown}
+    errors = CLASSES[contact_model].errors()
+    settings = options.settings
+    is_rung = settings.name in RUNGS and settings in (settings_of(settings.name, rough) for rough in (False, True))
+    if not errors and is_rung:
+        errors = _measured().get(contact_model, {}).get(settings.name, {})
+    published = options.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
+    return {name: Levels(*levels) for name, levels in errors.items() if published or name != "life"}
 
 
-def _sum(one: Levels, other: Levels) -> Levels:
-    return Levels(*(a + b for a, b in zip(vars(one).values(), vars(other).values(), strict=True)))
+def least_errors(table: CaseTable, options: Options) -> tuple[np.ndarray, np.ndarray]:
+    """Return the least error of the forces and of the peaks that a rung can tell for each case, (n,) each.
+
+    They are the constant parts of the estimated errors, which contact models from a table have.
+    """
+    models = [CLASSES[model_in_use(options, text)] for text in table.friction_law.tolist()]
+    forces = [model.errors()["friction_force"][2] if model.errors() else 0.0 for model in models]
+    peaks = np.array([model.peak_error for model in models], float) * table.friction_coefficient
+    return np.array(forces, float), peaks * bool(PEAK_OUTPUTS & set(options.outputs))
 
 
 def error_attributes(levels: Mapping[str, Levels]) -> dict[str, dict[str, Any]]:
@@ -91,10 +105,9 @@ def tell_errors(ds: xr.Dataset, table: CaseTable, options: Options) -> None:
     """Add as attributes the limit of the residual, and the errors of discretisation if they were measured."""
     ds.variables["residual"].attrs["converged_up_to"] = converged_up_to(options.contact_model, options.normal)
     constant = all(law_of(text).is_constant for text in set(table.friction_law.tolist()))
-    cheaper = DECLARED[options.contact_model].cheaper
-    model = options.contact_model
-    if cheaper and np.any(ds.variables["contact_model_used"].values == CONTACT_MODELS.index(cheaper)):
+    cheaper, model = DECLARED[options.contact_model].cheaper, options.contact_model
+    if cheaper and np.any(solved_by(ds) == cheaper):
         model = cheaper
-    for name, errors in error_attributes(options.expected_errors(model, constant)).items():
+    for name, errors in error_attributes(expected_errors(options, model, constant)).items():
         if name in ds.variables:
             ds.variables[name].attrs.update(errors)

@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Set
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS
+from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable
     from trackroller.roller.options import Options
-
-
-PEAK = {"peak_stress", "life", "subsurface"}  # outputs that the search for the peak serves
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,10 @@ class Stage:
 
 def _model(options: Options) -> str:
     words = f"contact model {options.contact_model}"
+    if options.tolerance is not None:
+        shares = DECLARED[options.contact_model].cost.shares_of(options.tolerance.by_quantity)
+        told = ", ".join(f"{name} {100 * share:.0f} %" for name, share in zip(RUNGS, shares, strict=True))
+        words += f" on the rungs that each case needs, expected: {told} of the cases"
     if not options.slip_terms:
         return words
     if options.contact_model == "sliding":
@@ -67,7 +71,7 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     bare = 2 * frictionless - int((mirrored & free).sum())  # patches without friction
     sides = f"; {twins} mirror-symmetric (no axial force): one contact each" if twins else ""
     repeated = f"{n - m} cases repeat the mechanics of others" if m < n else "every case has mechanics of its own"
-    every, cases, asked = (2 * n, 2 * n, "patches"), (n, n, "cases"), wanted & PEAK
+    every, cases, asked = (2 * n, 2 * n, "patches"), (n, n, "cases"), wanted & PEAK_OUTPUTS
     stages = [
         Stage("geometry, Hertz or half-space pressure", True, m, n, "cases", repeated),
         Stage("equilibrium", True, *solved, _model(options) + sides),
@@ -90,14 +94,14 @@ def explain(table: CaseTable, options: Options) -> list[Stage]:
     peak += "; one body with the mean Poisson's ratio" if options.stress_bodies == "published" else ""
     return [
         *stages,
-        _stage("peak stress", PEAK, wanted, solved, peak),
+        _stage("peak stress", PEAK_OUTPUTS, wanted, solved, peak),
         _stage("life", {"life"}, wanted, cases, "from peak stress, strength and speed of each case"),
         _stage("tractions output", {"tractions"}, wanted, every, "asked for"),
         _stage("subsurface sections", {"subsurface"}, wanted, every, "asked for"),
     ]
 
 
-def _stage(name: str, need: set[str], wanted: set[str], size: tuple[int, int, str], why: str) -> Stage:
+def _stage(name: str, need: Set[str], wanted: set[str], size: tuple[int, int, str], why: str) -> Stage:
     """Return a stage that runs if one of the outputs `need` is wanted; `size` has count, total and unit."""
     if need & wanted:
         return Stage(name, True, *size, why)

@@ -13,23 +13,13 @@ from trackroller.contact.friction_laws import law_of
 from trackroller.errors import Collector, InputError
 from trackroller.numerics.plain import plain
 from trackroller.parameters import OPTIONS
+from trackroller.parameters.accuracy import Accuracy, Tolerance, settings_of, tolerance_of
 from trackroller.parameters.contact_models import DECLARED
-from trackroller.roller.accuracy import (
-    PRESETS,
-    Accuracy,
-    Levels,
-    Tolerance,
-    accuracy_settings,
-    finest_tolerance,
-    tolerance_of,
-)
-from trackroller.roller.expected_errors import expected_errors
 from trackroller.roller.stop import parse_condition
 
 if TYPE_CHECKING:
     import xarray as xr
 
-MEASURED_FORCES = {"forces", "contact"}  # outputs to which `ModelDeclaration.own_errors` apply
 _Fields = make_dataclass(
     "_Fields", [(option.name, Any, field(default=option.default)) for option in OPTIONS.values()], frozen=True
 )
@@ -49,43 +39,32 @@ class Options(_Fields):  # type: ignore[misc, valid-type]
         wrong = Collector()
         for option in OPTIONS.values():
             with wrong.part():
-                object.__setattr__(self, option.name, plain(getattr(self, option.name), option.name))
-                # an accuracy may be an `Accuracy` or a number as text: `accuracy_settings` checks it
-                if option.kind != "accuracy" or isinstance(getattr(self, option.name), Mapping):
-                    object.__setattr__(self, option.name, option.check(getattr(self, option.name)))
-                if option.kind == "condition" and getattr(self, option.name) is not None:
-                    parse_condition(getattr(self, option.name))
+                value = plain(getattr(self, option.name), option.name)
+                if not isinstance(value, Accuracy):
+                    value = option.check(value)
+                object.__setattr__(self, option.name, value)
+                if option.kind == "condition" and value is not None:
+                    parse_condition(value)
         refused = {error.field.split(".")[0] for error in wrong.errors}
-        with wrong.part():
-            names = ("accuracy", "contact_model", "outputs")
-            accuracy_settings(**{n: OPTIONS[n].default if n in refused else getattr(self, n) for n in names})
+        if not refused & {"accuracy", "contact_model", "outputs"}:
+            with wrong.part():
+                check_accuracy(self.accuracy, self.contact_model, self.outputs)
         wrong.check()
         check_pairs(self.hertz, self.normal, self.slip_terms, self.contact_model)
         check_spin_model((self.spin_model,), (self.contact_model,))
 
     @property
     def settings(self) -> Accuracy:
-        """Return the discretisation of each stage that belongs to the accuracy."""
-        return accuracy_settings(self.accuracy, self.contact_model, self.outputs)
+        """Return the discretisation of each stage; stages outside the walk of a tolerance take that of the default."""
+        if isinstance(self.accuracy, Accuracy):
+            return self.accuracy
+        rung = OPTIONS["accuracy"].default if self.tolerance is not None else self.accuracy
+        return settings_of(rung, DECLARED[self.contact_model].rough_peaks)
 
     @property
     def tolerance(self) -> Tolerance | None:
         """Return the tolerances that are met case by case, None if every case has the same settings."""
-        declared = DECLARED[self.contact_model]
-        if not declared.by_case or (declared.cheaper and _suffices(declared.cheaper, self)):
-            return None
         return tolerance_of(self.accuracy, self.outputs)
-
-    def expected_errors(self, contact_model: str, constant_friction: bool) -> dict[str, Levels]:
-        """Return the measured errors of discretisation by quantity; nothing where this combination was not measured.
-
-        The measurements hold for ellipses, constant friction and the rigid slip that each model has by itself.
-        """
-        if self.normal != "hertz" or self.slip_terms or not constant_friction or self.tolerance is not None:
-            return {}
-        errors = expected_errors(self.settings, contact_model)
-        published = self.life_criterion == OPTIONS["life_criterion"].default  # its life alone was measured
-        return {name: levels for name, levels in errors.items() if published or name != "life"}
 
     def changed(self, **values: Any) -> Options:
         """Return the options with other values for some of them."""
@@ -131,6 +110,24 @@ def options_of_cases(cases: xr.Dataset, given: Mapping[str, Any]) -> tuple[list[
         if not OPTIONS["spin_model"].applies(options.get("contact_model", OPTIONS["contact_model"].default)):
             options["spin_model"] = OPTIONS["spin_model"].default
     return different, np.array([known[key] for key in keys])
+
+
+def check_accuracy(accuracy: Any, contact_model: str, outputs: Collection[str]) -> None:
+    """Refuse a tolerance that is too small, of a quantity that is not computed, or of a model without known errors.
+
+    Parameters
+    ----------
+    accuracy, contact_model, outputs : object, str, collection of str
+        Checked values of these options.
+
+    Raises
+    ------
+    InputError
+        See `Tolerance.read`; and if the declaration of the contact model does not say that its errors are known.
+    """
+    if tolerance_of(accuracy, outputs) is not None and not DECLARED[contact_model].known_errors:
+        allowed = f"one of {', '.join(OPTIONS['accuracy'].values)}: the errors of {contact_model} were not measured"
+        raise InputError("accuracy", accuracy, allowed)
 
 
 def check_pairs(hertz: str, normal: str, slip_terms: Collection[str], contact_model: str) -> None:
@@ -196,21 +193,12 @@ def model_in_use(options: Options, friction_law: str) -> str:
 
     Notes
     -----
-    A cheaper model stands in (`kalker_table` for `kalker`) at accuracy preview, or within a tolerance of forces that it
-    was measured to keep, if it serves the normal problem, the slip and the friction of the case. The result names it in
-    `contact_model_used`.
+    A cheaper model stands in (`kalker_table` for `kalker`) at accuracy preview, if it serves the normal problem, the
+    slip and the friction of the case. The result names it in `contact_model_used`.
     """
     own = DECLARED[options.contact_model]
-    if not own.cheaper or not _suffices(own.cheaper, options):
+    if not own.cheaper or options.settings.name != "preview":
         return own.name
     other = DECLARED[own.cheaper]
     serves = options.normal in other.normals and set(options.slip_terms) <= set(other.slip_terms)
     return other.name if serves and (other.friction_laws or law_of(friction_law).is_constant) else own.name
-
-
-def _suffices(contact_model: str, options: Options) -> bool:
-    """Return whether a model whose forces alone were measured is as exact as wanted."""
-    settings = options.settings
-    if settings.name in PRESETS:
-        return settings.name == "preview"
-    return set(options.outputs) <= MEASURED_FORCES and finest_tolerance(contact_model) <= settings.tolerance

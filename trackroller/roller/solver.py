@@ -13,9 +13,9 @@ from trackroller.damage import computed, fatigue, judged, of_mechanics, of_patch
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
+from trackroller.parameters.accuracy import RUNGS, Accuracy
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import requirements, temperature
-from trackroller.roller.accuracy import Accuracy
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
@@ -44,10 +44,8 @@ importlib.import_module("dask.array")  # xarray loads it with its first data set
 cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 
-# Number of cases that are solved at once if the elements of a patch may not double. Each doubling that is allowed makes
-# the solution of a patch four times as large, and the number of cases four times as small, which bounds the memory.
-BLOCK = 8192
-WINDOW = 4 * BLOCK  # among this many consecutive cases, those with equal mechanics are solved once
+BLOCK = 2048  # number of cases that are solved at once, which bounds the memory
+WINDOW = 16 * BLOCK  # among this many consecutive cases, those with equal mechanics are solved once
 
 
 def solve(
@@ -85,15 +83,14 @@ def solve(
         default these four), "friction_work", "tractions", "subsurface", "limits", one a limit.
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
-        or "sliding" (full slip everywhere, as published). "kalker" uses its table at
-        accuracy "preview", and for forces within a tolerance that the table keeps.
+        or "sliding" (full slip everywhere, as published). "kalker" uses its table at accuracy "preview".
     spin_model : str
         Assumption 0, 1, 2 of the publication on the spin pole, for "sliding": "concentric", "edge", "skewed" (default).
     accuracy : str, float, mapping or Accuracy
-        Discretisation: "standard", "preview", "reference", or a relative tolerance of forces and peak stress in (0, 1).
-        "kalker" meets it case by case, also by quantity, as `{"forces": 1e-3, "peak": 0.01, "life": 0.1}`: the result
-        `error_over_tolerance` is at most 1, or the case has the flag `tolerance_missed`. Other models take the cheapest
-        settings that were measured to keep it. See `trackroller.roller.accuracy`.
+        Discretisation: "preview", "standard", "reference", or a relative tolerance of forces and peak stress, also by
+        quantity, down to `{"forces": 1e-3, "peak": 0.01, "life": 0.1}`. A tolerance is met case by case: a case takes
+        the result of the first of these three whose estimated errors are within the tolerance, and `accuracy_used`
+        names it. `error_over_tolerance` is at most 1, or the case has the flag `tolerance_missed`.
     hertz : str
         "exact" elliptic integrals, or "published" for the table of the published program.
     stress_bodies : str
@@ -216,7 +213,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
         table, mirrored = handed(table)
 
     def solve_all(cases: CaseTable) -> Block:
-        return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK >> 2 * options.settings.doublings)])
+        return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
     distinct, number = table, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
@@ -284,7 +281,9 @@ def block_of(results: Results, options: Options) -> Block:
     results.values |= {name: results.in_mm(name) for name in results.values}  # the limits take N and mm
     stages_case.patch_limits(results, options)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
-    return Block(results.values, results.regime, results.converged, results.bits, model, results.stopped)
+    settings = options.settings.name
+    rung = np.full(scene.n, RUNGS.index(settings) if settings in RUNGS else 0, dtype=np.int8)
+    return Block(results.values, results.regime, results.converged, results.bits, model, rung, results.stopped)
 
 
 def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
@@ -306,6 +305,8 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     if block.bodies is not None:
         flags["validity_body"] = block.bodies
     flags["contact_model_used"] = block.model
+    if options.tolerance is not None:
+        flags["accuracy_used"] = block.rung
     grouped = {"first_to_fail": "life", "limiting_mechanism": verdict.GROUP}
     flags |= {name: block.values[name] for name, group in grouped.items() if group in options.outputs}
     if verdict.GROUP in options.outputs:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from trackroller.contact.friction_laws import law_of
 from trackroller.methods import METHODS
 from trackroller.parameters import OPTIONS
+from trackroller.parameters.accuracy import PEAK_OUTPUTS, tolerance_of
 from trackroller.parameters.contact_models import DECLARED, SOLVED_PATCHES
 from trackroller.study.design.entries import OPTION_FACTORS
 
@@ -36,22 +37,16 @@ def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
     """Return the expected cases a second on one core for keyword arguments of `solve` and a friction law of a case."""
     accuracy, groups = options.get("accuracy", "standard"), set(options.get("outputs", ("forces",)))
     model = options.get("contact_model", OPTIONS["contact_model"].default)
-    peaks = bool(groups & {"peak_stress", "life", "subsurface"})
+    peaks, tolerance = bool(groups & PEAK_OUTPUTS), tolerance_of(accuracy, groups)
     cost = DECLARED[model].cost if law_of(friction_law).is_constant else DECLARED[model].falling or DECLARED[model].cost
     if options.get("normal") == "halfspace":
         cost = SOLVED_PATCHES
-    seconds, searched = cost.at(_smallest(accuracy, peaks) if isinstance(accuracy, Mapping) else accuracy)
+    seconds, searched = cost.at(accuracy if tolerance is None else tolerance.by_quantity)
     if peaks:  # one search serves all
         seconds += searched
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
     seconds += sum(_PATCH_LIMITS.get(group, 0.0) for group in groups)
     return 1.0 / seconds
-
-
-def _smallest(asked: Mapping[str, float], peaks: bool) -> float:
-    """Return the smallest of the tolerances by quantity that count; that of a life is one of the peak over 10."""
-    smallest = asked.get("forces", 1.0)
-    return min(smallest, asked.get("peak", 1.0), 0.1 * asked.get("life", 10.0)) if peaks else smallest
 
 
 def study_rate(study: Study) -> float:

@@ -15,7 +15,6 @@ TIMED = (
     "scaling",
     "shortcuts",
     "speed",
-    "trade",
 )
 
 

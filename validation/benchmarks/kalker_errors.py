@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 import trackroller as tr
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from validation.benchmarks.command import run
 from validation.benchmarks.samples import random_designs
 

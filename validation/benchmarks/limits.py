@@ -16,7 +16,7 @@ import numpy as np
 
 import trackroller as tr
 from trackroller.damage import LIMITS
-from trackroller.roller.accuracy import ELEMENTS, PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from validation.benchmarks.command import run
 from validation.benchmarks.samples import random_designs
 from validation.benchmarks.speed import COMPLETE, costs
@@ -52,7 +52,7 @@ def cost(cases: list[tr.Case]) -> dict[str, float]:
 
 def convergence(cases: list[tr.Case], elements: tuple[int, ...], finest: int) -> dict[str, dict[str, float]]:
     """Return the errors at `standard` and the observed order of each result that rests on the elements."""
-    counts = sorted({*elements, ELEMENTS["standard"]})
+    counts = sorted({*elements, PRESETS["standard"].elements})
 
     def solved(count: int) -> Any:
         accuracy = dataclasses.replace(PRESETS["reference"], elements=count)
@@ -63,7 +63,7 @@ def convergence(cases: list[tr.Case], elements: tuple[int, ...], finest: int) ->
     out = {}
     for name in (name for names in RESULTS.values() for name in names):
         error = {n: largest(np.abs(ds[name].values / best[name].values - 1.0))[rolls] for n, ds in found.items()}
-        middle, most = percentiles(error[ELEMENTS["standard"]], (50, 100))
+        middle, most = percentiles(error[PRESETS["standard"].elements], (50, 100))
         order, _ = observed_order(np.array(counts), np.array([np.nanmedian(error[n]) for n in counts]))
         out[name] = {"median": middle, "largest": most, "order": order}
     return out
@@ -75,7 +75,7 @@ def measure(
     """Return the cost by group of outputs, and errors and order of each result."""
     designs = [dataclasses.replace(case, **GIVEN) for case in random_designs(cases, seed)]
     return {
-        "standard": ELEMENTS["standard"],
+        "standard": PRESETS["standard"].elements,
         "cost": cost(designs),
         "results": {group: list(names) for group, names in RESULTS.items()},
         "convergence": convergence(designs, elements, finest),

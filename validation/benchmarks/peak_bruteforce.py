@@ -20,7 +20,7 @@ from trackroller.contact.slip import Slip
 from trackroller.halfspace.ellipse import NO_FIELD, Room, near_parts, patch_rows, unit_rule
 from trackroller.halfspace.peak import find_peaks
 from trackroller.halfspace.stress import von_mises
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 from validation.benchmarks.command import run
 
 

@@ -28,7 +28,7 @@ import trackroller as tr
 from trackroller.halfspace.influence import corner_loads, stress_parts
 from trackroller.halfspace.stress import body_stress, von_mises
 from trackroller.materials import load_database
-from trackroller.roller.accuracy import PRESETS
+from trackroller.parameters.accuracy import PRESETS
 
 POINTS = 40  # surface points per direction
 POPSIZE = 15  # scipy's default; 3 unknowns make a population of 45

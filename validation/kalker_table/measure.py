@@ -20,10 +20,10 @@ from trackroller.contact import kalker, table
 from trackroller.contact.common import Elastic, Ellipse
 from trackroller.contact.kalker import Creepage, KalkerSettings
 from trackroller.contact.linear import creepage_coefficients
+from trackroller.contact.models import CLASSES
 from trackroller.contact.table import spline
 from trackroller.contact.table.coordinates import HALF_WAY, RATIOS, coupling_creepage
 from trackroller.materials import load_database
-from trackroller.roller import accuracy
 from validation.benchmarks.samples import random_designs
 from validation.kalker_table import build
 from validation.kalker_table.nodes import LOG_RATIOS, problem
@@ -121,10 +121,10 @@ def summary(p: Problem, off: np.ndarray) -> dict[str, float]:
 
 def measure(tables: spline.Tables) -> dict[str, dict[str, float]]:
     """Return the share of designs outside the table, and its errors on patches of designs and of its whole range."""
-    unknown = accuracy.Levels(1.0, 1.0, 1.0, 1.0)  # the errors that the table will state
+    unknown = {"friction_force": (1.0, 1.0, 1.0, 1.0)}  # the errors that the table will state
     with (
         mock.patch.object(spline, "stored", lambda: tables),
-        mock.patch.object(accuracy, "own_errors", lambda name: {"friction_force": unknown}),
+        mock.patch.object(CLASSES["kalker_table"], "errors", lambda: unknown),
     ):
         rollers = random_designs(DESIGNS, SEED)
         found = rolling(rollers)

@@ -20,6 +20,7 @@ from trackroller.materials import load_database
 from trackroller.roller.case import Case
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.solver import solve
+from validation.paper.table_2 import paper_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -117,7 +118,7 @@ def results() -> dict[str, Any]:
     """Return all numbers of the page: ours by scene and model, and scenes that the published program cannot treat.
 
     Keys: `ours` scene -> model -> quantities; `as_published` scene -> quantities with the published table;
-    `inner` scene -> our stress at the published place of the peak; `limits` name -> our solution.
+    `inner` scene -> our stress at the published place of the peak; `limits` name -> our solution; `table_2` its rows.
     """
     told = (
         *QUANTITIES,
@@ -143,4 +144,4 @@ def results() -> dict[str, Any]:
         out["limits"][name] = _values(
             ds, (*QUANTITIES, "semi_axis_lateral", "semi_axis_rolling", "peak_stress", "life_cycles")
         )
-    return out
+    return out | {"table_2": paper_table()}

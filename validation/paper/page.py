@@ -85,7 +85,7 @@ def facts(data: Mapping[str, Any]) -> dict[str, Any]:
             (f"`{p.name}`", p.symbol, f"{p.default:g}", p.unit) for p in PARAMETERS.values() if p.default == p.default
         ],
         "forces": {title: _scene(found, scene) for scene, title in TITLES.items()},
-        "table_2": _table_2(data["tradeoff"]["paper_table"]),
+        "table_2": _table_2(found["table_2"]),
     }
 
 

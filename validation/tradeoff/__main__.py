@@ -1,34 +1,22 @@
-"""Measure error against cost.
+"""Measure error and cost of the rungs of accuracy and of the contact models: python -m validation.tradeoff FOLDER.
 
-    python -m validation.tradeoff SIZES.yaml parts/NAME.nc            measures one part
-    python -m validation.tradeoff SIZES.yaml OUT.nc parts/*.nc        gathers the parts and draws the figures
-
-The second form writes the summary and the figures beside OUT.nc.
+The folder receives `tradeoff.json` and `figures/`. With `--small`, two designs of each sample show that it runs.
 """
 
 import json
+import os
 import sys
 from pathlib import Path
 
-import xarray as xr
+os.environ.setdefault("NUMBA_NUM_THREADS", "1")  # processor times of one thread; numba reads it when it is loaded
 
 from trackroller.files import write_text
+from validation.benchmarks.command import plain
 from validation.tradeoff.figures import draw_all
-from validation.tradeoff.parts import write_gathered, write_part
-from validation.tradeoff.summary import summary
-
-
-def show(measured: Path) -> None:
-    """Write `tradeoff.json` and `figures/` beside a gathered measurement."""
-    found = summary(xr.load_dataset(measured))
-    draw_all(found, measured.parent / "figures")
-    write_text(measured.with_name("tradeoff.json"), json.dumps(found, indent=1, ensure_ascii=False) + "\n")
-
+from validation.tradeoff.measure import measure
 
 if __name__ == "__main__":
-    sizes, out, *parts = sys.argv[1:]
-    if parts:
-        write_gathered(parts, sizes, out)
-        show(Path(out))
-    else:
-        write_part(Path(out).stem, sizes, out)
+    folder = Path(sys.argv[1])
+    found = measure(few=2, repeats=1) if "--small" in sys.argv else measure()
+    draw_all(found, folder / "figures")
+    write_text(folder / "tradeoff.json", json.dumps(plain(found), indent=1, allow_nan=False) + "\n")

@@ -1,106 +1,190 @@
-"""Solves the sample with each setting and the reference: errors by design, CPU time a case."""
+"""Measure error and cost of the three rungs of accuracy, of tolerances and of the contact models.
+
+The designs are 230 ordinary and 230 wide ones, with forces and peaks of the exact theory (`truth`). Costs are processor
+times over a complete case (forces, contact, friction work, four peaks, life) of `sliding` at `standard` on the same
+designs; the settings take turns in one process.
+"""
 
 from __future__ import annotations
 
-import json
 import time
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
+from unittest import mock
 
 import numpy as np
 import xarray as xr
 
-from trackroller.roller.case import Case
-from trackroller.roller.solver import solve
-from validation.tradeoff.errors import QUANTITIES, relative_errors
-from validation.tradeoff.settings import ALL, Setting, references
+import trackroller as tr
+from trackroller.halfspace.peak_settings import PeakSettings
+from trackroller.parameters.accuracy import PRESETS, RUNGS
+from trackroller.parameters.contact_models import DECLARED
+from trackroller.roller import solver
+from trackroller.roller.dataset import validity_bit
+from validation.benchmarks import falling_friction
+from validation.tradeoff.errors import largest, percentiles, relative_errors, tolerance_bound
+from validation.tradeoff.sample import sample
+from validation.tradeoff.truth import SAMPLES, Truth
 
-Patch = dict[str, Any]
-
-
-def cpu(work: Any, *arguments: Any, **options: Any) -> tuple[Any, float]:
-    """Return the result and CPU time [s] of a call, over all threads of the process."""
-    start = time.process_time()
-    result = work(*arguments, **options)
-    return result, time.process_time() - start
-
-
-def reference_solution(cases: Sequence[Case], model: str, outputs: tuple[str, ...] = ALL) -> tuple[xr.Dataset, float]:
-    """Return the best known solution with its friction coefficients, and its CPU time [s] a case."""
-    solved, spent = [], 0.0
-    for accuracy in references(model):
-        ds, seconds = cpu(solve, list(cases), outputs=outputs, contact_model=model, accuracy=accuracy)
-        solved.append(ds)
-        spent += seconds
-    best = solved[0]
-    for other in solved[1:]:
-        if "peak_stress" in best:
-            larger = (other["peak_stress"] > best["peak_stress"]).values
-            for name in ("peak_stress", "life_cycles"):
-                best[name] = best[name].copy(data=np.where(larger, other[name].values, best[name].values))
-    best["friction"] = ("case", np.array([c.friction_coefficient for c in cases], float))
-    return best, spent / max(len(cases), 1)
+MODELS = ("sliding", "kalker_table", "kalker")
+TOLERANCES = (0.1, 0.03, 0.01)
+WALKED = {"forces": (0.1, 0.03, 0.01, 3e-3, 1e-3), "peak": TOLERANCES}  # of the shares of rungs
+FORCES, COMPLETE = ("forces", "contact"), ("forces", "contact", "friction_work", "peak_stress", "life")
+YARDSTICK = ("sliding", "standard")
+CHEAP = 1024  # designs for the errors of discretisation of `sliding`
+FINEST = replace(
+    PRESETS["reference"],
+    name="finest",
+    force_nodes=48,
+    elements=112,
+    peak=PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0),
+)
+LEVELS = (50, 99)  # percentiles of the page
 
 
-def measure(settings: Sequence[Setting], cases: Sequence[Case], model: str, block: int = 256) -> xr.Dataset:
-    """Measure errors (setting, quantity, design) and cost (setting) of complete solutions.
+def seconds(
+    cases: list[tr.Case], asked: Sequence[tuple[str, Any]], outputs: tuple[str, ...], repeats: int
+) -> list[float]:
+    """Return the processor time of a case [s] by contact model and accuracy, the least of `repeats`."""
+    spent = np.empty((repeats, len(asked)))
+    for model, accuracy in asked:
+        tr.solve(cases[:2], outputs=outputs, contact_model=model, accuracy=accuracy)  # compiled and loaded
+    for turn in spent:
+        for k, (model, accuracy) in enumerate(asked):
+            start = time.process_time()
+            tr.solve(cases, outputs=outputs, contact_model=model, accuracy=accuracy)
+            turn[k] = time.process_time() - start
+    return list(spent.min(axis=0) / max(len(cases), 1))
 
-    Settings take turns block by block, so that a busy machine troubles all alike.
+
+def costs(truth: Truth, repeats: int) -> dict[str, list[dict[str, Any]]]:
+    """Return the costs of rungs and tolerances over the yardstick, by sample."""
+    asked = [YARDSTICK, *((model, rung) for model in MODELS for rung in RUNGS), *(("kalker", t) for t in TOLERANCES)]
+    found = {}
+    for name in SAMPLES:
+        cases = [case for case, own in zip(truth.cases, truth.sample, strict=True) if own == name]
+        complete, forces = (seconds(cases, asked, outputs, repeats) for outputs in (COMPLETE, FORCES))
+        one = complete[0]
+        rows = zip(asked[1:], complete[1:], forces[1:], strict=True)
+        found[name] = [
+            {"model": model, "accuracy": accuracy, "complete": whole / one, "forces": part / one}
+            for (model, accuracy), whole, part in rows
+        ]
+    return found
+
+
+def falling_costs(truth: Truth, repeats: int, seed: int = 3) -> list[dict[str, Any]]:
+    """Return the costs under random laws of falling friction over the yardstick under constant friction.
+
+    Some of the rollers slip. A roller that nearly slips takes ten times longer than one that rolls.
     """
-    errors = np.full((len(settings), len(QUANTITIES), len(cases)), np.nan)
-    spent, reference_cost = np.zeros(len(settings)), 0.0
-    for setting in settings:  # compiled and loaded before the clock runs
-        _solve(setting, cases[:1], model)
-    for first in range(0, len(cases), block):
-        part = list(cases[first : first + block])
-        reference, seconds = reference_solution(part, model)
-        reference_cost += seconds * len(part)
-        for i, setting in enumerate(settings):
-            result, seconds = cpu(_solve, setting, part, model)
-            spent[i] += seconds
-            found = relative_errors(result, reference)
-            for j, name in enumerate(QUANTITIES):
-                if name in found:
-                    errors[i, j, first : first + len(part)] = found[name]
-    return labelled(settings, errors, spent / len(cases), {"reference_cost": reference_cost / len(cases)})
+    cases = falling_friction.sample(len(truth.cases), seed)
+    one = min(seconds(truth.cases, [YARDSTICK], COMPLETE, repeats))
+    asked = [(model, rung) for model in MODELS if DECLARED[model].friction_laws for rung in RUNGS]
+    spent = (seconds(cases, asked, outputs, repeats) for outputs in (COMPLETE, FORCES))
+    return [
+        {"model": model, "accuracy": rung, "complete": whole / one, "forces": part / one}
+        for (model, rung), whole, part in zip(asked, *spent, strict=True)
+    ]
 
 
-def _solve(setting: Setting, cases: Sequence[Case], model: str) -> xr.Dataset:
-    assert setting.accuracy is not None
-    return solve(
-        list(cases), outputs=setting.outputs, contact_model=model, accuracy=setting.accuracy, **setting.options
-    )
+def _of_sample(truth: Truth, name: str, values: np.ndarray) -> np.ndarray:
+    own = values[truth.sample == name]
+    return np.asarray(own[~np.isnan(own)])
 
 
-def labelled(settings: Sequence[Setting], errors: np.ndarray, cost: np.ndarray, attrs: dict[str, Any]) -> xr.Dataset:
-    """Return one part of the measurement as a data set over setting, quantity and design."""
+def against_truth(truth: Truth, ds: xr.Dataset) -> dict[str, dict[str, Any]]:
+    """Return by sample the errors against the exact theory, and how the told errors of the peaks hold."""
+    errors = {quantity: largest(values) for quantity, values in truth.errors(ds).items()}
+    told = np.where(np.isnan(errors["peak_stress"]), np.nan, largest(ds.error_estimate.values))
+    exceeded = {f"{quantity}_exceeded": values for quantity, values in truth.exceeded(ds).items()}
+    found = {}
+    for name in SAMPLES:
+        own = {quantity: percentiles(_of_sample(truth, name, e), LEVELS).tolist() for quantity, e in errors.items()}
+        shares = {quantity: float(np.mean(_of_sample(truth, name, e))) for quantity, e in exceeded.items()}
+        found[name] = own | shares | {"told_1_percent": float(np.mean(_of_sample(truth, name, told) <= 0.01))}
+    return found
 
-    def text(values: list[str]) -> tuple[str, np.ndarray]:
-        return "setting", np.array(values, dtype=object)
 
-    return xr.Dataset(
-        {
-            "error": (
-                ("setting", "quantity", "design"),
-                errors.astype(np.float32),
-                {
-                    "long_name": "relative error against the converged reference",
-                    "units": "1",
-                    "comment": "largest over contacts and bodies; inf: other regime; NaN: not of this stage",
-                },
-            ),
-            "cost": ("setting", np.asarray(cost, float), {"long_name": "CPU time a case", "units": "s"}),
-            "points": (
-                "setting",
-                np.array([s.points for s in settings], float),
-                {"long_name": "points or elements per length", "units": "1"},
-            ),
-            "stage": text([s.stage for s in settings]),
-            "model": text([s.model for s in settings]),
-            "method": text([s.method for s in settings]),
-            "label": text([s.label for s in settings]),
-            "ladder": text([json.dumps(s.ladder) for s in settings]),
-        },
-        coords={"quantity": np.array(list(QUANTITIES), dtype=object), "design": np.arange(errors.shape[2])},
-        attrs=attrs,
-    )
+def rungs(truth: Truth, part: Truth, sliding: list[tr.Case]) -> list[dict[str, Any]]:
+    """Return errors of each contact model on each rung: against the exact theory, and of discretisation.
+
+    Errors of discretisation are those against the finest settings: for `sliding` on a wider sample of designs, for
+    `kalker` on a part of them and, where the exact theory is known, against that. A peak that is too low by e is
+    expected to err the life by (1 - e)^-k - 1.
+    """
+    rows = []
+    for model in MODELS:
+        cases = {"sliding": sliding, "kalker_table": truth.cases, "kalker": part.cases}[model]
+        friction = ("case", [case.friction_coefficient for case in cases])
+        best = tr.solve(cases, COMPLETE, contact_model=model, accuracy=FINEST).assign(friction=friction)
+        for rung in RUNGS:
+            ds = tr.solve(truth.cases, COMPLETE, contact_model=model, accuracy=rung)
+            errors = relative_errors(tr.solve(cases, COMPLETE, contact_model=model, accuracy=rung), best)
+            if model == "kalker":  # elements miss peaks at small adhesion areas, whatever their number
+                errors |= {quantity: largest(values) for quantity, values in truth.errors(ds).items()}
+                exponent = float((ds.life_error_estimate / ds.error_estimate).max())
+                errors["life"] = (1.0 - errors["peak_stress"]) ** -exponent - 1.0
+            levels = {name: [*percentiles(e).tolist(), tolerance_bound(e)] for name, e in errors.items()}
+            rows.append({"model": model, "accuracy": rung, "levels": levels, "exact": against_truth(truth, ds)})
+    return rows
+
+
+def tolerances(truth: Truth) -> list[dict[str, Any]]:
+    """Return by sample what tolerances of `kalker` keep, flag and take from each rung."""
+    rows = []
+    for tolerance in TOLERANCES:
+        ds = tr.solve(truth.cases, COMPLETE, contact_model="kalker", accuracy=tolerance)
+        missed = (ds.validity.values & validity_bit("tolerance_missed")) != 0
+        errors = {quantity: largest(values) for quantity, values in truth.errors(ds).items()}
+        worst = np.max(list(errors.values()), axis=0)
+        keeps = np.where(np.isnan(worst), np.nan, worst <= tolerance + truth.peak_error)
+        used = ds.accuracy_used.values
+        by_sample = {
+            name: {
+                "missed": float(np.mean(missed[own])),
+                "kept": float(np.nanmean(keeps[own & ~missed])),
+                "missed_though_kept": float(np.nansum(keeps[own & missed]) / max(np.sum(own & missed), 1)),
+                "served": [float(np.mean(used[own] == k)) for k in range(len(RUNGS))],
+            }
+            for name in SAMPLES
+            if (own := truth.sample == name).any()
+        }
+        rows.append({"tolerance": tolerance, **by_sample})
+    return rows
+
+
+def shares(cases: list[tr.Case], model: str, quantity: str, tolerance: float) -> list[float]:
+    """Return the shares of the cases that a tolerance solves on each rung."""
+    counts, plain = dict.fromkeys(RUNGS, 0), solver._solve_block
+
+    def counted(table: Any, options: Any) -> Any:
+        counts[options.accuracy] += len(table)
+        return plain(table, options)
+
+    outputs = FORCES if quantity == "forces" else ("peak_stress",)
+    with mock.patch.object(solver, "_solve_block", counted):
+        tr.solve(cases, outputs, contact_model=model, accuracy={quantity: tolerance})
+    return [count / len(cases) for count in counts.values()]
+
+
+def measure(few: int = 0, repeats: int = 2) -> dict[str, Any]:
+    """Return all numbers of the page on cost and error; `few` takes so many designs of each sample only."""
+    truth = Truth.read().few(few or 230)
+    part = truth.few(min(few or 60, 60))
+    walked = {
+        model: {
+            quantity: {f"{t:g}": shares(part.cases, model, quantity, t) for t in own}
+            for quantity, own in WALKED.items()
+        }
+        for model in MODELS
+    }
+    return {
+        "designs": {name: int(np.sum(truth.sample == name)) for name in SAMPLES} | {"sliding": few or CHEAP},
+        "costs": costs(part, repeats),
+        "falling": falling_costs(truth.few(min(few or 10, 10)), 1),
+        "rungs": rungs(truth, part, sample(few or CHEAP)),
+        "tolerances": tolerances(truth),
+        "shares": walked,
+    }

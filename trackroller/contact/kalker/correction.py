@@ -14,14 +14,14 @@ from typing import Any, cast
 import numpy as np
 
 from trackroller.contact import table
-from trackroller.contact.common import Elastic, Ellipse, Resultants, Works, error_of_work, force_scales
+from trackroller.contact.common import Elastic, Ellipse, Resultants, Works, force_scales
 from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
-from trackroller.contact.settings import FADES, converged_up_to
+from trackroller.contact.settings import converged_up_to
 from trackroller.contact.slip import Creepage, Slip
-from trackroller.contact.wedge import determinant, own_change
+from trackroller.contact.wedge import determinant
 from trackroller.numerics.knots import rise
 
 NEAR = 0.02  # if the normalised slip changed less than this, the iteration starts from the patch's last solution
@@ -83,7 +83,7 @@ class Correction:
         self.share = np.zeros((n, 2))  # of the elements in the forces, from 0 to 1
         self.count = 0  # of solved patches
         self.store = Store(2 * n)  # solutions
-        self.finer = [Store(2 * n) for _ in range(max(settings.doublings, 1))]  # on twice the elements and more
+        self.finer = Store(2 * n)  # solutions on twice the elements
 
     def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and its validity, (m,)."""
@@ -142,9 +142,6 @@ class Correction:
         other, own = self.normal[rows, 1 - side], self.ratio[rows, side]
         beside = np.where(np.isnan(other), -own, self.ratio[rows, 1 - side])  # of mirror images only one is given
         sine, normal = np.abs(slip.sine), np.where(np.isnan(other), patch.normal_force, other)
-        if self.settings.force_goal:  # F_N of the same contact counts too
-            with np.errstate(divide="ignore"):
-                normal = np.fmin(normal, patch.normal_force / own_change(sine, slip.cosine, sign * beside))
         return np.abs(determinant(sine, slip.cosine, sign * own, sign * beside)) * normal
 
     def _learn(self, offset: np.ndarray, place: np.ndarray, rows: np.ndarray, side: np.ndarray) -> None:
@@ -180,8 +177,6 @@ class Correction:
             plain, value = solution.resultants.columns - solution.limit[:, :3], solution.resultants.columns
             if before is not None:
                 solution = solution.extrapolated_as(before)
-                if self.settings.force_goal:
-                    solution = dataclasses.replace(solution, pressure_work=solution.pressure_work + before.limit[:, 4])
             else:
                 if forces:
                     value, force_error = self._refined(patch.take(pick), slip.take(pick), friction[pick], own, solution)
@@ -214,52 +209,23 @@ class Correction:
                 if (enough == number).any():
                     solve_again(np.flatnonzero(enough == number), SERVING[number])
             return value, force_error
-        work = error_of_work(patch, slip, friction, *value.T[1:]) if self.settings.force_goal else 1.0
-        of_work = friction * patch.normal_force / work
-        rough, finer = self._doubled(patch, slip, friction, rows, solution, (of_work, other), value, force_error)
+        # an error of F_T counts over mu F_N, and as the change of F_N that it causes in the other contact
+        limit = refined_above(self.settings.elements) * np.minimum(friction * patch.normal_force, other)
+        rough = np.flatnonzero(force_error > limit)
+        if not rough.size:
+            return value, force_error
+        part, mu, elastic = patch.take(rough), friction[rough], self.elastic.take(rows[rough])
+        coarse = solution.take(rough)
+        finer = self.on_finer(part, slip.take(rough), mu, rows[rough], coarse, forces=True)
+        self.count, good = self.count + rough.size, finer.converged
+        twice, change = extrapolation.doubled(part, creep.take(rough), mu, elastic, finer, coarse)
+        error = extrapolation.force_error(part, mu, finer.stick_fraction, change, finer.traction.shape[-1])
+        value[rough[good]], force_error[rough[good]] = twice[good], error[good]
         light = np.flatnonzero(force_error[rough] > LIGHT_ERROR * other[rough])
-        if light.size and finer is not None and not self.settings.force_goal:
-            start = on_elements(patch.take(rough[light]), finer.take(light), LIGHT_FACTOR * self.settings.elements)
+        if light.size:
+            start = on_elements(part.take(light), finer.take(light), LIGHT_FACTOR * self.settings.elements)
             solve_again(rough[light], start.shape[-1], start)
         return value, force_error
-
-    def _doubled(self, patch: Any, slip: Slip, friction, rows, solution: PatchSolution, limits, value, force_error):
-        """Solve patches on twice the elements, and again, while their error over one of `limits` [N] is too large.
-
-        An error of the forces as large as `limits[0]` (m,) is a relative error of 1 of the friction work, and one as
-        large as `limits[1]` is that of F_N of the other contact. Forces, error and works are overwritten; for a
-        tolerance they fade between numbers of elements. Returns the first patches solved again, and their solutions.
-        """
-        goal, creep = self.settings.force_goal, Creepage.of_slip(slip, self.settings.profile_slip)
-        least = np.minimum(*limits)
-        force_error += np.where(goal > 0.0, np.abs(solution.energy_residual) * limits[0], 0.0)
-        limit = least * (FADES[0] * goal or refined_above(self.settings.elements))
-        first, twice = (pick := np.flatnonzero(force_error > limit)), None
-        total = np.column_stack([value, solution.pressure_work, solution.energy_residual])
-        coarse, old, error, share = solution.take(pick), total[pick], force_error[pick], np.ones(pick.size)
-        for _ in range(self.settings.doublings * bool(pick.size)):
-            part, mu, elastic = patch.take(pick), friction[pick], self.elastic.take(rows[pick])
-            finer = self.on_finer(part, slip.take(pick), mu, rows[pick], coarse, forces=True)
-            self.count += pick.size
-            new, change = extrapolation.doubled(part, creep.take(pick), mu, elastic, finer, coarse)
-            finest = extrapolation.force_error(part, mu, finer.stick_fraction, change, finer.traction.shape[-1])
-            if goal:  # at most the change of the forces, plus the energy residual, which is 0 without errors
-                scale = force_scales(part, mu)
-                finest = np.fmin(finest, (np.abs(new - old)[:, :3] / scale * scale[:, :1]).max(axis=1))
-                finest += np.abs(new[:, 4]) * limits[0][pick]
-            share *= finer.converged * (rise(error / (goal * least[pick]), FADES) if goal else 1.0)
-            total[pick] += share[:, None] * (new - old)
-            force_error[pick] += share * (finest - error)
-            twice = twice or finer
-            more = np.flatnonzero(finer.converged & (finest > limit[pick]))
-            if not more.size:
-                break
-            pick, coarse, old, error, share = pick[more], finer.take(more), new[more], finest[more], share[more]
-        value[:] = total[:, :3]
-        if goal:
-            solution.limit[:, 4] += total[:, 3] - solution.pressure_work
-            solution.pressure_work[:], solution.energy_residual[:] = total[:, 3], total[:, 4]
-        return first, twice
 
     def on_finer(
         self, patch: Any, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
@@ -267,18 +233,17 @@ class Correction:
         """Solve patches on twice the elements of the solutions `coarse`, arrays (m,), from the tractions at hand."""
         slot, creep = 2 * rows + _side(slip), Creepage.of_slip(slip, self.settings.profile_slip)
         elements = 2 * coarse.traction.shape[-1]
-        store = self.finer[(elements // self.settings.elements).bit_length() - 2]
-        known = store.known[slot]
+        known = self.finer.known[slot]
         start = np.empty((len(rows), 2, elements, elements))
         if known.any():
-            start[known] = store.get(slot[known]).traction
+            start[known] = self.finer.get(slot[known]).traction
         if not known.all():
             start[~known] = on_elements(patch.take(~known), coarse.take(~known), elements)
         wanted = {"elements": elements, "tolerance": self.traction_tolerance, "extrapolate": False, "between": forces}
         elastic, settings = self.elastic.take(rows), dataclasses.replace(self.settings, **wanted)
         solution = solve_patch(patch, creep, friction, elastic, settings, start)
-        if forces or self.settings.doublings > 1:
-            store.put(slot, solution)
+        if forces:
+            self.finer.put(slot, solution)
         return solution
 
     def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
@@ -306,7 +271,7 @@ class Correction:
     def forget(self, rows: np.ndarray) -> None:
         """Drop the solutions of the rollers `rows`, so that their patches are solved again when needed."""
         slots = np.concatenate([2 * rows, 2 * rows + 1])
-        for store in (self.store, *self.finer):
+        for store in (self.store, self.finer):
             store.known[slots] = False
         self.error[rows] = np.nan
 

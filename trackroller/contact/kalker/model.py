@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 
-from trackroller.contact.kalker import extrapolation, window
+from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.kalker.patch import shares, to_tractions
 from trackroller.contact.kalker.problem import KalkerSettings
-from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.normal.models import GridKalkerModel
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Accuracy, Rollers
+from trackroller.contact.settings import Rollers
 from trackroller.contact.slip import Creepage
+from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import DECLARED
 
 LEAST_UNDER_LAW = 20  # least number of elements across a patch under a friction law
@@ -31,14 +29,7 @@ class KalkerModel(ContactModel):
     def __init__(self, given: Rollers, settings: Accuracy, trusts_table: bool = False) -> None:
         self.given, law, elastic = given, given.law, given.elastic
         self.elements = settings.elements if law.is_constant else max(settings.elements, LEAST_UNDER_LAW)
-        discretisation = KalkerSettings(
-            elements=self.elements,
-            tolerance=1e-8,
-            law=law,
-            profile_slip=given.profile_slip,
-            doublings=settings.doublings,
-            force_goal=settings.force_goal,
-        )
+        discretisation = KalkerSettings(self.elements, tolerance=1e-8, law=law, profile_slip=given.profile_slip)
         self._law = KalkerLaw(elastic, discretisation, given.travel_speed)
         if law.is_constant:  # the table behind the corrections holds constant friction only
             self.correction = Correction(elastic, discretisation, trusts_table)
@@ -59,28 +50,17 @@ class KalkerModel(ContactModel):
     def shares(self, ellipse, slip, friction, rows):
         return shares(ellipse, self._solution(ellipse, slip, friction, rows))
 
-    def finer_shares(self, ellipse, slip, friction, rows, doublings=1, parts=FINER_PARTS):
+    def finer_shares(self, ellipse, slip, friction, rows, parts=FINER_PARTS):
         if self.correction is None:
             return None
         coarse = self._solution(ellipse, slip, friction, rows)
-        for _ in range(doublings):
-            finer = coarse = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
-        return (*shares(ellipse, finer, max(parts // doublings, PARTS)), finer.converged)
+        finer = self.correction.on_finer(ellipse, slip, friction, rows, coarse)
+        return *shares(ellipse, finer, parts), finer.converged
 
-    def pole_stress(self, ellipse, slip, friction, rows, doublings):
-        elastic, elements = self.given.elastic.take(rows), self.elements * 2**doublings
-        return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, elastic, elements)
-
-    def windows(self, ellipse, slip, friction, rows, residual, doublings):
-        if self.correction is None:
-            return iter(())
-        correction, coarse = self.correction, self._solution(ellipse, slip, friction, rows)
-        for _ in range(doublings):
-            coarse = correction.on_finer(ellipse, slip, friction, rows, coarse)
-        elastic = correction.elastic.take(rows)
-        bound = friction * ellipse.max_pressure / elastic.shear_modulus
-        settings = replace(correction.settings, tolerance=residual)
-        return window.fields(ellipse, coarse, elastic.poisson_ratio[0], bound[0], settings)
+    def pole_stress(self, ellipse, slip, friction, rows):
+        if self.correction is None:  # the formula was fitted to constant friction
+            return super().pole_stress(ellipse, slip, friction, rows)
+        return extrapolation.pole_stress(ellipse, Creepage.of_slip(slip), friction, self.given.elastic.take(rows))
 
     def power(self, ellipse, slip, friction, rows):
         if self.correction is not None:

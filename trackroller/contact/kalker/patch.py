@@ -16,8 +16,8 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, SurfaceTrac
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker import batch, extrapolation, subgrid
 from trackroller.contact.kalker.cells import cells, unit_cells
-from trackroller.contact.kalker.columns import column_ranges
 from trackroller.contact.kalker.loops import row_means
+from trackroller.contact.kalker.newton import column_ranges
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, joined
 from trackroller.contact.linear import LARGEST_RATIO, creepage_coefficients
 from trackroller.contact.slip import Creepage

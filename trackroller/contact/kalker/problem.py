@@ -27,10 +27,6 @@ class KalkerSettings:
     between : bool
         Integrate resultants and adhesion area between the elements too. False, where only the tractions are wanted,
         adds up the elements.
-    doublings : int
-        How often the elements of a patch of an equilibrium may double where its estimated error is large.
-    force_goal : float
-        The error over mu F_N from which they double; 0: the limit of a preset, see `correction`.
     profile_slip : bool
         Use the rigid slip of the circular guide profile, eq. (20), instead of its tangent xi + phi x.
     law : FrictionLaw, optional
@@ -45,8 +41,6 @@ class KalkerSettings:
     krylov: int = 80
     extrapolate: bool = True
     between: bool = True
-    doublings: int = 1
-    force_goal: float = 0.0
     profile_slip: bool = False
     law: FrictionLaw | None = None
     travel_speed: float = 1.0

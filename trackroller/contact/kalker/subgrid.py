@@ -17,7 +17,7 @@ import numpy as np
 from trackroller.contact.common import filled
 from trackroller.contact.kalker.cells import cells
 from trackroller.numerics.compiled import compiled
-from trackroller.numerics.splines import by_splines, interpolated, spline_at
+from trackroller.numerics.splines import interpolated
 
 PARTS = 3  # points along each side of an element
 POINTS = 2**15  # between elements that are held at once: these stay in the fast caches
@@ -37,21 +37,14 @@ def _filled(z: np.ndarray, height: np.ndarray) -> np.ndarray:
 
 
 @compiled
-def _factor(x, y):
-    """Return the factor that shortens a vector to at most length 1."""
-    square = x * x + y * y
-    return 1.0 / np.sqrt(square) if square > 1.0 else 1.0
-
-
-@compiled
 def _shorten(z):
     """Shorten the vectors of a field (2, ny, nx) to at most length 1, in place."""
     for i in range(z.shape[1]):
         for j in range(z.shape[2]):
-            factor = _factor(z[0, i, j], z[1, i, j])
-            if factor != 1.0:
-                z[0, i, j] *= factor
-                z[1, i, j] *= factor
+            square = z[0, i, j] ** 2 + z[1, i, j] ** 2
+            if square > 1.0:
+                z[0, i, j] /= np.sqrt(square)
+                z[1, i, j] /= np.sqrt(square)
 
 
 class Fields(NamedTuple):
@@ -135,11 +128,6 @@ def both_shares(fields: Fields, parts: int = PARTS) -> tuple[np.ndarray, np.ndar
     return fine, coarse
 
 
-def shares_of(z: np.ndarray, across: int, along: int) -> np.ndarray:
-    """Return the traction over mu p from z (n, 2, ny, nx), with `across` and `along` points a side of each element."""
-    return bounded(interpolated(z, across, along))
-
-
 def _of_four(field: np.ndarray) -> np.ndarray:
     """Return the means (..., m/2, m/2) of 2 x 2 elements of a field (..., m, m)."""
     m = field.shape[-1] // 2
@@ -151,46 +139,11 @@ def _between(z: np.ndarray, fields: Fields, parts: float) -> np.ndarray:
     return _by_law(interpolated(z, parts, parts), fields, parts)
 
 
-def shares_at(z: np.ndarray, x: np.ndarray, y: np.ndarray) -> np.ndarray:
-    """Interpolate z (n, 2, ny, nx) at any points and return the traction over mu p there, (n, 2, ., .).
-
-    `x` and `y` are their places along both axes in elements; the centre of the first element is at 0.
-    """
-    return bounded(by_splines(z, spline_at(z.shape[-2], y), spline_at(z.shape[-1], x)))
-
-
 def bounded(fine: np.ndarray) -> np.ndarray:
     """Shorten z (n, 2, ny, nx) to the traction over its bound, in place."""
     for field in fine:
         _shorten(field)
     return fine
-
-
-@compiled
-def missed_by_centres(z, fine):
-    """Return what the law of friction takes from z at the centre of each element less its mean over the element.
-
-    This is the mean traction over mu p less that at the centre, x + iy, (ny, nx), if the mean of z is z at the centre;
-    it is 0 where all of an element sticks. `z` (2, ny, nx) is given at the centres, `fine` at equally many points along
-    the sides of each element.
-    """
-    _, ny, nx = z.shape
-    along, across = fine.shape[1] // ny, fine.shape[2] // nx
-    out = np.empty((ny, nx), np.complex128)
-    for i in range(ny):
-        for j in range(nx):
-            mean = 0j
-            for k in range(i * along, (i + 1) * along):
-                for m in range(j * across, (j + 1) * across):
-                    mean -= _taken(fine[0, k, m], fine[1, k, m])
-            out[i, j] = mean / (along * across) + _taken(z[0, i, j], z[1, i, j])
-    return out
-
-
-@compiled
-def _taken(x, y):
-    """Return what the law of friction takes from a vector z, x + iy, when it shortens z to at most length 1."""
-    return complex(x, y) * (1.0 - _factor(x, y))
 
 
 def _by_law(fine: np.ndarray, fields: Fields, parts: float) -> np.ndarray:

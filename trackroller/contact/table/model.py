@@ -18,9 +18,10 @@ from trackroller.contact.kalker.correction import SERVING
 from trackroller.contact.kalker.model import KalkerModel
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Accuracy, Rollers
+from trackroller.contact.settings import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table
+from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import DECLARED
 
 # Residual of the friction law over mu p_max in tractions on few elements; it changes peaks by 1e-4 of themselves.
@@ -81,10 +82,10 @@ class TableModel(ContactModel):
         """Return the tractions of the exact solver on few elements over their bound, see `ContactModel.shares`."""
         return self.rough.shares(patch, slip, friction, rows)
 
-    def finer_shares(self, patch: Any, slip: Slip, friction, rows, doublings: int = 1):
+    def finer_shares(self, patch: Any, slip: Slip, friction, rows):
         """Return `shares` from twice the elements, see `ContactModel.finer_shares`; None if they come from all."""
         own = self.rough
-        return None if own is self.exact else own.finer_shares(patch, slip, friction, rows, doublings, PARTS)
+        return None if own is self.exact else own.finer_shares(patch, slip, friction, rows, PARTS)
 
     def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""

@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, fatigue, judged, of_mechanics, of_patches, verdict
+from trackroller.damage import LIMITS, asked, judged, of_mechanics, of_patches, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers
 from trackroller.damage.wear import KM_PER_HOUR
@@ -42,15 +42,6 @@ def finish(table: CaseTable, block: Block, options: Options) -> None:
         v["friction_power"] = v["friction_energy_per_distance"] * (table.velocity / 60.0)[:, None]
     limits(table, v, options, block.regime)
     validity(table, block, options)
-
-
-def peak_goal(table: CaseTable, options: Options) -> np.ndarray:
-    """Return the largest error of the peaks of each case, (n,): that of a life is its tolerance over the exponent."""
-    settings = options.settings
-    if not np.isfinite(settings.life_goal):
-        return np.full(len(table), settings.peak_goal)
-    exponent = np.broadcast_to(fatigue.curve_of(solved_of(table, {}, options)).slope(0.0), (len(table), 1, 2))
-    return np.fmin(settings.peak_goal, settings.life_goal / np.fmax(exponent.max(axis=(1, 2)), 1.0))
 
 
 def solved_of(

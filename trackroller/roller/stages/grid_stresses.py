@@ -72,7 +72,7 @@ class GridStresses(PatchStresses):
         # finer tractions do not help where the pressure is singular or its ridges are narrower than its elements
         allowed = (results.slides_along[flat] == 0) & ~patch.reaches_edge[flat] & (results.friction[flat] > 0)
         allowed &= np.array([load.coarse.pressure.max() > RESOLVED * load.pressure.max() for load in loads], bool)
-        goal = max(REFINED_ERROR * options.settings.tolerance, FINEST_ERROR)
+        goal = max(REFINED_ERROR * options.settings.peak_error, FINEST_ERROR)
         for times in REFINEMENTS:
             rows = np.flatnonzero(allowed & (peak.error.max(axis=1) > goal))
             if times * patch.shape[1] > LARGEST_GRID or not rows.size:

@@ -19,6 +19,7 @@ from trackroller.contact.wedge import determinant, own_change
 from trackroller.numerics.numbers import rounded
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
+from trackroller.roller.expected_errors import expected_errors
 from trackroller.roller.geometry import contact_geometry, lever_arms
 from trackroller.roller.options import Options
 from trackroller.roller.requirements import Mirror, is_frictionless, is_mirror_symmetric
@@ -29,7 +30,6 @@ SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
     "motor_force < 0 drives, > 0 brakes; contact 1 at +x_R, contact 2 at -x_R"
 )
-LOAD_SHARE = 0.6  # of the estimated error of F_N for a tolerance: the errors of both contacts seldom add up
 MM_PER_S = 1000.0 / 60.0  # mm/s for 1 m/min
 FINITE = {"normal_force", "lateral_force", "driving_force", "spin_moment", "max_pressure", "peak_stress"}
 
@@ -118,7 +118,7 @@ def force_error(results: Results, options: Options) -> None:
     error = scene.model.force_error(scene.n)
     twins = scene.mirror.symmetric
     error[twins] = np.fmax(error[twins, :1], error[twins, 1:])
-    measured = options.expected_errors(scene.model.name, not scene.loads.falling).get("friction_force")
+    measured = expected_errors(options, scene.model.name, not scene.loads.falling).get("friction_force")
     if measured is not None:
         error = np.where(np.isnan(error), max(measured.bound, measured.p99), error)
     known = (results.regime == eq.FULL_SLIP) | (scene.loads.friction == 0.0)
@@ -126,11 +126,6 @@ def force_error(results: Results, options: Options) -> None:
     with np.errstate(divide="ignore", invalid="ignore"):
         used = np.hypot(v["lateral_force"], v["driving_force"]) / capacity
         of_load = _load_error(results, error * scene.loads.friction[:, None])
-        if options.settings.force_goal:
-            forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
-            work = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
-            largest = np.fmax(error * work, LOAD_SHARE * of_load)
-            results.tell(np.where(known[:, None], 0.0, largest / options.settings.force_goal))
         error = error + np.sqrt(used) * of_load
     for name, estimate in (("force_error_estimate", error), ("normal_force_error_estimate", of_load)):
         estimate = np.where(known[:, None], 0.0, estimate)
@@ -239,9 +234,17 @@ def dissipation(results: Results) -> tuple[np.ndarray, np.ndarray]:
 
 
 def friction_work(results: Results, options: Options) -> None:
-    """Add the friction energy per distance travelled, and the energy balance."""
-    results.values["friction_energy_per_distance"], pressed = dissipation(results)
-    _energy_balance(results, results.values["friction_energy_per_distance"], pressed)
+    """Add the friction energy per distance travelled, its estimated error, and the energy balance."""
+    v, model = results.values, results.scene.model
+    v["friction_energy_per_distance"], pressed = dissipation(results)
+    _energy_balance(results, v["friction_energy_per_distance"], pressed)
+    forces = v["driving_force"].T.reshape(-1), v["spin_moment"].T.reshape(-1)
+    factor = results.by_contact(error_of_work(results.patch, results.slip, results.friction, *forces))
+    # elements lose energy where nearly all sticks; in full sliding the difference is the model's
+    lost = np.nan_to_num(np.abs(v["energy_residual"]))[:, None] if model.elastic else 0.0
+    told = v["force_error_estimate"]
+    with np.errstate(invalid="ignore"):
+        v["friction_energy_error_estimate"] = np.where(told > 0.0, told * factor + lost, told)
 
 
 def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) -> None:

@@ -84,7 +84,7 @@ class Results:
     values : results by name, arrays with the case as first axis
     surface : tractions of the existing patches, once computed
     share : traction of the existing patches over its bound, once computed
-    refined : how often the elements of a patch doubled before its peak was searched, (2 n,)
+    refined : True for patches whose peak was searched on twice the elements, (2 n,)
     """
 
     scene: Scene
@@ -100,7 +100,7 @@ class Results:
     values: dict[str, np.ndarray] = field(default_factory=dict)
     surface: SurfaceTractions | None = None
     share: np.ndarray | None = None
-    refined: np.ndarray = field(default_factory=lambda: np.zeros(0, int))
+    refined: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
 
     @classmethod
     def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
@@ -123,7 +123,7 @@ class Results:
             np.isfinite(balance.normal_force.T.reshape(-1)),
             np.where(balance.jamming, JAMMING, 0).astype(np.int32),
             np.zeros(scene.n, bool),
-            refined=np.zeros(2 * scene.n, int),
+            refined=np.zeros(2 * scene.n, bool),
         )
         out.values["residual"] = np.where(rolls, np.fmax(balance.residual, unmet), balance.residual)
         return out
@@ -147,11 +147,6 @@ class Results:
         """Return the result `name` in N and mm, (n, ...)."""
         values, power = self.values[name], POWER.get(name, 0)
         return values * self.scene.unit.reshape(-1, *(1,) * (values.ndim - 1)) ** power if power else values
-
-    def tell(self, over: np.ndarray) -> None:
-        """Take estimated errors over their tolerance, (n, ...), into the largest one of each case."""
-        known = self.values.setdefault("error_over_tolerance", np.zeros(self.scene.n))
-        np.fmax(known, np.nan_to_num(over, nan=0.0).reshape(self.scene.n, -1).max(axis=1), out=known)
 
     def full(self, flat_good: np.ndarray) -> np.ndarray:
         """Return values of the existing patches for all patches, NaN for the others, shape (n, 2, ...)."""

@@ -6,7 +6,6 @@ import numpy as np
 
 from trackroller.halfspace.stress import von_mises
 from trackroller.roller.options import Options
-from trackroller.roller.stages.case import peak_goal
 from trackroller.roller.stages.ellipse_stresses import EllipseStresses
 from trackroller.roller.stages.grid_stresses import GridStresses
 from trackroller.roller.stages.patch_stresses import PatchStresses
@@ -64,9 +63,6 @@ def peak_stress(results: Results, options: Options) -> None:
         if options.stress_bodies == "published":
             full = np.repeat(full[:, :, :1], 2, axis=2)
         results.values[name] = full
-    if options.settings.peak_goal:
-        goal = peak_goal(results.scene.table, options)
-        results.tell(results.values["error_estimate"] / goal[:, None, None])
 
 
 def subsurface(results: Results, options: Options) -> None:

@@ -14,9 +14,8 @@ from trackroller.methods import those_with
 from trackroller.methods.correlation import copula
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.accuracy import accuracy_settings
 from trackroller.roller.geometry import geometry_problem, geometry_problems
-from trackroller.roller.options import check_pairs, check_spin_model
+from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
 from trackroller.study.design.read_table import table_lines
@@ -55,7 +54,7 @@ def _check_options(study: Study) -> None:
         allowed = f"halfspace, because {' and '.join(shaped)} may leave no circle"
         raise InputError("normal", "hertz", allowed, "Write normal: halfspace.")
     for model in levels("contact_model"):
-        accuracy_settings(study.config.accuracy, model, study.config.outputs)
+        check_accuracy(study.config.accuracy, model, study.config.outputs)
 
 
 def cross_check(study: Study) -> None:

@@ -9,7 +9,7 @@ from typing import Any
 from trackroller.methods import METHODS
 from trackroller.methods.factor import DISTRIBUTIONS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
-from trackroller.parameters.options import QUANTITIES
+from trackroller.parameters.accuracy import QUANTITIES
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
 

@@ -1,9 +1,9 @@
 """Which source and data files a result depends on, and a digest of what these files say.
 
 The import graph is read from the source text, so that no list of files is kept by hand. Late imports inside functions
-count; imports for type checking do not. A data file belongs to every module that names it, as `accuracy.json` belongs
-to `roller/accuracy.py`. The digest leaves out comments, docstrings and blank lines: a better sentence in a docstring
-changes no result, so it must not cause one to be computed again. Data files count by their bytes.
+count; imports for type checking do not. A data file belongs to every module that names it, as `expected_errors.json`
+belongs to `roller/expected_errors.py`. The digest leaves out comments, docstrings and blank lines: a better sentence in
+a docstring changes no result, so it must not cause one to be computed again. Data files count by their bytes.
 
 The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
 instead of on source files, because a source file gets a new date when only its comments change::
