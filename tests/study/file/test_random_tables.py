@@ -45,7 +45,7 @@ def test_a_random_table_of_cases_is_read_right_or_refused(kind, part, tmp_path):
             continue
         check({name: values.tolist() for name, values in columns.items()}, made, seed)
         accepted += 1
-    assert accepted > 0.3 * share(kind), "most tables are refused, so that the test shows little"
+    assert accepted > 0.2 * share(kind), "most tables are refused, so that the test shows little"
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -67,4 +67,4 @@ def test_a_random_table_of_blocks_is_read_right_or_refused(kind, part, tmp_path)
             {name: [v if isinstance(v, str) else float(v) for v in values] for name, values in read.items()}, made, seed
         )
         accepted += 1
-    assert accepted > 0.25 * share(kind), "most tables are refused, so that the test shows little"
+    assert accepted > 0.2 * share(kind), "most tables are refused, so that the test shows little"

@@ -95,7 +95,8 @@ def test_what_a_person_reads_without_doubt_is_read(text, loads, tmp_path):
     [
         ("-200;30;5", "line 3: .*2 cells, one for each name; there are 3"),
         ("-200", "line 3: .*2 cells, one for each name; there are 1"),
-        ("#-200;30", "line 3: .*begins with '#'. Remove the line if it does not count"),
+        ("#4;30;", "line 3: .*begins with '#', but has cells as a line that counts. Remove"),
+        ("#-200;30", "line 3: .*begins with '#', .*. Remove the line if it does not count"),
         ("#N/A;30", "line 3: radial_force = '#N/A'"),
         ("Total;30", "line 3: .*sums up the lines above"),
         ("nan;30", "line 3: radial_force = 'nan'"),
@@ -114,9 +115,9 @@ def test_what_a_person_would_ask_about_is_refused(line, why, tmp_path):
 @pytest.mark.parametrize(
     ("text", "why"),
     [
-        (",radial_force\n0,-200\n1,-300\n", r"line 1: .*column 1 with these cells has none. Leave the index out"),
+        (",radial_force\n0,-200\n1,-300\n", r"line 1: .*column 1, which has no name. .*Leave the index out"),
         ("Unnamed: 0,radial_force\n0,-200\n", "Leave the index out"),
-        ("radial_force;;part\n-200;7;a\n", "column 2 with these cells has none. Name it"),
+        ("radial_force;;part\n-200;7;a\n", "column 2, which has no name. Allowed: a name for each column. Name it"),
         ("radial_force;radial_force\n-200;-300\n", "a different name for each column"),
         ("mu;friction_coefficient\n0.1;0.2\n", "a different name for each column"),
         ("Load cases;\nradial_force;part\n-200;a\n", "stand in line 2. Remove the lines above"),

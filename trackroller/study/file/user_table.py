@@ -14,6 +14,7 @@ import statistics
 import unicodedata
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -126,7 +127,8 @@ def read_table(
     _check_lengths(found, len(heads), separator, path, field, wrong)
     if not found:
         wrong.check()
-    names, units = _names_of_line(_without_unnamed(heads, found, field), field, used, path, head)
+    with _in_line(path, head):
+        names, units = _names(_without_unnamed(heads, found, field), field, used)
     table = UserTable(names, head, found)
     _read_units(table, units, used, path)
     if not found:
@@ -143,7 +145,8 @@ def column_names(path: Path, field: str) -> list[str]:
     """Return the names of the columns of a table; [] for an empty one."""
     lines, _ = _lines(path, field, "case", math.inf, HEAD_ROWS)
     number, heads, _ = _split(_until_names(lines))
-    return _names_of_line([head for head in heads if head], field, (), path, number)[0] if heads else []
+    with _in_line(path, number):
+        return _names([head for head in heads if head], field, ())[0]
 
 
 def is_workbook(path: Path) -> bool:
@@ -212,11 +215,10 @@ def _without_comments(
     for number, cells in lines:
         if labels or not _is_comment(cells):
             yield number, cells
-        elif len(cells) == len(heads) and any(cells[1:]):
+        elif len(cells) >= len(heads) and any(cells[1:]):
             remedy = "Remove the line if it does not count, and '#' if it does."
-            error = InputError(
-                field, ", ".join(cells), "a line that counts or does not; this one begins with '#'", remedy
-            )
+            why = "begins with '#', but has cells as a line that counts"
+            error = InputError(field, ", ".join(cells), "", remedy, why)
             wrong.errors.append(error.at(path, number))
 
 
@@ -259,21 +261,20 @@ def _without_unnamed(heads: list[str], found: dict[int, list[str]], field: str) 
             index = cells in ([str(i + first) for i in range(len(cells))] for first in (0, 1))
             remedy = "Leave the index out (pandas: index=False), or name it." if index else "Name it, or remove it."
             few = ", ".join(cells[:3])
-            raise InputError(field, few, f"a name for each column; column {j + 1} with these cells has none", remedy)
+            wrong = f"are cells of column {j + 1}, which has no name"
+            raise InputError(field, few, "a name for each column", remedy, wrong)
     for line in found.values():
         line[:] = [cell for j, cell in enumerate(line) if j not in unnamed]
     return [head for j, head in enumerate(heads) if j not in unnamed]
 
 
-def _names_of_line(
-    heads: list[str], field: str, used: Collection[str], path: Path, number: int
-) -> tuple[list[str], list[str]]:
-    """Do what `_names` does, and name file and line in its errors."""
+@contextmanager
+def _in_line(path: Path, number: int) -> Iterator[None]:
+    """Name file and line in the errors of a block."""
     try:
-        return _names(heads, field, used)
+        yield
     except InputError as error:
         raise_all(one.at(path, number) for one in error.errors)
-        raise  # never reached: there is at least one error
 
 
 def _names(heads: list[str], field: str, used: Collection[str]) -> tuple[list[str], list[str]]:
