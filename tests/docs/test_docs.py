@@ -214,21 +214,6 @@ def test_the_readme_fits_on_two_screens():
     assert len((ROOT / "README.md").read_text(encoding="utf-8").split()) <= 600
 
 
-GENERATED = {"parameters.md", "reference.md"}
-TEMPLATES = [ROOT / "validation" / "templates" / f"{name}.md" for name in ("accuracy", "contact-models", "index")]
-
-
-def test_the_written_pages_stay_short():
-    """All pages that people write hold at most 14,500 words; of pages with measured numbers the sentences count.
-
-    Formulas are not words.
-    """
-    pages = [page for page in DOCS if page.name not in GENERATED and page.parent.name != "validation"]
-    texts = [re.sub(r"```math\n.*?```", "", page.read_text(encoding="utf-8"), flags=re.S) for page in pages]
-    texts += [re.sub(r"\{[%{].*?[%}]\}", "", page.read_text(encoding="utf-8"), flags=re.S) for page in TEMPLATES]
-    assert sum(len(text.split()) for text in texts) <= 14_500
-
-
 def test_files_that_the_pages_name_exist():
     """Paths of the repository and modules of `python -m` that a page names are there."""
     for page in PAGES:
