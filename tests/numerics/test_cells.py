@@ -12,7 +12,7 @@ from trackroller.numerics.cells import (
     Refused,
     Stored,
     decimal_signs,
-    plain,
+    plain_cell,
     plain_column,
     plain_labels,
     split_head,
@@ -49,14 +49,14 @@ from trackroller.numerics.units import split_quantity
     ],
 )
 def test_a_number_is_read_as_a_person_reads_it(cell, signs, read):
-    assert plain(cell, signs) == read
+    assert plain_cell(cell, signs) == read
 
 
 @pytest.mark.parametrize("cell", ["9.000", "1,200", "12.345 kN", "8.152 1/h"])
 @pytest.mark.parametrize("signs", ["", ".,"])
 def test_a_number_that_other_cells_do_not_decide_is_refused(cell, signs):
     with pytest.raises(AmbiguousNumber, match="other cells do not tell"):
-        plain(cell, signs)
+        plain_cell(cell, signs)
     (read,) = plain_column([cell], signs)
     assert isinstance(read, Refused) and read == cell and read.message[1].startswith("Write ")
 
@@ -65,7 +65,7 @@ def test_a_number_that_other_cells_do_not_decide_is_refused(cell, signs):
     "cell", ["dry", "", "-", "n/a", "200-", "(200)", "1_000", "1,00,000", "12.3.4", "1.2.2026", "1:30", "1/2", "0 123"]
 )
 def test_what_is_no_number_stays_and_no_reader_takes_it_for_one(cell):
-    assert plain(cell, ".") == cell
+    assert plain_cell(cell, ".") == cell
     assert number_or_nan(cell) != number_or_nan(cell) and split_quantity(cell) is None
 
 
@@ -123,7 +123,7 @@ def test_whatever_is_read_as_a_number_later_was_understood():
     for _ in range(50 * EXAMPLES):
         cell = "".join(rng.choices(pieces, k=rng.randint(1, 6)))
         try:
-            read = plain(cell, "")
+            read = plain_cell(cell, "")
         except AmbiguousNumber:
             continue
         if read == cell and "." in cell and (split_quantity(cell) or number_or_nan(cell) == number_or_nan(cell)):

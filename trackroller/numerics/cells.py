@@ -7,7 +7,7 @@ them. A cell that stays ambiguous is refused.
 Examples
 --------
 >>> signs = decimal_signs(["9.000", "40,5"])
->>> [plain(cell, signs) for cell in ("9.000", "40,5", "−0,2 kN", "1 234,5", "dry")]
+>>> [plain_cell(cell, signs) for cell in ("9.000", "40,5", "−0,2 kN", "1 234,5", "dry")]
 ['9000', '40.5', '-0.2 kN', '1234.5', 'dry']
 """
 
@@ -106,7 +106,7 @@ def _shows(cell: str, sign: str) -> bool:
     return parts is not None and parts.certain and parts.mark == sign
 
 
-def plain(cell: str, signs: Collection[str]) -> str:
+def plain_cell(cell: str, signs: Collection[str]) -> str:
     """Return a cell as the program writes numbers; a cell that holds no number is returned as it is.
 
     Parameters
@@ -168,7 +168,7 @@ def _plain_or_refused(cell: str, signs: Collection[str]) -> str:
     if isinstance(cell, Refused):
         return cell
     try:
-        return plain(cell, signs)
+        return plain_cell(cell, signs)
     except AmbiguousNumber as exc:
         return Refused(cell, str(exc), exc.remedy)
 
@@ -196,7 +196,7 @@ def plain_labels(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
         number = cell
         if not fast and not isinstance(cell, Stored):
             try:
-                number = plain(cell, signs) if is_number(cell) else ""
+                number = plain_cell(cell, signs) if is_number(cell) else ""
             except AmbiguousNumber:
                 return cells
         if not isinstance(cell, Stored) and not (_reads_back(number) and number == cell.replace(",", ".")):

@@ -10,7 +10,7 @@ import numpy as np
 
 from trackroller.contact.profiles import PointRows
 from trackroller.errors import InputError
-from trackroller.numerics.cells import plain
+from trackroller.numerics.cells import plain_cell
 from trackroller.numerics.numbers import number_or_nan
 
 _SECTION = re.compile(r"\s*(header|spline|point)\.(begin|end)\s*", re.IGNORECASE)
@@ -91,7 +91,7 @@ class _Profile:
             raise self._refused(line, "ends a section that is not open", allowed)
 
     def _point(self, line: tuple[int, str], text: str) -> None:
-        numbers = [number_or_nan(plain(cell, ".")) for cell in text.split()]
+        numbers = [number_or_nan(plain_cell(cell, ".")) for cell in text.split()]
         if len(numbers) not in (2, 3) or not np.isfinite(numbers).all():
             allowed = "two numbers y, z, or three with a weight"
             raise self._refused(line, "is no point", allowed, "Leave out the lines of lost points.")
@@ -101,7 +101,7 @@ class _Profile:
         key, _, value = (half.strip() for half in text.lower().partition("="))
         if key in _NOTES:
             return
-        number = number_or_nan(plain(value, "."))
+        number = number_or_nan(plain_cell(value, "."))
         if key not in _SETTINGS or not np.isfinite(number):
             raise self._refused(line, "is no known setting with a number", ", ".join(_SETTINGS))
         self.settings[key], self.stated[key] = number, line
