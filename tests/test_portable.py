@@ -126,7 +126,7 @@ def test_a_study_with_the_name_of_a_device_of_windows_is_refused(name):
     from trackroller.errors import InputError
     from trackroller.study.file.config import check_name
 
-    with pytest.raises(InputError, match="Windows has a device"):
+    with pytest.raises(InputError, match="is a device of Windows"):
         check_name(name)
     assert check_name(f"{name[0]}-console") == f"{name[0]}-console"
 

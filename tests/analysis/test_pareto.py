@@ -99,7 +99,7 @@ def test_a_single_best_design_is_called_so():
         ({"friction_powr": "min", "roller_life_hours": "max"}, [], "Did you mean 'friction_power'"),
         ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power 15"], "syntax error"),
         ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power < 1e"], "syntax error"),
-        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power + 15"], "comparison is wanted"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power + 15"], "a comparison such as"),
         ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != 2"], "with a number"),
         ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != full_slp"], "full_slip"),
         ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power.real < 1"], "not allowed"),

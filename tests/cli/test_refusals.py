@@ -121,7 +121,7 @@ def test_a_file_is_what_its_name_says(name, tmp_path, monkeypatch, capsys):
 def test_wear_does_not_go_on_from_another_file(tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("notes.nc").write_text("no netCDF")
-    assert "give another name" in _refused(capsys, "wear", "-o", "notes.nc")
+    assert "Give another name" in _refused(capsys, "wear", "-o", "notes.nc")
     assert Path("notes.nc").read_text() == "no netCDF"
 
 

@@ -328,7 +328,7 @@ def test_a_groove_worn_hollow_carries_in_two_patches():
             normal="halfspace",
             accuracy="preview",
         )
-        assert int(ds.regime) == 0 and np.all(np.isfinite(ds.life_cycles))
+        assert int(ds.regime) == 0 and np.all(np.isfinite(ds.peak_stress))
         for contact in ds.pressure.values:
             loaded = (contact.sum(axis=0) > 0).astype(int)
             assert np.count_nonzero(np.diff(loaded, prepend=0) == 1) == 2

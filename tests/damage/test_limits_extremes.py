@@ -8,6 +8,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.damage import LIMITS, groups_of
+from trackroller.roller.dataset import validity_bit
 from validation.extremes.random_cases import random_extremes
 
 GROUPS = (*groups_of("limits", ["all"]), "multiaxial", "forces", "contact", "peak_stress", "friction_work", "life")
@@ -63,6 +64,8 @@ def check(count, seed, **options):
     for limit in LIMITS.values():
         for name in (own.name for own in limit.results if own.name in ds):
             undefined = ds[name].isnull().values.reshape(count, -1).any(axis=1) & rolls
+            if LIMITS["fatigue"] is limit:  # bodies above their tensile strength have no fatigue life
+                undefined &= (ds.validity_body.values & validity_bit("static") == 0).all(axis=1)
             if name == "wear_place":  # where nothing wears
                 undefined &= (ds.wear_depth_per_overrolling > 0).all(["contact", "body"]).values
             assert not undefined.any(), (name, np.flatnonzero(undefined))

@@ -21,6 +21,8 @@ from trackroller.report.pages.study import contents, models_used, write_report
 from trackroller.report.tables.inputs import Row
 from trackroller.report.words.cases import occurrence, regime_table, validity_table
 from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.ownership import MADE_BY, record_digest
+from trackroller.study.store.seal import put, put_text
 
 FACTORS = {
     "friction_coefficient": [0.05, 0.3, 0.4],
@@ -254,8 +256,9 @@ def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatc
     place = StudyFolder(tmp_path / "friction-and-fit")
     place.root.mkdir()
     levels = {"friction_coefficient": [0.2, 0.3], "roller_profile_radius": [-8.0, -7.0], "axial_force": [0.0, 30.0]}
-    grid_study(levels).to_netcdf(place.gathered)
-    (place.root / "report.html").write_text("the report of before")
+    (place.root / "plan.json").write_text(json.dumps(MADE_BY | {"digest": record_digest(MADE_BY)}))
+    put(place.gathered, grid_study(levels).to_netcdf)
+    put_text(place.root / "report.html", "the report of before")
     if part.startswith("pages."):  # the figures come first, and take a second
         monkeypatch.setattr("trackroller.report.figures.study.draw_all", lambda view, folder: [])
     monkeypatch.setattr(f"trackroller.report.{part}", broken)

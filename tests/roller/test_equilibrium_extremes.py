@@ -60,7 +60,7 @@ def test_the_lateral_load_rests_on_the_contact_that_faces_it():
 
 def test_braking_up_to_the_slip_limit_ends_in_the_state_of_full_slip():
     limit = 0.3 * 200 / np.cos(np.deg2rad(30))
-    ds = solved(*(tr.Case(axial_force=20, motor_force=limit * (1 + e)) for e in (-1e-9, 1e-9)))
+    ds = solved(*(tr.Case(axial_force=20, motor_force=limit * (1 + e)) for e in (-2e-9, 1e-9)))
     assert ds.regime.values.tolist() == [ROLLING, FULL_SLIP]
     assert ds.normal_force.values[0] == pytest.approx(ds.normal_force.values[1], rel=1e-4)
     assert float(ds.transmitted_force[0]) == pytest.approx(float(ds.transmitted_force[1]), rel=1e-7)

@@ -66,7 +66,7 @@ def test_fixed_point_is_the_one_found_by_hand(warm, cold):
         reached = roller_temperature(by_hand)
     assert reached > 50.0 and roller_temperature(warm) == pytest.approx(reached, abs=1e-3)
     for name in ("max_pressure", "peak_stress", "patch_area", "life_cycles", "flash_temperature_rise"):
-        assert warm[name].values == pytest.approx(by_hand[name].values, rel=1e-3), name
+        assert warm[name].values == pytest.approx(by_hand[name].values, rel=1e-3, nan_ok=True), name
 
 
 def test_warm_roller_is_softer(warm, cold):

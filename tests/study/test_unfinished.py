@@ -110,7 +110,7 @@ def test_a_study_without_a_solved_case_or_without_its_gathered_file_says_so(tmp_
     monkeypatch.chdir(tmp_path)
     study, _ = stopped_study("lhs", chunks=0)
     code, _, err = command(("report", "stopped"))
-    assert code == 2 and "no case is solved yet" in err
+    assert code == 2 and "has no solved case yet" in err
     run_study(study).folder.gathered.unlink()
     code, _, err = command(("report", "stopped"))
     assert code == 2 and "not gathered into study.nc" in err

@@ -89,7 +89,8 @@ def life(solved: SolvedRollers) -> Results:
     error = solved.values["error_estimate"] if published else np.full_like(stress, np.nan)
     lifeless = _without_life(solved)
     cycles = np.where(lifeless[:, None, :], np.nan, curve.life_cycles(stress))
-    hours = cycles / solved.overrollings_per_hour[:, None, :]
+    with np.errstate(over="ignore"):  # lives longer than the range of numbers are infinite
+        hours = cycles / solved.overrollings_per_hour[:, None, :]
     roller, guide = np.moveaxis(hours.min(axis=1), 1, 0)
     pair, first = first_failure(roller, guide)
     pair = np.where(lifeless.any(axis=1), np.nan, pair)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from trackroller.contact.settings import converged_up_to
+from trackroller.roller.dataset import validity_bit
 from trackroller.roller.solver import solve
 from validation.extremes.scenes import FORCES, Scene, mirrored, scaled
 from validation.extremes.search import located
@@ -95,15 +96,27 @@ def _worst(run: Run, check: str, deviation: np.ndarray, tolerance: float) -> Fin
     return Finding(check, float(deviation[i]) if deviation.size else 0.0, tolerance, values[min(i, len(values) - 1)])
 
 
+def missing(ds: xr.Dataset, name: str) -> np.ndarray:
+    """Return where numbers of a result are undefined that ought to be there, (n, m): where both contacts carry.
+
+    A skidding roller and a body above its tensile strength have no fatigue life.
+    """
+    values, regime = ds[name].transpose("case", ...), ds["regime"].values
+    due = np.broadcast_to((regime <= FULL_SLIP).reshape(-1, *(1,) * (values.ndim - 1)), values.shape)
+    if name == "life_cycles":
+        lasts = (ds["validity_body"].transpose("case", "body").values & validity_bit("static")) == 0
+        due = due & (lasts & (regime == ROLLING)[:, None])[:, None, :]
+    return _rows(np.isnan(values.values) & due)
+
+
 def _rows(values: np.ndarray) -> np.ndarray:
     return values.reshape(len(values), -1)
 
 
 def finite(run: Run) -> Finding:
     """Return the share of undefined numbers where both contacts carry; each warning counts as one."""
-    carries = run.regime() <= FULL_SLIP
-    bad = np.mean([np.isnan(_rows(run.result[v].values)).mean(axis=1) for v in NEEDED], axis=0)
-    return _worst(run, "finite", np.where(carries, bad, 0.0) + run.warned, 0.0)
+    bad = np.mean([missing(run.result, name).mean(axis=1) for name in NEEDED], axis=0)
+    return _worst(run, "finite", bad + run.warned, 0.0)
 
 
 def solved(run: Run) -> Finding:

@@ -11,7 +11,7 @@ import numpy as np
 
 from trackroller.parameters import REGIMES
 from trackroller.roller.solver import solve
-from validation.extremes.checks import FAILED, NEEDED, examine, run_cases
+from validation.extremes.checks import FAILED, NEEDED, examine, missing, run_cases
 from validation.extremes.kernels import KERNELS
 from validation.extremes.random_cases import random_extremes
 from validation.extremes.scenes import BASE, Scene, scaled
@@ -31,8 +31,7 @@ def random_record(model: str, count: int, seed: int = SEED) -> Record:
     ds, warned = run_cases(cases, model, ACCURACIES[model])
     other = solve([scaled(c, 7.3, 0.37) for c in cases], "forces", contact_model=model, accuracy=ACCURACIES[model])
     mine = solve(cases, "forces", contact_model=model, accuracy=ACCURACIES[model])
-    carries = ds.regime.values < 2
-    bad = np.array([np.isnan(ds[v].values.reshape(count, -1)).any(axis=1) for v in NEEDED]).any(axis=0) & carries
+    bad = np.array([missing(ds, name).any(axis=1) for name in NEEDED]).any(axis=0)
     both = (mine.regime.values < 2) & (other.regime.values == mine.regime.values)
     n, m = mine.normal_force.values[both], other.normal_force.values[both] / (7.3**2 * 0.37)
     return {
