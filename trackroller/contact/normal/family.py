@@ -143,8 +143,10 @@ class Family:
             pressure = self._pressure(box, load, (PROBE, factor * self.shape[1])).pressure
             if self._reaches(pressure, box):
                 return 1
-            # an edge of the elements may hide a ridge by chance, so that twice the elements have the last word
-            if smooth and abs(pressure.max() - highest) < STEADY * highest:
+            # an edge of the elements may hide a ridge by chance, so that twice the elements have the last word; where
+            # the box of another load cuts the patch, they resolve the cut alone
+            cut = pressure.max() == max(pressure[:, 0].max(), pressure[:, -1].max())
+            if smooth and (cut or abs(pressure.max() - highest) < STEADY * highest):
                 return coarser
             smooth = roughness(pressure) <= (RESOLVED if factor == 1 else RESOLVED_FINER)
             if smooth and factor == 1:

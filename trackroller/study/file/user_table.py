@@ -215,7 +215,7 @@ def _without_comments(
     for number, cells in lines:
         if labels or not _is_comment(cells):
             yield number, cells
-        elif len(cells) >= len(heads) and any(cells[1:]):
+        elif (len(cells) >= len(heads) and any(cells[1:])) or any(map(is_number, cells[1:])):
             remedy = "Remove the line if it does not count, and '#' if it does."
             why = "begins with '#', but has cells as a line that counts"
             error = InputError(field, ", ".join(cells), "", remedy, why)
