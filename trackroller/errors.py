@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import difflib
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -176,14 +177,14 @@ MEANS = {  # names that a word of a designer stands for, the likeliest first
     "speed rpm": "velocity guide_overrollings_per_hour",
     "drive driving torque traction braking": "motor_force",
     "load weight preload mass": "radial_force axial_force permissible_radial_force blocks",
-    "rad": "radial_force",
-    "thrust lateral side ax": "axial_force",
+    "rad fr frad": "radial_force",
+    "thrust lateral side ax fa fax": "axial_force",
     "alpha": "contact_angle",
     "v": "velocity",
     "clearance gap play": "roller_profile_radius groove_depth axis_distance",
     "width": "roller_profile groove_depth",
     "lubrication lubricant oil grease": "friction_law friction_coefficient",
-    "mu": "friction_coefficient",
+    "mu µ μ": "friction_coefficient",
     "reliability survival confidence b10": "failure_probability failure_probabilities",
     "life lifetime": "pair_life_hours roller_life_hours guide_life_hours life_rule",
     "steel": "roller_material guide_material material_pair",
@@ -247,6 +248,20 @@ def unknown_name(kind: str, name: str, options: Iterable[str], elsewhere: Iterab
     remedy = f"Names with a similar meaning: {', '.join(akin)}." if akin else remedy
     remedy = f"Did you mean '{close}'?" if close else remedy
     return InputError(kind, name, allowed, remedy, wrong="is not known")
+
+
+def contained(name: str, options: Iterable[str]) -> list[str]:
+    """Return the options that a longer or otherwise written name contains, or stands for by one of its words.
+
+    Examples
+    --------
+    >>> contained("Radial_Force (measured)", ["radial_force", "axial_force"]), contained("F_a", ["axial_force"])
+    (['radial_force'], ['axial_force'])
+    """
+    words = [word for word in re.split(r"[^\w]|_", name.lower()) if word]
+    whole, options = "_".join(words), list(options)
+    meant = [option for word in (*words, "".join(words)) for option in _MEANS.get(word, ()) if option in options]
+    return list(dict.fromkeys([*(o for o in options if f"_{o}_" in f"_{whole}_"), *meant]))[:3]
 
 
 def listing(words: Sequence[str], last: str = "and") -> str:

@@ -158,7 +158,7 @@ def test_a_study_takes_units():
 @pytest.mark.parametrize(
     "text",
     [
-        "axial_force [kN],velocity\n0.012,1.5 m/s\n0.02,60\n",
+        "axial_force [kN],velocity\n0.012,1.5 m/s\n0.02,60 m/min\n",
         "axial_force [kN];velocity [m/s]\n0,012;1,5\n0,02;1\n",
         "axial_force\tvelocity [m/min]\n12\t90\n2,0e1\t60,0\n",
     ],

@@ -105,14 +105,19 @@ def _scalar(value: Any) -> Any:
 
 
 def rows_of(frame: Any, field: str) -> list[dict[Any, Any]]:
-    """Return the rows of a data frame, each as a mapping from the heads of its columns.
+    """Return the rows of a data frame, each as a mapping from the heads of its columns and of an index with a name.
 
     Raises
     ------
     InputError
         If two columns have one name, so that a mapping would lose one of them.
     """
+    if any(name is not None for name in getattr(getattr(frame, "index", None), "names", ())):
+        frame = frame.reset_index()  # an index with a name holds values as columns do
     heads = list(frame.columns)
+    if several := next((head for head in heads if isinstance(head, tuple)), None):
+        allowed = "heads of columns that are texts"
+        raise InputError(field, str(several), allowed, "Write frame.columns = [...] with one text a column.")
     if doubled := next((head for head in heads if heads.count(head) > 1), None):
         raise InputError(field, str(doubled), "each column once; it stands twice", "Rename or drop one of the two.")
     return frame.to_dicts() if hasattr(frame, "to_dicts") else frame.to_dict("records")

@@ -118,6 +118,8 @@ def test_what_a_person_would_ask_about_is_refused(line, why, tmp_path):
         (",radial_force\n0,-200\n1,-300\n", r"line 1: .*column 1, which has no name. .*Leave the index out"),
         ("Unnamed: 0,radial_force\n0,-200\n", "Leave the index out"),
         ("radial_force;;part\n-200;7;a\n", "column 2, which has no name. Allowed: a name for each column. Name it"),
+        ("radial_force;axial_force\n-0.2 kN;3\n-0.3;3\n", "line 3: radial_force = '-0.3'.* with its unit"),
+        ("radial_force;mu\n-2;1\n-3;2\n-1;3\n-6;6\n", "line 5: .*this line sums up the lines above"),
         ("radial_force;radial_force\n-200;-300\n", "a different name for each column"),
         ("mu;friction_coefficient\n0.1;0.2\n", "a different name for each column"),
         ("Load cases;\nradial_force;part\n-200;a\n", "stand in line 2. Remove the lines above"),
@@ -207,3 +209,17 @@ def test_columns_that_no_block_has_are_named_once_by_their_head(tmp_path):
 def test_a_table_of_too_many_columns_is_refused(tmp_path):
     with pytest.raises(tr.InputError, match="at most 1,000 columns"):
         cases(";".join(f"c{i}" for i in range(16_384)) + "\n" + ";".join("1" * 16_384) + "\n", tmp_path)
+
+
+@pytest.mark.parametrize(
+    "head", ["Radial_Force", "F_rad", "radial_force (measured) [kN]", "F_r", "axial load", "speed", "v", "Kraft [kN]"]
+)
+def test_numbers_under_a_head_that_speaks_of_a_parameter_are_not_left_out(head, tmp_path):
+    """The case would have the paper's load otherwise, without a word."""
+    with pytest.raises(tr.InputError, match=r"line 1: table column = .* that nothing would use"):
+        cases(f"{head};contact_angle\n-3;30\n-5;20\n", tmp_path)
+
+
+@pytest.mark.parametrize("head", ["roller_id", "share [%]", "lot size", "width [mm]", "note"])
+def test_other_columns_of_numbers_are_kept(head, tmp_path):
+    assert next(iter(cases(f"{head};contact_angle\n3;30\n5;20\n", tmp_path))).startswith(head.partition(" [")[0])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import math
 from collections.abc import Collection, Mapping
 from pathlib import Path
@@ -9,14 +10,15 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, nearest, unknown_name
+from trackroller.errors import Collector, InputError, contained, listing, nearest, unknown_name
 from trackroller.methods.factor import column
-from trackroller.numerics.cells import Refused, Stored, split_head
+from trackroller.numerics.cells import Refused, Stored, is_number, split_head
 from trackroller.numerics.numbers import read_number
+from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
-from trackroller.study.file.user_table import column_names, read_table
+from trackroller.study.file.user_table import UserTable, column_names, read_table
 
 
 def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
@@ -38,7 +40,7 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     wrong = Collector()
     found = read_table(Path(path), "table", "case", wrong, math.inf, used)
     with wrong.part():
-        _check_names(found.names, used, path, found.head)
+        _check_names(found, used, path)
     columns = {}
     for j, name in enumerate(found.names):
         cells = {number: line[j] for number, line in found.lines.items()}
@@ -61,21 +63,36 @@ def table_lines(path: Path) -> list[int]:
     return list(read_table(path, "table", "case", Collector(), math.inf).lines)
 
 
-def _check_names(names: list[str], used: Collection[str], path: Any, head: int) -> None:
-    """Refuse further columns of a table that look like a misspelt name, and a table with further columns only."""
-    own, wrong = [name for name in names if name not in FACTOR_NAMES and name not in used], Collector()
+def _check_names(found: UserTable, used: Collection[str], path: Any) -> None:
+    """Refuse further columns of a table that look like a parameter, and a table with further columns only."""
+    own, wrong = [name for name in found.names if name not in FACTOR_NAMES and name not in used], Collector()
     for name in own:
         with wrong.part():
-            bare = split_head(name)[0]  # the name of a further column holds its unit
+            bare, unit = split_head(name)  # the name of a further column holds its unit
             check_own_name(name, "table column")
             if name in RADII:
                 remedy = f'Add factors: {{axis_distance: {{expression: "{AXIS_DISTANCE}"}}}}.'
                 raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy)
-            if nearest(bare, FACTOR_NAMES) or len(own) == len(names):
+            if nearest(bare, FACTOR_NAMES) or len(own) == len(found.names):
                 raise unknown_name("table column", bare, FACTOR_NAMES)
+            if found.all(found.names.index(name), is_number):
+                _check_meaning(name, bare, unit, found.names)
     for error in wrong.errors:
-        error.at(path, head)
+        error.at(path, found.head)
     wrong.check()
+
+
+def _check_meaning(name: str, bare: str, unit: str, names: Collection[str]) -> None:
+    """Refuse a column of numbers that nothing uses, and whose head speaks of a parameter that no column gives."""
+    meant = contained(bare, PARAMETERS)
+    if not meant and unit not in PLAIN:
+        with contextlib.suppress(InputError):
+            in_unit(1.0, unit, "N", name)
+            meant = ["radial_force", "axial_force", "motor_force"]
+    if meant and meant[0] not in names:
+        wrong = "is a column of numbers that nothing would use, though its name speaks of a parameter"
+        remedy = f"If {listing(meant, 'or')} is meant, write this name; remove the column otherwise."
+        raise InputError("table column", name, "a parameter, or a column that an expression uses", remedy, wrong)
 
 
 def _numbers_of(name: str, cells: Mapping[int, str]) -> np.ndarray | None:

@@ -355,11 +355,21 @@ def _read_numbers(table: UserTable, numbers: list[int], units: list[str]) -> Non
         read = plain_column(cells, signs) if j in numbers else plain_labels(cells, signs)
         if unit := units[j]:
             read = [f"{cell} {unit}" if _without_unit(cell) else cell for cell in read]
+        elif table.names[j] in UNITS and UNITS[table.names[j]] not in PLAIN and not all(map(_without_unit, read)):
+            read = [_beside_units(cell, UNITS[table.names[j]]) for cell in read]
         if j in numbers and table.names[j] not in UNITS:
             read = [cell if isinstance(cell, Refused) else Stored(cell) for cell in read]
         if read is not cells:
             for line, cell in zip(table.lines.values(), read, strict=True):
                 line[j] = cell
+
+
+def _beside_units(cell: str, unit: str) -> str:
+    """Return a cell of a column in which others have units; a number without one could be in their unit, too."""
+    if not _without_unit(cell) or number_or_nan(cell) == 0.0:
+        return cell
+    remedy = f"Write {cell} {unit}, or the unit at the head of the column."
+    return Refused(cell, "a number with its unit, as in other cells of the column", remedy)
 
 
 def _without_unit(cell: str) -> bool:
@@ -376,7 +386,7 @@ def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, 
         sums = any(_SUM.fullmatch(word) for word in words)
         if not sums and any(_STATISTIC.fullmatch(word) for word in words):
             sums = _sums_up(above, line, numbers)
-        if not sums and number == last and not any(words):
+        if not sums and number == last and (not any(words) or (not labels and len(above) > 2)):
             sums = _sums_up(above, line, numbers, least=1)
         if above and sums:
             del table.lines[number]
