@@ -42,12 +42,16 @@ def test_noise_of_a_vanishing_force_is_no_difference(solved, name):
 
 
 @pytest.mark.parametrize(
-    "name", [name for name, v in VARIABLES.items() if v.group in ("forces", "contact", "friction_work")]
+    "name",
+    [
+        name
+        for name, v in VARIABLES.items()
+        if v.group in ("forces", "contact", "friction_work") and name != "error_over_tolerance"  # of a tolerance only
+    ],
 )
 def test_a_changed_number_is_found(solved, name):
     """A change of a hundredth per cent of its scale is a difference in each variable."""
-    if name not in solved or not np.isfinite(solved[name]).any():
-        pytest.skip("not a result of this model")
+    assert np.isfinite(solved[name]).any()
     change = 1e-4 * scale(solved, name) * (20.0 if allowed(name) > ROUNDING else 1.0)
     assert compare(solved, altered(solved, name, change))[name].found
 
