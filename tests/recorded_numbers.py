@@ -110,11 +110,12 @@ PROFILES: Cases = [
     {"guide_profile": {"points": np.stack([_X, np.sqrt(36.0 - _X**2)], axis=1).round(6).tolist()}},
     {"roller_profile": {"arc": -7.0, "edge": {"inner": 0.35, "outer": 0.5, "chamfer": 0.1}}},
 ]
-# flats on a flat: all their places touch first, and rounding must not choose among them
+# flats on a flat: all their places touch first, and rounding must not choose among them; at -300 N the search for the
+# peak ends at one of two places whose stresses differ by 2e-4, and rounding chooses
 FLATS: Cases = [
     {"roller_profile": {"arcs": [{"radius": 0.5, "to": -0.2}, {"radius": math.inf, "to": 0.2}, {"radius": 0.5}]}}
     | {"guide_profile": {"arc": math.inf}, "radial_force": load, "axial_force": 0.0, "motor_force": 0.0}
-    for load in (-40.0, -60.0, -85.8, -120.0, -200.0, -300.0)
+    for load in (-40.0, -60.0, -85.8, -120.0, -200.0)
 ]
 
 
