@@ -15,13 +15,13 @@ from trackroller.contact import sliding
 from trackroller.contact.common import Ellipse
 from trackroller.contact.slip import Slip, spin_model_index
 from trackroller.halfspace.ellipse import patch_rows, stress_parts
-from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.halfspace.stress import stress_on_grid, von_mises
 from trackroller.parameters import ACCURACIES
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.solver import solve
+from validation.tradeoff.truth import FINEST_SEARCH
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life")
 FINEST = replace(
@@ -29,7 +29,7 @@ FINEST = replace(
     name="finest",
     force_nodes=48,
     coarse_nodes=8,
-    peak=PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0),
+    peak=FINEST_SEARCH,
 )
 PUBLISHED_START = 1.5  # grid steps below the surface at which the published search begins
 CASE = Case(motor_force=0.0, friction_coefficient=0.3, radial_force=-200.0, axial_force=30.0, guide_curve_radius=220.0)

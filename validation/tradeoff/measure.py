@@ -17,7 +17,6 @@ import numpy as np
 import xarray as xr
 
 import trackroller as tr
-from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.parameters.accuracy import PRESETS, RUNGS
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import solver
@@ -25,7 +24,7 @@ from trackroller.roller.dataset import validity_bit
 from validation.benchmarks import falling_friction
 from validation.tradeoff.errors import largest, percentiles, relative_errors, tolerance_bound
 from validation.tradeoff.sample import sample
-from validation.tradeoff.truth import SAMPLES, Truth
+from validation.tradeoff.truth import FINEST_SEARCH, SAMPLES, Truth
 
 MODELS = ("sliding", "kalker_table", "kalker")
 TOLERANCES = (0.1, 0.03, 0.01)
@@ -38,7 +37,7 @@ FINEST = replace(
     name="finest",
     force_nodes=48,
     elements=112,
-    peak=PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0),
+    peak=FINEST_SEARCH,
 )
 LEVELS = (50, 99)  # percentiles of the page
 

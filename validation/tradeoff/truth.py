@@ -9,7 +9,10 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
+from trackroller.halfspace.peak_settings import PeakSettings
 from trackroller.roller.case import Case
+
+FINEST_SEARCH = PeakSettings(24, 32, 48, 96, 32, 24, 3e-4, 0.0)  # of peaks that count as the truth
 
 FILE = Path(__file__).resolve().parents[2] / "tests" / "data" / "ladder_truth.csv"
 SAMPLES = ("ordinary", "wide")
