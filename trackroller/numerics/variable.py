@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 BODIES = ("roller", "guide")  # values of the coordinate `body`
-REGIMES = ("rolling", "full_slip", "lift_off", "failed")  # by their number in `regime`
+REGIMES = ("rolling", "full_slip", "lift_off", "failed")  # `regime` holds the place of the word, from 0
 
 
 @dataclass(frozen=True)

@@ -36,9 +36,9 @@ def meet(table: CaseTable, options: Options, solve: Callable[[CaseTable, Options
     Returns
     -------
     Block
-        The results. With a tolerance they have `error_over_tolerance` (n,), NaN for cases that did not converge,
-        and the flag `tolerance_missed` where no rung keeps the
-        tolerance. Such a case has the result of the rung with the smallest estimated error.
+        The results. With a tolerance they have `error_over_tolerance` (n,), NaN for cases that did not converge, and
+        the flag `tolerance_missed` where no rung keeps the tolerance. Such a case has the result of the rung with the
+        smallest estimated error.
 
     Notes
     -----

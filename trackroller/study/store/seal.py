@@ -44,7 +44,7 @@ def files_of(path: Path) -> list[Path]:
 
 @contextlib.contextmanager
 def sealing(path: Path) -> Iterator[Path]:
-    """Yield a temporary path; what is made there takes the place of a result, and its digests are recorded.
+    """Yield a temporary path; what the caller writes there replaces the result at `path`, and its record.
 
     Of a folder, each file is put in place; files that the folder holds beside stay. The record names old and new files
     before the first is replaced, so that a process stopped in between leaves neither a result that looks altered nor a
