@@ -49,8 +49,8 @@ def command(*words: str, snakefile: Path = ROOT / "Snakefile", quiet: tuple[str,
 
 def environment(snakefile: Path) -> dict[str, str]:
     """Return the environment in which a copied workflow takes the package beside it."""
-    paths = os.pathsep.join([str(snakefile.parent), os.environ.get("PYTHONPATH", "")])
-    return dict(os.environ) | {"PYTHONPATH": paths}
+    paths = [str(snakefile.parent), os.environ.get("PYTHONPATH", "")]  # an empty path would be the working folder
+    return dict(os.environ) | {"PYTHONPATH": os.pathsep.join(filter(None, paths))}
 
 
 def snakemake_process(folder: Path, *words: str, code: int = 0, snakefile: Path = ROOT / "Snakefile") -> str:

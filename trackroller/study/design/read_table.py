@@ -18,7 +18,7 @@ from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
-from trackroller.study.file.user_table import UserTable, column_names, read_table
+from trackroller.study.file.user_table import UserTable, read_table
 
 
 def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
@@ -51,11 +51,14 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
 
 
 def genes(path: Any) -> np.ndarray:
-    """Read the designs of a search, one row of genes each, shape (designs, choices)."""
-    path, wrong = Path(path), Collector()
-    designs = read_table(path, "table", "design", wrong, math.inf, column_names(path, "table"))
-    wrong.check()
-    return np.array([[read_number(cell) for cell in line] for line in designs.lines.values()])
+    """Read the designs of a search, one row of genes each, shape (designs, choices).
+
+    The program writes this file, and nothing in it is doubtful: designs of 0 and 3 may sum up without being a total.
+    """
+    try:
+        return np.loadtxt(path, delimiter=",", skiprows=1, ndmin=2)
+    except ValueError as error:
+        raise InputError("table", str(path), "designs as a search writes them", "Run the search again.") from error
 
 
 def table_lines(path: Path) -> list[int]:

@@ -41,6 +41,7 @@ UNITS = {name: parameter.unit for name, parameter in PARAMETERS.items()} | {"dis
 KNOWN = {*UNITS, *MATERIAL_FIELDS, *ALIASES, "material_pair", "name"}
 MOST_ERRORS = 1_000  # of a table; a message shows fewer
 ROUNDED = 0.01  # relative difference between a sum and what a line of totals states
+FAR = 1.8  # times the largest addend
 HEAD_ROWS = 1_000  # rows of a workbook among which the line of names is sought for its names alone
 Lines = Iterable[tuple[int, list[str]]]
 
@@ -52,8 +53,9 @@ _SUM = re.compile(
     r"\W*(?:{0})(?![\w-]).*|.*(?<!\w)(?:{0})\W*".format("|".join(_SUMS.split())), re.IGNORECASE | re.DOTALL
 )
 _STATISTICS = (
-    "mean average avg mittel mittelwert durchschnitt ø moyenne media median min minimum max maximum sd std stdev "
-    "stddev standardabweichung count anzahl"
+    "mean average avg mittel mittelwert mw schnitt durchschnitt ø moyenne media median min minimum max maximum sd std "
+    "stdev stddev standardabweichung count anzahl p05 p5 p10 p25 p50 p75 p90 p95 p99 perzentil percentile quantil "
+    "quantile"
 )
 _STATISTIC = re.compile(r"\W*(?:{})\W*".format("|".join(_STATISTICS.split())), re.IGNORECASE)
 _EXCEL_ERROR = re.compile(r"#(?:DIV/0!|N/A|NAME\?|NULL!|NUM!|REF!|VALUE!|#+)", re.IGNORECASE)
@@ -355,7 +357,7 @@ def _read_numbers(table: UserTable, numbers: list[int], units: list[str]) -> Non
         read = plain_column(cells, signs) if j in numbers else plain_labels(cells, signs)
         if unit := units[j]:
             read = [f"{cell} {unit}" if _without_unit(cell) else cell for cell in read]
-        elif table.names[j] in UNITS and UNITS[table.names[j]] not in PLAIN and not all(map(_without_unit, read)):
+        elif table.names[j] in UNITS and UNITS[table.names[j]] not in PLAIN and any(map(_with_unit, read)):
             read = [_beside_units(cell, UNITS[table.names[j]]) for cell in read]
         if j in numbers and table.names[j] not in UNITS:
             read = [cell if isinstance(cell, Refused) else Stored(cell) for cell in read]
@@ -376,6 +378,10 @@ def _without_unit(cell: str) -> bool:
     return not isinstance(cell, Refused) and not math.isnan(number_or_nan(cell))
 
 
+def _with_unit(cell: str) -> bool:
+    return not isinstance(cell, Refused) and bool((split_quantity(cell) or ("", ""))[1])
+
+
 def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, what: str, wrong: Collector) -> None:
     """Move lines that sum up the lines above to the errors."""
     labels = [j for j, name in enumerate(table.names) if name not in UNITS and j not in numbers]
@@ -386,8 +392,8 @@ def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, 
         sums = any(_SUM.fullmatch(word) for word in words)
         if not sums and any(_STATISTIC.fullmatch(word) for word in words):
             sums = _sums_up(above, line, numbers)
-        if not sums and number == last and (not any(words) or (not labels and len(above) > 2)):
-            sums = _sums_up(above, line, numbers, least=1)
+        if not sums and number == last:
+            sums = _sums_up(above, line, numbers, surely=bool(not labels or any(words)), one=True)
         if above and sums:
             del table.lines[number]
             allowed = f"one {what} a line; this line sums up the lines above"
@@ -397,10 +403,13 @@ def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, 
             above.append(line)
 
 
-def _sums_up(above: list[list[str]], line: list[str], numbers: list[int], least: int = 0) -> bool:
+def _sums_up(
+    above: list[list[str]], line: list[str], numbers: list[int], one: bool = False, surely: bool = False
+) -> bool:
     """Return whether the numbers of a line are sums or statistics of the lines above, maybe rounded, or empty.
 
-    At least `least` of them must be sums other than 0.
+    With `one`, at least one of them must be a sum other than 0. With `surely`, that sum must have three addends and
+    exceed the largest by far, because levels such as 0, 10, 20 and 30 or 0, 3, 0 and 3 often add up.
     """
     sums, kinds = 0, (sum, statistics.fmean, statistics.median, min, max, len, _deviation)
     for j in numbers:
@@ -410,8 +419,10 @@ def _sums_up(above: list[list[str]], line: list[str], numbers: list[int], least:
         value = _value(line[j])
         if len(values) < 2 or not any(math.isclose(kind(values), value, rel_tol=ROUNDED) for kind in kinds):
             return False
-        sums += value != 0 and math.isclose(sum(values), value, rel_tol=ROUNDED)
-    return sums >= least
+        plain = value != 0 and math.isclose(sum(values), value, rel_tol=ROUNDED)
+        addends = [abs(one) for one in values if one]
+        sums += plain and (not surely or (len(addends) > 2 and abs(value) > FAR * max(addends)))
+    return sums > 0 or not one
 
 
 def _deviation(values: list[float]) -> float:
