@@ -48,6 +48,9 @@ def test_every_sampled_method_takes_every_kind_of_factor(method):
         ({"triangular": [0.0, 0.5, 2.0]}, 2.5 / 3, np.sqrt((0 + 0.25 + 4 - 0 - 0 - 1.0) / 18)),
         ({"truncnormal": [0.0, 1.0, 0.0, 50.0]}, np.sqrt(2 / np.pi), np.sqrt(1 - 2 / np.pi)),
         ({"values": [1.0, 2.0, 6.0]}, 3.0, np.sqrt(14 / 3)),
+        ({"lognormal": [2.0, 0.4]}, 2 * np.exp(0.08), 2 * np.exp(0.08) * np.sqrt(np.expm1(0.16))),
+        ({"lognormal": [-2.0, 0.4]}, -2 * np.exp(0.08), 2 * np.exp(0.08) * np.sqrt(np.expm1(0.16))),
+        ({"weibull": [3.0, 2.0]}, 3 * np.sqrt(np.pi) / 2, 3 * np.sqrt(1 - np.pi / 4)),
     ],
 )
 def test_distributions_have_their_moments(spec, mean, deviation):
@@ -202,6 +205,9 @@ def test_unsafe_or_wrong_expressions_are_refused_with_their_place(text, says):
         ({"x": {"uniform": [0, "2*y"]}}, "lhs", "expression"),
         ({"x": {"normal": [0, -1]}}, "lhs", "> 0"),
         ({"x": {"loguniform": [-1, 1]}}, "lhs", "one sign"),
+        ({"x": {"lognormal": [0, 0.2]}}, "lhs", "median other than 0"),
+        ({"x": {"lognormal": [1, 50]}}, "lhs", "sd of ln"),
+        ({"x": {"weibull": [1, 0]}}, "lhs", "a shape"),
         ({"x": {"values": [1, 1.0]}}, "lhs", "once"),
         ({"x": {"values": []}}, "lhs", "not empty"),
         ({"x": {"values": [1], "uniform": [0, 1]}}, "lhs", "exactly one"),

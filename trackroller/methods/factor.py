@@ -8,6 +8,8 @@ loguniform       ``[low, high]``, both of one sign
 normal           ``[mean, standard deviation]``
 truncnormal      ``[mean, standard deviation, low, high]`` (mean and deviation before the cut)
 triangular       ``[low, most likely, high]``
+lognormal        ``[median, standard deviation of the natural logarithm]``
+weibull          ``[scale, shape]``; 63.2 % of the values lie between 0 and the scale
 values           a list of numbers or of categories (names, pairs of names, null), equally likely
 linspace         ``[first, last, how many]``, equally likely
 logspace         ``[first, last, how many]`` (the values themselves, not exponents), equally likely
@@ -37,10 +39,20 @@ from trackroller.numerics.plain import how_to_write
 from trackroller.numerics.units import split_quantity
 from trackroller.parameters import expressions
 
-DISTRIBUTIONS = {"uniform": 2, "loguniform": 2, "normal": 2, "truncnormal": 4, "triangular": 3}
+DISTRIBUTIONS = {
+    "uniform": 2,
+    "loguniform": 2,
+    "normal": 2,
+    "truncnormal": 4,
+    "triangular": 3,
+    "lognormal": 2,
+    "weibull": 2,
+}
+UNBOUNDED = ("normal", "lognormal", "weibull")
 LISTS = ("values", "linspace", "logspace")
 KINDS = (*DISTRIBUTIONS, *LISTS, "expression")
-TAIL = 0.01  # quantile at which a normal factor is cut in designs that visit the ends of a range
+MOST_SPREAD, LEAST_SHAPE = 5.0, 0.2  # beyond, the values of one sample span 26 or 50 powers of ten
+TAIL = 0.01  # quantile at which an unbounded distribution is cut in designs that visit the ends of a range
 
 
 @dataclass(frozen=True)
@@ -111,7 +123,7 @@ class Factor:
         Parameters
         ----------
         unit : quantiles in [0, 1] [1], shape (n,)
-        tail : quantile [1] at which the unbounded normal distribution is cut, for designs that visit 0 and 1
+        tail : quantile [1] at which an unbounded distribution is cut, for designs that visit 0 and 1
 
         Returns
         -------
@@ -131,10 +143,15 @@ class Factor:
         if self.kind == "triangular":
             low, mode, high = self.numbers
             return np.asarray(triang.ppf(unit, (mode - low) / (high - low), low, high - low))
-        mean, deviation, *ends = self.numbers
-        if self.kind == "normal":
+        if self.kind in UNBOUNDED:
             cut = max(tail, 1e-9)
-            return np.asarray(norm.ppf(np.clip(unit, cut, 1 - cut), mean, deviation))
+            unit, (first, second) = np.clip(unit, cut, 1 - cut), self.numbers
+            if self.kind == "normal":
+                return np.asarray(norm.ppf(unit, first, second))
+            if self.kind == "lognormal":
+                return np.asarray(first * np.exp(second * norm.ppf(unit)))
+            return np.asarray(first * (-np.log1p(-unit)) ** (1.0 / second))
+        mean, deviation, *ends = self.numbers
         low, high = ends
         cut_low, cut_high = (low - mean) / deviation, (high - mean) / deviation
         return np.asarray(np.clip(truncnorm.ppf(unit, cut_low, cut_high, mean, deviation), low, high))
@@ -252,6 +269,11 @@ def _distribution(kind: str, value: Any, where: str) -> tuple[float, ...]:
         "normal": (numbers[1] > 0, "a standard deviation > 0"),
         "truncnormal": (numbers[1] > 0 and numbers[-2] < high, "a standard deviation > 0 and low < high"),
         "triangular": (low <= numbers[1] <= high and low < high, "low <= most likely <= high, low < high"),
+        "lognormal": (
+            low != 0 and 0 < high <= MOST_SPREAD,
+            f"a median other than 0, and 0 < sd of ln <= {MOST_SPREAD:g}",
+        ),
+        "weibull": (low != 0 and high >= LEAST_SHAPE, f"a scale other than 0, and a shape >= {LEAST_SHAPE:g}"),
     }[kind]
     if not good:
         raise InputError(where, value, allowed)

@@ -221,7 +221,10 @@ def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
         return value if key not in FACTOR_NAMES else [field_value(key, entry, where) for entry in value]
     unit = PARAMETERS[key].unit if key in PARAMETERS else None
     spread = 1 if kind in ("normal", "truncnormal") else None
-    numbers = [_to_float(entry, unit, where, place == spread) for place, entry in enumerate(value)]
+    plain = 1 if kind in ("lognormal", "weibull") else None  # a number without unit beside the median or scale
+    numbers = [
+        _to_float(entry, "-" if place == plain else unit, where, place == spread) for place, entry in enumerate(value)
+    ]
     if kind in LISTS and len(numbers) == 3 and isinstance(numbers[2], (int, float)) and not numbers[2] <= MAX_LEVELS:
         # a mistyped number of levels would fill the memory
         raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")

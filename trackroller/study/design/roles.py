@@ -10,7 +10,7 @@ from typing import Any
 
 from trackroller.errors import InputError, collected, unknown_name
 from trackroller.methods import METHODS
-from trackroller.methods.factor import Factor
+from trackroller.methods.factor import UNBOUNDED, Factor
 from trackroller.parameters import ROLE_OF, ROLES, expressions
 from trackroller.study.design.entries import OPTION_FACTORS, choice
 
@@ -57,7 +57,7 @@ def scattered(factors: Mapping[str, Factor], given: Mapping[str, str]) -> tuple[
     A bell-shaped distribution states scatter. Ranges and lists are conditions by their role, see `roles_of`.
     """
     roles = roles_of(factors, factors, given)
-    bells = ("normal", "truncnormal", "triangular")
+    bells = (*UNBOUNDED, "truncnormal", "triangular")
     return tuple(n for n, f in factors.items() if f.varies and (f.kind in bells or roles.get(n) == "condition"))
 
 

@@ -154,6 +154,8 @@ def _check_bounds(columns: Mapping[str, np.ndarray], parsed: Mapping[str, Factor
     """Refuse a distribution that reaches outside a parameter's bounds before anything is solved."""
     remedies = {
         "normal": "Cut the distribution: truncnormal: [mean, sd, low, high].",
+        "lognormal": "Take another median, or a smaller standard deviation of the logarithm.",
+        "weibull": "Take another scale, or a larger shape.",
         "expression": "Change the expression or the ranges of its factors.",
     }
     for name, values in columns.items():

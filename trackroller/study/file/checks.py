@@ -12,6 +12,7 @@ import numpy as np
 from trackroller.errors import Collector, InputError, listing, raise_all, unknown_name
 from trackroller.methods import those_with
 from trackroller.methods.correlation import copula
+from trackroller.methods.factor import UNBOUNDED
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.geometry import geometry_problem, geometry_problems
@@ -262,7 +263,7 @@ def _ends(study: Study, name: str) -> list[float]:
         return [study.config.values[name]]
     if factor.discrete:
         return [float(level) for level in factor.levels]
-    if factor.kind == "normal":
+    if factor.kind in UNBOUNDED:
         return [factor.numbers[0]]
     low, high = factor.numbers[-2:] if factor.kind == "truncnormal" else (factor.numbers[0], factor.numbers[-1])
     if low < 0 < high and PARAMETERS[name].nonzero:

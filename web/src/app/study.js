@@ -13,6 +13,8 @@ const RANGED = {
   normal: (low, high) => [(low + high) / 2, (high - low) / 4],
   truncnormal: (low, high) => [(low + high) / 2, (high - low) / 4, low, high],
   triangular: (low, high) => [low, (low + high) / 2, high],
+  lognormal: (low, high) => (low * high > 0 ? [Math.sign(low) * Math.sqrt(low * high), Math.abs(Math.log(high / low)) / 4] : [low, 0.5]),
+  weibull: (low, high) => [high, 2],
 };
 const KINDS = {
   values: "list of values",
@@ -23,6 +25,8 @@ const KINDS = {
   normal: "normal: mean, deviation",
   truncnormal: "cut normal: mean, deviation, low, high",
   triangular: "triangular: low, likely, high",
+  lognormal: "log-normal: median, deviation of ln",
+  weibull: "Weibull: scale, shape",
   expression: "follows from others (expression)",
 };
 const DESIGNS = {
