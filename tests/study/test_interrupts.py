@@ -24,7 +24,7 @@ import xarray as xr
 
 from trackroller.files import interrupts_wait_for_files
 
-TRIES = int(os.environ.get("INTERRUPT_TRIES", "12"))
+TRIES = int(os.environ.get("INTERRUPT_TRIES", "6"))
 STUDY = """
 name: stopped
 factors:
