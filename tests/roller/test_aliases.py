@@ -77,8 +77,8 @@ def test_a_study_derives_the_axis_distance_in_each_case():
         assert float(design["axis_distance"][i]) == pytest.approx(case.axis_distance, rel=1e-15)
     assert set(design["friction_coefficient"].values) == {0.12}
     again = tr.load_study(study.as_dict())
-    assert again.merged() == study.merged() and again.design().identical(design)
-    assert "axis_distance" not in study.config.not_given
+    assert again.merged() == study.merged() and again.design().drop_attrs().identical(design.drop_attrs())
+    assert "axis_distance" not in study.not_given
     for base in ({"outer_radius": 20, "groove_depth": 4, "axis_distance": 22}, {"groove_depth": 4}):
         with pytest.raises(tr.InputError):
             tr.load_study({"name": "x", "base": base, "outputs": ["forces"]})

@@ -6,6 +6,7 @@ This is the only place that reads a study file from the attribute of a data set.
 from __future__ import annotations
 
 import dataclasses
+import json
 import warnings
 from collections.abc import Mapping
 from pathlib import Path
@@ -16,9 +17,10 @@ import xarray as xr
 
 from trackroller.analysis.table import StudyResults
 from trackroller.errors import InputError
+from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part
-from trackroller.study.file.load import checked_keys, without_former
+from trackroller.study.file.load import checked_keys, former_defaults, without_former
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
@@ -71,6 +73,7 @@ def read_results(source: xr.Dataset | Path | str) -> StudyResults:
         return _read_unfinished(StudyFolder(Path(source)))
     data = data.assign_attrs(_checked_version(data))
     study = _study(data)
+    data = data.assign_attrs({NOT_GIVEN: json.dumps(study.not_given)})
     design = restored(data, study.parsed, case_dims(data, study.factors))
     if "options" in data.attrs and "case" in data.dims:  # the cases of a design beside their results: not labelled yet
         names = [name for name in data.data_vars if name not in CASE_FIELDS]
@@ -147,8 +150,9 @@ def _study(data: xr.Dataset) -> Study:
     text = data.attrs.get("study")
     if not isinstance(text, str):
         raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
-    stored = without_former(parse_mapping(text, "stored study file"))
-    study = Study(checked_keys(stored))
+    written = parse_mapping(text, "stored study file")
+    stored, names = without_former(written), json.loads(data.attrs.get(NOT_GIVEN, "[]"))
+    study = Study(checked_keys(stored), not_given=tuple(names or former_defaults(written)))
     if changed := _changed(stored, study.as_dict()):
         allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"
         raise InputError("study", str(stored.get("name", "")), allowed, _REMEDY, wrong)

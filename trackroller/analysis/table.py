@@ -68,7 +68,7 @@ class StudyResults:
 
     def quantity(self, name: str) -> Column:
         """Return values (n,), units and words of a factor, parameter or output; see `limits.quantity_of`."""
-        return quantity_of(self.data, self.dims, name, self.config.values, self.design.columns)
+        return quantity_of(self.data, self.dims, name, self.config.base, self.design.columns)
 
     def meets(self, target: str) -> np.ndarray:
         """Return the cases that meet a target of the study, shape (n,), whether they are valid or not."""
@@ -124,7 +124,7 @@ class StudyView:
         ds, dims = results.data, list(results.dims)
         table = pd.DataFrame(case_columns(ds, dims))
         names = factor_names(ds, dims, results.design, table)
-        base = base_values(ds, results.config.values)
+        base = base_values(ds, results.config.base)
         full = int(np.prod([table[f].nunique(dropna=False) for f in names], dtype=float)) if names else 1
         grid = full == len(table) and not (len(names) == 1 and dims == ["case"] and len(table) > 60)
         for name in dims:  # a dimension of one level is held by itself

@@ -44,7 +44,7 @@ def run_with_progress(
     from trackroller.analysis.deciding import run_any  # heavy: analysis
 
     checked = load_study(study)
-    _print_not_given(checked.config.not_given, {*checked.config.base, *checked.factors}, sys.stderr)
+    _print_not_given({**checked.config.base, **checked.factors}, checked.not_given, sys.stderr)
     print_doubts(checked.doubts())
     with progress_bar(checked.name, not quiet) as bar:
         plan = run_any(
@@ -250,16 +250,17 @@ def print_plan(
     study = load_study(target)
     for name, text in plan_rows(study, status_of(study, study_folder(study.name, results))):
         print_text(text, name)
-    _print_not_given(study.config.not_given, {*study.config.base, *study.factors})
+    _print_not_given({**study.config.base, **study.factors}, study.not_given)
     print_doubts(study.doubts())
     if explain:
         print()
         _explain(study, no_shortcuts)
 
 
-def _print_not_given(values: Mapping[str, Any], named: Iterable[str], to: TextIO | None = None) -> None:
+def _print_not_given(values: Mapping[str, Any], not_given: Iterable[str], to: TextIO | None = None) -> None:
     """Print the values that are taken from the paper's example, and ask about a drive that is not given."""
-    for line in filter(None, (not_given_text(values), drive_question(values, named))):
+    used = {name: values[name] for name in not_given}
+    for line in filter(None, (not_given_text(used), drive_question(used, values.keys() - used.keys()))):
         print_text(line, to=to)
 
 
@@ -267,7 +268,7 @@ def _print_case(path: Path | None, settings: list[str] | None, no_shortcuts: boo
     case, options, _ = case_of(path, settings)
     tell_doubts(case)
     values = case.as_dict()
-    _print_not_given({name: values[name] for name in case.not_given}, values.keys() - set(case.not_given))
+    _print_not_given(values, case.not_given)
     if no_shortcuts:
         options["shortcuts"] = False
     _print_stages(to_table(case), Options(**options))

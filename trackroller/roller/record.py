@@ -123,7 +123,13 @@ def case_of_result(ds: xr.Dataset) -> Case:
 def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
     """Return the values of a solved case that were not given but taken from the paper's example, by name."""
     values = inputs_of(ds)
-    return {name: values[name] for name in json.loads(ds.attrs.get(NOT_GIVEN, "[]"))}
+    return {name: values[name] for name in names_not_given(ds.attrs)}
+
+
+def names_not_given(attrs: Mapping[str, Any]) -> list[str]:
+    """Return the parameters that were not given, from the attributes of a solved case or study."""
+    names: list[str] = json.loads(str(attrs.get(NOT_GIVEN, "[]")))
+    return names
 
 
 def doubts_of(ds: xr.Dataset) -> list[str]:

@@ -37,6 +37,7 @@ from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
+from trackroller.roller.record import NOT_GIVEN, names_not_given
 from trackroller.study.store.seal import put_text, sealing
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
@@ -50,7 +51,7 @@ SECTIONS = {  # where a figure stands, by the beginning of its name
 _ELSEWHERE = (
     "notice study materials friction comment title coordinates Conventions life_conventions sign_conventions design"
 )
-_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL}  # attributes that do not stand in the record
+_NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL, NOT_GIVEN}  # attributes that do not stand in the record
 
 
 def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
@@ -102,7 +103,7 @@ def contents(view: StudyView) -> dict[str, Any]:
         "factors": inputs.factor_table(view),
         "base": inputs.base_rows(view),
         "doubts": _doubts(view),
-        "not_given": not_given_text(settings["not_given"]),
+        "not_given": not_given_text({name: settings["base"][name] for name in names_not_given(attrs)}),
         "options": options + models_used(view.data) + inputs.correlation_row(view),
         "materials": [t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t],
         "solution": solution_facts(view),

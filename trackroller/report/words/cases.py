@@ -17,6 +17,7 @@ from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import bodies_of, of_body
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.roller.record import names_not_given
 
 
 def valid_cases(view: StudyView) -> Sentence:
@@ -94,7 +95,7 @@ def strength(body: str, stress: np.ndarray, limit: np.ndarray, most: np.ndarray,
 
 def silent_drive(view: StudyView) -> Sentence | None:
     """Say that a motor force which the study does not name drives the cases that skid; None if there are none."""
-    force = view.study["not_given"].get("motor_force")
+    force = view.study["base"]["motor_force"] if "motor_force" in names_not_given(view.attrs) else 0.0
     skid = view.regime == REGIMES.index("full_slip")
     if not force or not skid.any():
         return None

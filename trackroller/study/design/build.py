@@ -77,7 +77,7 @@ def draw(config: StudyFile, factors: Mapping[str, Any], table: Path, grown: tupl
     if method.proposes:
         options["conditions"] = scattered({name: parse(name, spec) for name, spec in factors.items()}, config.roles)
         options["population"] = config.budget.generation
-    base = {k: v for k, v in config.values.items() if isinstance(v, float)}
+    base = {k: v for k, v in config.base.items() if isinstance(v, float)}
     samples = max(grown, default=config.samples)
     design = sample(factors, config.design, samples, config.seed, base=base, **options)
     if design.size > MAX_CASES:
@@ -123,7 +123,7 @@ def _columns(
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
     """Return every case field and further factor as a column of n values, and the attribute of `_friction`."""
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}
-    base |= EXAMPLE | config.values
+    base |= EXAMPLE | config.base
     base.pop("material_pair", None)
     if pair := config.base.get("material_pair"):
         base |= dict(zip(MATERIAL_FIELDS, pair, strict=True))
@@ -136,7 +136,7 @@ def _columns(
         pairs = columns.pop("material_pair")
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
-    if "friction_coefficient" not in {*config.values, *design.columns}:
+    if "friction_coefficient" not in {*config.base, *design.columns}:
         if "friction_law" in columns:
             columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"], friction = _friction(materials, columns)

@@ -177,7 +177,7 @@ def _check_materials(study: Study) -> None:
     ------
     InputError : an unknown material, or a material without scatter
     """
-    materials = named_materials(study.config.values, study.factors, study.materials)
+    materials = named_materials(study.config.base, study.factors, study.materials)
     check_scatter(study.config, {body: own.values() for body, own in materials.items()})
 
 
@@ -260,7 +260,7 @@ def check_geometry(study: Study) -> None:
 def _ends(study: Study, name: str) -> list[float]:
     factor = study.parsed.get(name)
     if factor is None:
-        return [study.config.values[name]]
+        return [study.config.base[name]]
     if factor.discrete:
         return [float(level) for level in factor.levels]
     if factor.kind in UNBOUNDED:

@@ -57,9 +57,6 @@ class _Design(BaseModel):
     name: Name = Field(description="names the results folder; letters, digits, '.', '_', '-'")
     description: str = Field("", description="one sentence at the head of the report")
     base: dict[str, Any] = Field({}, description="values of all cases")
-    not_given: dict[str, Any] = Field(
-        {}, description="parameters that neither base nor factors name, with the values used: the paper's example"
-    )
     factors: dict[str, dict[str, Any]] = Field({}, description="what varies: a list or a distribution for each factor")
     design: str = Field("grid", description="how the factors are combined")
     samples: int = Field(1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples")
@@ -133,11 +130,6 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
         """Return the design of experiments."""
         return METHODS[self.design]
 
-    @property
-    def values(self) -> dict[str, Any]:
-        """Return the values that all cases share: those of `not_given`, and those of `base`."""
-        return {**self.not_given, **self.base}
-
     @field_validator(*(option.name for option in IN_STUDY), mode="before")
     @classmethod
     def _option(cls, value: Any, info: Any) -> Any:
@@ -161,10 +153,10 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
                 raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
         return value
 
-    @field_validator("base", "not_given", mode="before")
+    @field_validator("base", mode="before")
     @classmethod
-    def _base(cls, value: Any, info: Any) -> Any:
-        return collected(value, lambda key, entry: base_value(key, entry, info.field_name))
+    def _base(cls, value: Any) -> Any:
+        return collected(value, lambda key, entry: base_value(key, entry, "base"))
 
     @field_validator("factors", mode="before")
     @classmethod

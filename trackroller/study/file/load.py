@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -18,6 +18,7 @@ from trackroller.materials import load_database
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import ALIASES, study_with_radii
+from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis, check_analysed
@@ -73,8 +74,20 @@ def _translated(detail: Mapping[str, Any]) -> InputError:
     return InputError(where, detail.get("input"), allowed, remedy)
 
 
+def former_defaults(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the values that an earlier version stated for parameters that a study file does not name."""
+    named = {*_mapping(data.get("base")), *_mapping(data.get("factors"))}
+    return {name: value for name, value in _mapping(data.get(NOT_GIVEN)).items() if name not in named}
+
+
 def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return a study file without keys of earlier versions that chose nothing else; a warning names them."""
+    """Return a study file without keys of earlier versions.
+
+    The values of `not_given` join those of `base`. A warning names other keys, which chose nothing else.
+    """
+    if NOT_GIVEN in data:
+        base = {**_mapping(data.get("base")), **former_defaults(data)}
+        data = {key: value for key, value in data.items() if key != NOT_GIVEN} | {"base": base}
     given = _mapping(data.get("analysis"))
     former = [f"analysis.{key}" for key in FORMER if key in given] + [key for key in FORMER_KEYS if key in data]
     if not former:
@@ -113,19 +126,25 @@ def _mapping(value: Any) -> Mapping[str, Any]:
     return value if isinstance(value, Mapping) else {}
 
 
-def complete(study: Study) -> Study:
-    """Return a study whose key `not_given` holds the value of every parameter that it does not name."""
+def complete(study: Study, former: Collection[str] = ()) -> Study:
+    """Return a study whose key `base` holds a value of every parameter that varies in no factor.
+
+    Parameters
+    ----------
+    study : the study as its file states it
+    former : parameters that an earlier version has completed already
+    """
     config = study.config
     names = {*config.base, *study.factors}
     if config.method.observed and config.table is not None:
         names.update(column_names(study.table_path, "table"))
     if any(at_rest(law) is not None for law in study.friction_laws if law):
         names.add("friction_coefficient")  # the first value of the table
-    values = not_given(names) | {name: value for name, value in config.not_given.items() if name not in names}
-    update: dict[str, Any] = {"not_given": values}
+    values = not_given(names)
+    update: dict[str, Any] = {"base": config.base | values}
     if config.until is not None and "samples" not in config.model_fields_set:
         update["samples"] = config.until.replicates * config.method.first_look
-    return replace(study, config=config.model_copy(update=update))
+    return replace(study, config=config.model_copy(update=update), not_given=(*former, *values))
 
 
 def parse_study(
@@ -142,7 +161,7 @@ def parse_study(
                 base, factors = (_mapping(data.get(key)) for key in ("base", "factors"))
                 named_materials(base, factors, database or load_database())
             wrong.check()
-        study = complete(Study(config, path, database, inputs))
+        study = complete(Study(config, path, database, inputs), former_defaults(data))
         with wrong.part():
             cross_check(study)
         with wrong.part():

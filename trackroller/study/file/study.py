@@ -15,6 +15,7 @@ from trackroller.materials import MaterialDatabase, load_database
 from trackroller.methods.factor import Factor, parse
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.doubts import doubts
+from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.design import build
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import IN_STUDY, StudyFile
@@ -36,6 +37,8 @@ class Study:
     path : path of the study file
     database : its materials, None for those of the program and of the user
     inputs : the files that were read for it
+    not_given : parameters that the study file does not name; `config.base` holds the values used for them, which are
+        those of the paper's example
     grown : number of samples to which the key `until` has grown the sample, one for each design point of an
         inner/outer design; empty at the first look
     """
@@ -44,6 +47,7 @@ class Study:
     path: Path | None = None
     database: Any = field(default=None, compare=False, repr=False)
     inputs: Reads = field(default_factory=dict, compare=False, repr=False)
+    not_given: tuple[str, ...] = field(default=(), compare=False)
     grown: tuple[int, ...] = ()
 
     @property
@@ -117,7 +121,7 @@ class Study:
 
     def doubts(self) -> list[str]:
         """Return a sentence for each value that is unusual, see `trackroller.roller.doubts`."""
-        values = {**self.config.values, **self.drawn.columns}
+        values = {**self.config.base, **self.drawn.columns}
         pair = np.ravel(np.array(values.get("material_pair", ()), dtype=object)).tolist()
         names = [name for entry in pair for name in (entry if isinstance(entry, tuple) else str(entry).split(" / "))]
         names += [name for field in MATERIAL_FIELDS for name in set(np.ravel(values.get(field, ())).tolist())]
@@ -132,5 +136,5 @@ class Study:
             Dimension `case`, one variable a parameter, materials by name. The attributes hold the study file and the
             options that `solve` takes for these cases.
         """
-        options = json.dumps(self.options)
-        return build.build(self.config, self.drawn, self.materials).assign_attrs(study=self.merged(), options=options)
+        attrs = {"study": self.merged(), "options": json.dumps(self.options), NOT_GIVEN: json.dumps(self.not_given)}
+        return build.build(self.config, self.drawn, self.materials).assign_attrs(attrs)

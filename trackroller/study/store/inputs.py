@@ -7,6 +7,7 @@ with this digest. A study file is stored with every default written out, beside 
 
 from __future__ import annotations
 
+import dataclasses
 import hashlib
 from pathlib import Path
 
@@ -123,4 +124,5 @@ def study_of_folder(folder: StudyFolder) -> Study:
     materials = folder.inputs / MATERIALS
     with noted_reads():
         database = load_database(materials) if materials.is_file() else builtin_database()
-        return as_planned(load_study(folder.study_file, database), record)
+        study = as_planned(load_study(folder.study_file, database), record)
+    return dataclasses.replace(study, not_given=tuple(record.get("not_given", study.not_given)))

@@ -236,6 +236,7 @@ def record_of(plan: Plan, inputs: Mapping[str, Any]) -> dict[str, Any]:
         "solver_digest": solver_digest(),
         "name": plan.study.name,
         "study": plan.study.merged(),
+        "not_given": list(plan.study.not_given),
         "inputs": dict(inputs),
         "size": plan.size,
         "distinct": plan.distinct,

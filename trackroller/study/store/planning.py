@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from trackroller.errors import InputError, WorkError
 from trackroller.files import try_lock
+from trackroller.study.file.load import without_former
 from trackroller.study.store import ownership
 from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
 from trackroller.study.store.inputs import store_inputs
@@ -98,7 +99,7 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
     """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
-    earlier, now = folder.earlier(), parse_mapping(study.merged(), "study file")
+    earlier, now = without_former(folder.earlier()), parse_mapping(study.merged(), "study file")
     other = earlier.get("name", study.name)
     if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
         remedy = "Give this study another name, choose another --results, or rename the folder."

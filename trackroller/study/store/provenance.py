@@ -16,6 +16,7 @@ from trackroller import __version__
 from trackroller.damage.own import digests
 from trackroller.parameters import OPTIONS
 from trackroller.roller.dataset import file_attributes
+from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.store.folder import STORE_FORMAT
 from trackroller.study.store.sources import solver_digest
 
@@ -71,6 +72,7 @@ def attributes(study: Study) -> dict[str, Any]:
         **file_attributes(f"Parameter study '{study.name}' of locating-bearing track rollers", "solved and gathered"),
         "comment": config.description or f"Results of the study {study.name}",
         "study": study.merged(),
+        NOT_GIVEN: json.dumps(study.not_given),
         "study_name": study.name,
         "design": config.design,
         "seed": config.seed,
