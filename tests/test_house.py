@@ -13,30 +13,11 @@ from pathlib import Path
 
 import pytest
 
+from trackroller.study.store.sources import ROOMS
+
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"
-# the top of the package holds public names and may import all rooms
-ORDER = (
-    "environment",
-    "errors",
-    "files",
-    "yaml_file",
-    "numerics",
-    "halfspace",
-    "damage",
-    "parameters",
-    "materials",
-    "contact",
-    "roller",
-    "methods",
-    "study",
-    "analysis",
-    "report",
-    "solved",
-    "app",
-    "cli",
-    "__init__",
-)
+ORDER = (*ROOMS, "__init__")  # the top of the package holds public names and may import all rooms
 
 
 @dataclass

@@ -18,7 +18,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from trackroller.study.store.sources import source_files
+from trackroller.study.store.sources import ROOMS
 from validation.mutants import DECISIONS, FORMULAS
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -49,14 +49,11 @@ def copied(place: Path) -> Path:
 
 
 def forget_kernels(place: Path, path: str) -> None:
-    """Remove the compiled kernels of every module that imports a file: numba looks at a kernel's own file only."""
-    changed = ROOT / "trackroller" / path
-    for module in (ROOT / "trackroller").rglob("*.py"):
-        inside = module.relative_to(ROOT)
-        kernels = list((place / inside.parent / "__pycache__").glob(f"{module.stem}.*.nb[ic]"))
-        if kernels and changed in source_files(".".join(inside.with_suffix("").parts)):
-            for kernel in kernels:
-                kernel.unlink()
+    """Remove the compiled kernels of every room that may import a file: numba looks at a kernel's own file only."""
+    first = Path(path).parts[0].removesuffix(".py")
+    for room in ROOMS[ROOMS.index(first) :]:
+        for kernel in (place / "trackroller" / room).glob("**/__pycache__/*.nb[ic]"):
+            kernel.unlink()
 
 
 def catching_test(place: Path, mutation: Mutation) -> str:

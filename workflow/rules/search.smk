@@ -3,7 +3,7 @@
 rule search:
     input:
         study=study_inputs(PLAN.study),
-        code=digest_file(f"{RESULTS}/code", "trackroller.analysis.deciding"),
+        code=digest_file(f"{RESULTS}/code", "analysis"),
     output:
         design=f"{RESULTS}/design.nc",
         study=f"{RESULTS}/study.nc",

@@ -4,11 +4,7 @@
 rule sensitivity:
     input:
         study=f"{RESULTS}/study.nc",
-        code=digest_file(
-            f"{RESULTS}/code",
-            "trackroller.analysis.sensitivity",
-            "trackroller.analysis.stored_study",
-        ),
+        code=digest_file(f"{RESULTS}/code", "analysis"),
     output:
         f"{RESULTS}/sensitivity.nc",
     log:
@@ -23,12 +19,7 @@ rule figures:
     input:
         study=f"{RESULTS}/study.nc",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=digest_file(
-            f"{RESULTS}/code",
-            "trackroller.report.figures.study",
-            "trackroller.report.figures.sensitivity",
-            "trackroller.analysis.stored_study",
-        ),
+        code=digest_file(f"{RESULTS}/code", "report"),
     output:
         report(
             directory(f"{RESULTS}/figures"),
@@ -50,11 +41,7 @@ rule report:
         study=f"{RESULTS}/study.nc",
         figures=f"{RESULTS}/figures",
         sensitivity=f"{RESULTS}/sensitivity.nc",
-        code=digest_file(
-            f"{RESULTS}/code",
-            "trackroller.report.pages.study",
-            "trackroller.analysis.stored_study",
-        ),
+        code=digest_file(f"{RESULTS}/code", "report"),
     output:
         report(
             f"{RESULTS}/report.html",
@@ -78,7 +65,7 @@ rule crate:
         sensitivity=rules.sensitivity.output,
         figures=rules.figures.output,
         report=rules.report.output,
-        code=digest_file(f"{RESULTS}/code", "trackroller.study.store.crate"),
+        code=digest_file(f"{RESULTS}/code", "study"),
     output:
         f"{RESULTS}/ro-crate-metadata.json",
     log:

@@ -9,7 +9,7 @@ localrules:
 rule design:
     input:
         study_inputs(PLAN.study),
-        code=digest_file(f"{RESULTS}/code", "trackroller.study.design.build"),
+        code=digest_file(f"{RESULTS}/code", "study"),
     output:
         f"{RESULTS}/design.nc",
     log:
@@ -41,7 +41,7 @@ rule gather:
         study=study_inputs(PLAN.study),
         design=rules.design.output,
         chunks=expand(f"{RESULTS}/plan/{{chunk}}.solved", chunk=PLAN.chunks),
-        code=digest_file(f"{RESULTS}/code", "trackroller.study.store.gather"),
+        code=digest_file(f"{RESULTS}/code", "study"),
     output:
         f"{RESULTS}/study.nc",
     log:

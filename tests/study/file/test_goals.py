@@ -2,7 +2,6 @@
 
 import dataclasses
 import json
-import re
 from pathlib import Path
 
 import numpy as np
@@ -28,7 +27,6 @@ from trackroller.report.tables.inputs import as_material
 from trackroller.report.words import indices
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.load import parse_study
-from trackroller.study.store.sources import source_files
 
 LHS = {
     "name": "a",
@@ -379,28 +377,3 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
     assert results_of(ds).design.method.name == "table"
     assert "are correlated (rank correlation -1.00)" in analyse(results_of(ds)).attrs["treatment"]
-
-
-def test_every_source_of_an_analysis_is_an_input_of_its_rule():
-    """Each rule names a module that exists; its sources include all code that draws designs or estimates indices."""
-    root = Path(__file__).parents[3]
-    text = (root / "workflow" / "rules" / "show.smk").read_text(encoding="utf-8")
-    rules = dict(re.findall(r"rule (\w+):.*?code=digest_file\((.*?)\),\n    output", text, re.DOTALL))
-    assert {"sensitivity", "figures", "report"} <= set(rules)
-    found = {rule: source_files(re.findall(r'"(trackroller[\w.]+)"', named)) for rule, named in rules.items()}
-    names = {path.relative_to(root / "trackroller").as_posix() for path in found["sensitivity"]}
-    estimators = (
-        "grid",
-        "sobol",
-        "saltelli",
-        "morris",
-        "arrays",
-        "inner_outer",
-        "given_data",
-        "delta",
-        "interactions",
-        "b10",
-    )
-    assert {f"methods/{name}.py" for name in (*estimators, "factor", "lhs", "convergence", "probability")} <= names
-    assert {f"analysis/{name}.py" for name in ("robustness", "stored_study")} <= names
-    assert {"parameters/expressions.py", "damage/fatigue.py", "study/outputs.py"} <= names
