@@ -248,8 +248,14 @@ def disk_error(exc: OSError, path: Path) -> WorkError:
     elif exc.errno in (errno.EROFS, errno.EACCES, errno.EPERM):
         what, remedy = f"it cannot be written ({exc.strerror})", "Change its permissions (or choose another --results)"
     else:
-        what, remedy = f"writing failed ({exc.strerror or exc})", "Repair the folder or the disk"
+        what, remedy = f"writing failed ({why_not(exc, path)})", "Repair the folder or the disk"
     return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
+
+
+def why_not(exc: OSError, path: Path) -> str:
+    """Return in words why a path cannot be made: the system says of a link that leads nowhere that a file exists."""
+    lost = next((place for place in (path, *path.parents) if is_link(place) and not place.exists()), None)
+    return str(exc.strerror or exc) if lost is None else f"{lost} is a link to something that does not exist"
 
 
 def _true_cause(exc: OSError, path: Path) -> OSError:

@@ -32,6 +32,7 @@ from trackroller.study.store.inventory import Inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.ownership import check_readable
 from trackroller.study.store.plan import locate
+from trackroller.study.store.provenance import DATE
 from trackroller.study.store.seal import digest_of, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
@@ -103,12 +104,15 @@ def _gathered(path: Path) -> xr.Dataset | None:
     if path.is_dir():
         check_readable(path)
     file = StudyFolder(path).gathered if path.is_dir() else path
-    planned = StudyFolder(path).record().get("study") if path.is_dir() else None
+    record = StudyFolder(path).record() if path.is_dir() else {}
+    planned = record.get("study")
     if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
         raise InputError("study", str(path), allowed, "Run the study to its end first.", "holds no results")
     data = read_result(file) if file.is_file() else None
-    return data if data is not None and planned in (None, data.attrs.get("study")) else None
+    if data is None or planned not in (None, data.attrs.get("study")):
+        return None
+    return data.assign_attrs({DATE: record["planned"]} if "planned" in record else {})
 
 
 def _read_unfinished(folder: StudyFolder) -> StudyResults:

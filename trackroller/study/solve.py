@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import datetime
 import json
 import logging
 import time
@@ -158,8 +157,7 @@ def solve_chunk(
                 blocks.append(block)
                 progress(*chunks.counts(block))
             spent = time.perf_counter() - started
-            date = datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
-            chunk = chunks.join(blocks).sel(case=cases["case"].values).assign_attrs({chunks.DATE: date})
+            chunk = chunks.join(blocks).sel(case=cases["case"].values)
             chunks.write(folder.chunk(name), chunk, packed=True)
             folder.mark(name).touch()
             return _summary(chunk, cases.attrs.get("words", f"chunk {name}"), spent)

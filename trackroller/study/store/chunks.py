@@ -25,7 +25,6 @@ from trackroller.study.store.ownership import write as write_own
 from trackroller.study.store.seal import too_large
 
 FAILED = REGIMES.index("failed")
-DATE = "date_solved"  # attribute of a file: when its cases were solved; a copy of the file may have another date
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
 _LABELS = {"case": "fingerprint of the case", "reason": "why a case failed or misses its tolerance"}
 _SMALL = 64  # cases; smaller files gain nothing from compression
@@ -60,14 +59,10 @@ def counts(block: xr.Dataset) -> tuple[int, int]:
 
 
 def join(blocks: Iterable[xr.Dataset]) -> xr.Dataset:
-    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up.
-
-    The date is that of the newest block.
-    """
+    """Join blocks of different cases, see `trackroller.roller.dataset.joined`; their `seconds` add up."""
     blocks = list(blocks)
     seconds = sum(block.attrs.get("seconds", 0.0) for block in blocks)
-    date = max((block.attrs.get(DATE, "") for block in blocks), default="")
-    return joined(blocks).assign_attrs({"seconds": seconds, DATE: date})
+    return joined(blocks).assign_attrs({"seconds": seconds})
 
 
 def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
@@ -125,8 +120,7 @@ def read_state(path: Path) -> xr.Dataset:
     """Read regime and reason of solved cases alone, which is much faster than `read`."""
     with _opened(path) as (file, cases):
         state = {name: ("case", file[name][:]) for name in ("regime", "reason")}
-        date = getattr(file, DATE, "")
-        return xr.Dataset(state, {"case": cases}, {"seconds": float(file.seconds), DATE: str(date)})
+        return xr.Dataset(state, {"case": cases}, {"seconds": float(file.seconds)})
 
 
 def read_sound(

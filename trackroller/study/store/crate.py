@@ -27,7 +27,7 @@ from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
 from trackroller.study.store.ownership import METADATA
 from trackroller.study.store.provenance import versions
-from trackroller.study.store.seal import REPORT, check_sealed, put_text, read_result, recorded
+from trackroller.study.store.seal import REPORT, check_sealed, is_sealed, put_text, read_result, recorded
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -61,9 +61,28 @@ def write_crate(root: Path) -> Path:
     # a user may delete what a report made: `trackroller report` makes it again
     kept = [*DATA, *(name for name in REPORT if (root / name).exists())]
     inputs, *results = (sorted(recorded(check_sealed(root / name)) or ()) for name in (INPUTS, *kept))
-    graph = _graph(study, root, inputs, [name for names in results for name in names])
-    text = json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
-    return put_text(root / METADATA, text)
+    made = [name for names in results for name in names]
+    newest = str(np.datetime64(int(max((root / name).stat().st_mtime for name in made)), "s")) + "Z"
+    # a copy has other dates, and describes the same run
+    known, text = (_text(study, root, inputs, made, ended) for ended in (_end_of_run(root), newest))
+    path = root / METADATA
+    if path.is_file() and is_sealed(path) and path.read_text(encoding="utf-8") == known:
+        return path
+    return put_text(path, text)
+
+
+def _end_of_run(root: Path) -> str:
+    """Return when the run ended that the crate of a folder describes, '' without a crate."""
+    try:
+        graph = json.loads((root / METADATA).read_text(encoding="utf-8"))["@graph"]
+        return next((str(entry["endTime"]) for entry in graph if entry.get("@id") == "#run"), "")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
+        return ""
+
+
+def _text(study: Study, root: Path, inputs: list[str], results: list[str], ended: str) -> str:
+    graph = _graph(study, root, inputs, results, ended)
+    return json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
 
 
 def _entry(place: str, kind: str | list[str], **more: Any) -> dict[str, Any]:
@@ -86,10 +105,9 @@ def _file(root: Path, name: str) -> dict[str, Any]:
     return entry
 
 
-def _graph(study: Study, root: Path, inputs: list[str], results: list[str]) -> list[dict[str, Any]]:
+def _graph(study: Study, root: Path, inputs: list[str], results: list[str], ended: str) -> list[dict[str, Any]]:
     """Return the entries of the metadata file, the study, its run, the programs, the licence and every file."""
     programs, work = versions(), "CreativeWork"
-    ended = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
     return [
         _entry(METADATA, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
         _entry(

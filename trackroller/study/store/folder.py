@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from trackroller.errors import InputError
-from trackroller.files import check_utf_8, disk_error, open_here, try_lock
+from trackroller.files import check_utf_8, disk_error, open_here, try_lock, why_not
 from trackroller.study.store import ownership
 from trackroller.study.store.ownership import MADE_BY, record_digest
 from trackroller.study.store.seal import is_sealed, read_result
@@ -106,7 +106,7 @@ class StudyFolder:
                 pass
         except OSError as exc:
             if exc.errno in NO_FOLDER:
-                wrong = f"cannot be a folder ({exc.strerror})"
+                wrong = f"cannot be a folder ({why_not(exc, self.root)})"
                 remedy = "Choose another with --results."
                 raise InputError("results folder", str(self.root), "the path of a folder", remedy, wrong) from None
             raise disk_error(exc, self.root) from None

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-import datetime
 import math
 import tempfile
 from collections.abc import Hashable, Mapping
 from pathlib import Path
 from typing import Any
 
-import netCDF4
 import numpy as np
 import xarray as xr
 
@@ -21,6 +19,7 @@ from trackroller.study.store.folder import Tell, reporting, unheard
 from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.plan import Plan
+from trackroller.study.store.provenance import DATE
 from trackroller.study.store.seal import forget_report, is_sealed, put, recorded
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
@@ -72,11 +71,10 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
         damaged = "".join(f" Corrupt: {why}." for why in inventory.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
-    date = inventory.states.attrs[chunks.DATE] or _earlier_date(plan, inventory)  # equal results are equal files
-
     def save(beside: Path) -> None:
         results = labelled(study, study.drawn, design, collect(inventory, place, folder.root))
-        results.assign_attrs({"date_created": date} | dict(attrs or {})).to_netcdf(beside, engine="netcdf4")
+        results.attrs.pop(DATE)  # equal results are equal files; the plan keeps the date
+        results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
 
     before = recorded(folder.gathered) or {}
     with reporting(folder):
@@ -85,20 +83,6 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
             forget_report(folder.root)
     tell(f"gathered {count} cases into {folder.gathered}")
     return folder.gathered
-
-
-def _earlier_date(plan: Plan, inventory: Inventory) -> str:
-    """Return when cases were solved whose files do not tell it, as those of an earlier version: as gathered before.
-
-    The dates of the files count only if the study was not gathered yet: those of a copy may be others.
-    """
-    path = plan.folder.gathered
-    if is_sealed(path):
-        with netCDF4.Dataset(path) as file:
-            if getattr(file, "study", None) == plan.study.merged():
-                return str(file.date_created)
-    last = max(path.stat().st_mtime for path in inventory.paths)
-    return datetime.datetime.fromtimestamp(last, datetime.UTC).isoformat(timespec="seconds")
 
 
 def collect(found: Inventory, place: np.ndarray, scratch: Path) -> xr.Dataset:

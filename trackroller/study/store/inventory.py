@@ -21,8 +21,7 @@ class Inventory:
     ----------
     states : xarray.Dataset
         `regime` (code of `REGIMES`), `reason` of a failure, `file` (index into `paths`) and `row` in that file, along
-        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s], and
-        `date_solved` the time at which the last case was solved, '' if an earlier version has solved all of them.
+        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s].
     paths : list of pathlib.Path
         Sound files.
     corrupt : dict

@@ -19,6 +19,7 @@ from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_
 from trackroller.study.store.inputs import store_inputs
 from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.plan import Plan, new_plan, read_plan, record_of, sound_plan, study_folder, unused_cases
+from trackroller.study.store.provenance import now
 from trackroller.study.store.seal import discard
 from trackroller.yaml_file import parse_mapping
 
@@ -119,9 +120,10 @@ def _sound_inventory(folder: StudyFolder, tell: Tell) -> Inventory:
 
 def _keep(plan: Plan, tell: Tell) -> None:
     """Write the record of a plan after its inputs, and remove the files of earlier plans."""
-    folder = plan.folder
+    folder, earlier = plan.folder, plan.folder.record()
     record = record_of(plan, store_inputs(plan.study, folder))
-    if record != folder.record():
+    record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
+    if record != earlier:
         folder.write_record(record, tell)
     for path in folder.lock.parent.iterdir():
         of_chunk = path.suffix in (".nc", ".solved", ".lock") and not path.name.startswith(".")

@@ -23,7 +23,13 @@ from trackroller.study.store.sources import solver_digest
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
+DATE = "date_created"  # attribute of results in memory; a folder keeps the date in its plan
 _PACKAGES = ("numpy", "scipy", "numba", "xarray", "netCDF4", "SALib", "snakemake")
+
+
+def now() -> str:
+    """Return the date and time in UTC."""
+    return datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds")
 
 
 def git_commit() -> str:
@@ -81,7 +87,7 @@ def attributes(study: Study) -> dict[str, Any]:
         "store_format": STORE_FORMAT,
         "versions": json.dumps(versions()),
         "git_commit": git_commit(),
-        "date_created": datetime.datetime.now(datetime.UTC).isoformat(timespec="seconds"),
+        DATE: now(),
     }
     if study.path is not None:
         stated["study_file"] = study.path.name

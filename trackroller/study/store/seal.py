@@ -20,7 +20,7 @@ import netCDF4
 import xarray as xr
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import check_place, disk_errors, flush, memory, scratch_name, sha256, sync_folder
+from trackroller.files import check_place, disk_errors, flush, is_link, memory, scratch_name, sha256, sync_folder
 from trackroller.study.store import ownership
 from trackroller.study.store.ownership import METADATA, read_record, write_record
 
@@ -92,6 +92,8 @@ def _put(path: Path, beside: Path, root: Path | None) -> None:
     for goal, digest in digests.items():
         ownership.standing(goal, home, digest)
     new = {goal.relative_to(home).as_posix(): {digest} for goal, digest in digests.items()}
+    if read_record(record) == (True, new) and all(_same(goal, digest) for goal, digest in digests.items()):
+        return  # what stands there keeps its date
     ownership.make_way(record, home)
     old = read_record(record)[1]
     write_record(record, {name: old.get(name, set()) | new.get(name, set()) for name in {*old, *new}}, current=False)
@@ -109,6 +111,11 @@ def _put(path: Path, beside: Path, root: Path | None) -> None:
     for place in {goal.parent for goal in made}:
         sync_folder(place)
     write_record(record, new, current=True)
+
+
+def _same(path: Path, digest: str) -> bool:
+    """Return whether a file has a digest already."""
+    return path.is_file() and not is_link(path) and sha256(path) == digest
 
 
 def put(path: Path, save: Callable[[Path], object]) -> Path:
