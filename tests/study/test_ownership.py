@@ -30,7 +30,7 @@ from trackroller.study.run import run_study
 from trackroller.study.store import ownership
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.ownership import record_digest
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import working_plan
 from trackroller.study.store.seal import put_text
 from trackroller.yaml_file import parse_mapping
 

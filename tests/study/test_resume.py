@@ -22,8 +22,7 @@ from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 from trackroller.study.store import chunks
 from trackroller.study.store.identity import Cases, chunk_name
-from trackroller.study.store.plan import study_folder
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import study_folder, working_plan
 
 HERE = Path(__file__).parents[1]
 LOADS = [float(v) for v in range(20, 50)]

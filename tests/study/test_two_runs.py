@@ -18,7 +18,7 @@ from trackroller.errors import WorkError
 from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.run import run_study
 from trackroller.study.solve import solve_chunk
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import working_plan
 
 LOADS = [float(v) for v in range(20, 40)]
 DATA = {

@@ -21,8 +21,7 @@ from trackroller.study.store.folder import StudyFolder, Tell
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inventory import take_inventory
-from trackroller.study.store.plan import Plan, study_folder
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import Plan, study_folder, working_plan
 
 
 class Growing:

@@ -23,8 +23,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.ownership import free_for_workflow
-from trackroller.study.store.plan import Plan, read_plan, study_folder
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import Plan, read_plan, study_folder, working_plan
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends

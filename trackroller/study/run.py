@@ -23,8 +23,7 @@ from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inventory import forget_failed, take_inventory
 from trackroller.study.store.labels import labelled
-from trackroller.study.store.plan import Plan, study_folder
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import Plan, study_folder, working_plan
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

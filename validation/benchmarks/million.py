@@ -27,7 +27,7 @@ from trackroller.study.design.build import MAX_CASES
 from trackroller.study.file.load import load_study
 from trackroller.study.solve import load_cases, solve_cases
 from trackroller.study.store import chunks
-from trackroller.study.store.planning import working_plan
+from trackroller.study.store.plan import working_plan
 from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
