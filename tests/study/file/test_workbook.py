@@ -145,10 +145,58 @@ def test_formulas_without_values_are_refused(tmp_path):
     assert read(rows, tmp_path, patch=formula(b"<v>0</v>", False))["axial_force"] == [0.0]
 
 
-def test_a_formula_that_sums_up_its_column_is_no_case(tmp_path):
-    rows = [["radial_force", "part"], [-100, "a"], [-100, "b"], ["=SUM(A2:A3)", "c"]]
-    with pytest.raises(tr.InputError, match=r"line 4: radial_force = '=SUM.*sums up the lines above"):
-        read(rows, tmp_path, patch=formula(b"<v>-200</v>"))
+@pytest.mark.parametrize(
+    "text",
+    [
+        "=SUM(A2:A3)",
+        "=sum(A2,$A$3)",
+        "=A2+A3",
+        "=SUBTOTAL(9,A2:A3)",
+        "=SUBTOTAL(109,Table1[radial_force])",
+        "=SUM(A:A)",
+        "=AVERAGE(A2,A3)",
+        "=ROUND(SUM(A2:A3)/2,0)",
+        '=IF(A2<0,A2+A3,"A4")',
+    ],
+)
+def test_a_formula_that_sums_up_its_column_is_no_case(text, tmp_path):
+    rows = [["radial_force", "part"], [-100, "a"], [-150, "b"], [text, "c"]]
+    with pytest.raises(tr.InputError, match=r"line 4: radial_force = '=.*sums up the lines above"):
+        read(rows, tmp_path, patch=formula(b"<v>-250</v>"))
+
+
+@pytest.mark.parametrize(
+    "column",
+    [
+        ["=2*A2", "=2*A3"],  # levels that double
+        ["=A2+A$2", "=A3+A$2"],  # levels with the first one as their step
+        [-200, "=A3-50"],
+        [-200, "=SUM(B2:B3)"],
+        [-200, "=SUM(Sheet2!A2:A3)"],
+        [-200, "=load*A3+A2"],
+        ["=SUM(A2:A4)", -250],  # a circle, but no line above
+    ],
+)
+def test_a_formula_of_a_case_keeps_its_value(column, tmp_path):
+    rows = [["radial_force", "part"], [-100, 1], *([text, 2] for text in column)]
+    loads = [-100.0, *(-250.0 if isinstance(one, str) else float(one) for one in column)]
+    assert read(rows, tmp_path, patch=formula(b"<v>-250</v>"))["radial_force"] == loads
+
+
+def test_rows_that_are_struck_through_are_refused(tmp_path):
+    def strike(sheet):
+        for place in ("A3", "C2"):  # C2 is empty
+            sheet[place].font = openpyxl.styles.Font(strike=True)
+
+    with pytest.raises(tr.InputError, match=r"line 3: table = 'row 3'.*not struck through.*Delete what does not count"):
+        read(ROWS, tmp_path, change=strike)
+
+
+def test_whole_numbers_keep_all_their_figures(tmp_path):
+    """A label of 20 figures is no float; one of 14 figures is."""
+    rows = [["radial_force", "serial", "part"], [-200, "=1", 12345678901234]]
+    read_ = read(rows, tmp_path, patch=formula(b"<v>12345678901234567890</v>"))
+    assert read_["serial"] == ["12345678901234567890"] and read_["part"] == [12345678901234.0]
 
 
 def test_what_a_sheet_hides_or_merges_is_refused(tmp_path):

@@ -24,16 +24,17 @@ MAX_CELLS = 500_000  # also empty ones between others
 MAX_TAGS = 4 * MAX_CELLS  # of a sheet or of its texts: a cell with a number has four
 MAX_OTHER_TAGS = 100_000  # of any other part, such as the formats, each of which takes openpyxl 50 us
 MAX_COLUMNS = 1_000
+LARGEST_WHOLE = 2**53  # up to which floats hold all whole numbers
 MOST_NAMED = 5  # rows or columns that a message names
 Lines = list[tuple[int, list[str]]]
 
 _SHOW = "Show what counts (clear the filter of the sheet), and delete what does not."
 _TRUE = ("1", "true")
 _USUAL = ("General", "0", "0.00", "#,##0", "#,##0.00", "@", "0.00E+00", "0.0", "0.000")
-_OWN_TOTAL = re.compile(
-    r"(?:SUM|SUBTOTAL|AVERAGE|AGGREGATE|MIN|MAX|MEDIAN|STDEV\S*|COUNT)\([^A-Z]*\$?([A-Z]+)\$?(\d+):\$?\1\$?(\d+)\)",
-    re.I,
-)
+_STATISTIC = re.compile(r"\s*(?:SUM|SUBTOTAL|AVERAGE|AGGREGATE|MIN|MAX|MEDIAN|STDEV\S*|COUNT)\s*\([^()]*\)\s*", re.I)
+_CELLS = re.compile(r"\$?([A-Z]{1,3})\$?(\d+)(?::\$?([A-Z]{1,3})\$?(\d+))?(?![\w(!])", re.I)
+_WHOLE_COLUMN = re.compile(r"\w*\[[^\[\]]*\]|\$?([A-Z]{1,3}):\$?\1(?![\w(!])", re.I)  # `Table1[Load]`, `A:A`
+_WORD = re.compile(r"[^\W\d]\w*(?!\w*\()|!")  # a name, or a cell of another sheet
 
 
 @dataclass(frozen=True)
@@ -43,8 +44,8 @@ class _Formula:
     text: str
     value: str | None
 
-    def checked(self, shown: str, place: tuple[int, int], computed_on_load: bool) -> str:
-        """Return the text of the cell, `Refused` if the value is missing or adds up the cells above.
+    def checked(self, shown: str, sums_up: bool, computed_on_load: bool) -> str:
+        """Return the text of the cell, `Refused` if the value is missing or sums up the cells above.
 
         XlsxWriter stores 0 for every formula, and asks Excel to compute the workbook as it opens it.
         """
@@ -54,11 +55,29 @@ class _Formula:
             return Refused(text, "a value; the workbook holds a formula without its value", remedy)
         if isinstance(shown, Refused):
             return Refused(text, *shown.message)
-        range_ = _OWN_TOTAL.fullmatch(self.text)
-        if range_ and int(range_[2]) < int(range_[3]) < place[0] and _letter(place[1]) == range_[1].upper():
+        if sums_up:
             allowed = "a line of its own; this formula sums up the lines above"
             return Refused(text, allowed, "Remove the line, or put it into another sheet.")
         return shown
+
+    def takes_several_above(self, place: tuple[int, int]) -> bool:
+        """Return whether the formula refers to several cells of its own column above it, and to nothing else."""
+        text, rows = re.sub(r'"[^"]*"', '""', self.text), set[int]()
+        for first, start, last, end in _CELLS.findall(text):
+            if {first.upper(), (last or first).upper()} != {_letter(place[1])}:
+                return False
+            rows |= {int(start), int(end or start)}
+        return len(rows) > 1 and max(rows) < place[0] and not _WORD.search(_CELLS.sub("", text))
+
+    def continues(self, above: _Formula | None, place: tuple[int, int]) -> bool:
+        """Return whether the formula is that of the cell above moved down by one row, as in a column of levels."""
+        from openpyxl.formula.translate import Translator  # noqa: PLC0415 - optional, and heavy
+
+        if above is None or not above.text:
+            return False
+        letter = _letter(place[1])
+        moved = Translator(f"={above.text}", f"{letter}{place[0] - 1}").translate_formula(f"{letter}{place[0]}")
+        return bool(moved == f"={self.text}")
 
 
 @dataclass
@@ -72,6 +91,19 @@ class _Facts:
     merged: list[str] = field(default_factory=list)
     formulas: dict[tuple[int, int], _Formula] = field(default_factory=dict)
     computed_on_load: bool = False
+
+    def sums_up(self, place: tuple[int, int]) -> bool:
+        """Return whether the formula of a cell sums up cells above it: a statistic of them, or any formula at the end.
+
+        Below the last row no further case can follow from a formula, unless it continues the formulas above it.
+        """
+        formula = self.formulas[place]
+        several, statistic = formula.takes_several_above(place), _STATISTIC.fullmatch(formula.text)
+        if several and statistic:
+            return True
+        if place[0] != self.last or not (several or (statistic and _WHOLE_COLUMN.search(formula.text))):
+            return False
+        return not formula.continues(self.formulas.get((place[0] - 1, place[1])), place)
 
     def check(self, path: Path, field: str) -> None:
         """Refuse a sheet that a person sees otherwise than the program, or that is too large."""
@@ -163,6 +195,7 @@ def sheet_lines(content: bytes, path: Path, field: str, what: str, most_rows: in
             with reader.archive.open(parts[sheet.title]) as stream:
                 facts = _facts_of(stream)
             facts.check(path, field)
+            _check_struck(sheet, facts, path, field)
             facts.computed_on_load = b'fullCalcOnLoad="1"' in reader.archive.read(reader.parser.workbook_part_name)
             return _rows(sheet, facts)
     except InputError:
@@ -267,13 +300,31 @@ def _rows(sheet: Any, facts: _Facts) -> Lines:
         cells = [_text(cell) for cell in row]
         for j in range(len(cells)):
             if (formula := facts.formulas.get((number, j + 1))) is not None:
-                cells[j] = formula.checked(cells[j], (number, j + 1), facts.computed_on_load)
+                cells[j] = formula.checked(cells[j], facts.sums_up((number, j + 1)), facts.computed_on_load)
         while len(cells) > width and not cells[-1]:
             cells.pop()
         cells += [""] * (width - len(cells))
         width = width or len(cells)
         lines.append((number, cells))
     return lines
+
+
+def _check_struck(sheet: Any, facts: _Facts, path: Path, field: str) -> None:
+    """Refuse rows with text that is struck through: a person does not count them."""
+    struck = {place for place, font in enumerate(sheet.parent._fonts) if font.strike}
+    if not (struck and facts.last):
+        return
+    sheet.reset_dimensions()
+    rows = [
+        number
+        for number, row in enumerate(sheet.iter_rows(max_row=facts.last, max_col=facts.width), start=1)
+        if any(cell.value not in (None, "") and cell.style_array.fontId in struck for cell in row)
+    ]
+    if rows:
+        named = f"row{'s' * (len(rows) > 1)} {_few(rows)}"
+        remedy = "Delete what does not count, and give the rest another font."
+        error = InputError(field, named, "rows that are not struck through; these may count or not", remedy)
+        raise error.at(path, rows[0])
 
 
 def _text(cell: Any) -> str:
@@ -294,7 +345,12 @@ def _text(cell: Any) -> str:
 
 
 def _formatted(value: float, code: str) -> str:
-    """Return a number as text; the code of its format may add a unit, a per cent sign or zeros, or hide something."""
+    """Return a number as text; the code of its format may add a unit, a per cent sign or zeros, or hide something.
+
+    A whole number with more figures than a float holds is a label.
+    """
+    if isinstance(value, int) and abs(value) > LARGEST_WHOLE:
+        return str(value)
     number = Stored(value if isinstance(value, int) else repr(value))
     if code in _USUAL:
         return number
