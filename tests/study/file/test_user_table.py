@@ -223,3 +223,61 @@ def test_numbers_under_a_head_that_speaks_of_a_parameter_are_not_left_out(head, 
 @pytest.mark.parametrize("head", ["roller_id", "share [%]", "lot size", "width [mm]", "note"])
 def test_other_columns_of_numbers_are_kept(head, tmp_path):
     assert next(iter(cases(f"{head};contact_angle\n3;30\n5;20\n", tmp_path))).startswith(head.partition(" [")[0])
+
+
+@pytest.mark.parametrize(
+    ("remark", "unit"),
+    [
+        ("# forces in kN", "kN"),
+        ("# all loads [kN]", "kN"),
+        ("# Kräfte: kN, Wege: m", "kN"),
+        ("# units = lbf", "lbf"),
+        ("#kN;m/min", "kN"),
+        ("# radial_force in N, velocity in m/s", "m/s"),
+    ],
+)
+def test_a_unit_in_a_comment_is_never_left_out(remark, unit, tmp_path):
+    table_ = "radial_force;velocity\n-2;60\n-3;70\n"
+    for text in (f"{remark}\n{table_}", table_.replace("\n", f"\n{remark}\n", 1)):
+        with pytest.raises(
+            tr.InputError, match=rf"t\.csv, line [12]: .* names the unit {unit}, .*Write \w+ \[{unit}\]"
+        ):
+            cases(text, tmp_path)
+
+
+@pytest.mark.parametrize(
+    "remark",
+    [
+        "# measured on Monday in situ (rig A), 2 m away",
+        "# am Prüfstand um 10 Uhr in Halle 3 gemessen",
+        "# radial_force in N, velocity [m/min]",
+        "# rated for 5 kN at 1 m/s",
+        "# all in SI units, 2026/27, W/O lubricant",
+    ],
+)
+def test_a_comment_that_changes_no_unit_is_left_out(remark, tmp_path):
+    text = f"{remark}\nradial_force;velocity\n-2;60\n"
+    assert cases(text, tmp_path) == {"radial_force": [-2.0], "velocity": [60.0]}
+    stated = "# forces in kN\nradial_force [kN];axial_force\n-2;0,5 kN\n"
+    assert cases(stated, tmp_path) == {"radial_force": [-2000.0], "axial_force": [500.0]}
+
+
+def test_a_second_table_beside_the_first_is_refused(tmp_path):
+    text = "radial_force;axial_force;;velocity;part\n-100;10;;60;x\n-200;20;;70;y\n"
+    with pytest.raises(
+        tr.InputError, match=r"line 1: table = 'velocity, part' stand beside the empty column 3.*Remove"
+    ):
+        cases(text, tmp_path)
+    edges = ";radial_force;axial_force;;\n;-100;10;;\n"
+    assert cases(edges, tmp_path) == {"radial_force": [-100.0], "axial_force": [10.0]}
+
+
+@pytest.mark.parametrize(("first", "last"), [("sep=\t\n", ""), ('"sep=\t"\n', ""), ("", "\x1a"), ("", "\x1a\r\n")])
+def test_lines_that_a_program_adds_are_no_cases(first, last, tmp_path):
+    text = f"{first}radial_force\tvelocity\r\n-100\t60\r\n{last}"
+    assert cases(text, tmp_path) == {"radial_force": [-100.0], "velocity": [60.0]}
+
+
+def test_a_separator_that_is_no_character_is_refused(tmp_path):
+    with pytest.raises(tr.InputError, match=r"line 1: table = 'sep=tab'.*such as sep=;"):
+        cases("sep=tab\nradial_force\tvelocity\n-100\t60\n", tmp_path)

@@ -36,12 +36,17 @@ def csv_lines(text: str, path: Path, field: str) -> tuple[Iterator[tuple[int, li
     InputError
         While the lines are read, if a quotation mark is missing or a cell is too long.
     """
-    lines = (line.strip() for line in io.StringIO(text, newline=None))
+    text = re.sub(r"\s*\x1a\s*\Z", "\n", text)  # Ctrl-Z, the end of a file of DOS
+    lines = (line.strip(" \r\n") for line in io.StringIO(text, newline=None))
     first = next(lines, "")
     stated = stated_separator(first)
+    if not stated and re.match(r'"?sep=', first, re.IGNORECASE):
+        allowed = "sep= and the character between the cells, such as sep=;"
+        raise InputError(field, first, allowed, "Correct or remove this line.").at(path, 1)
+    first = first.strip()
     if not stated and first[:1] not in ("", "#"):
         return _lines(text, path, field, _separator(first)), _separator(first)
-    head = next((line for line in lines if line and line[0] != "#"), "")
+    head = next((line for line in lines if line.strip() and line.strip()[0] != "#"), "")
     separator = stated or _separator(head)
     return _lines(text, path, field, separator, bool(stated)), separator
 

@@ -18,7 +18,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from trackroller.errors import Collector, InputError, raise_all
+from trackroller.errors import Collector, InputError, listing, raise_all
 from trackroller.files import MAX_BYTES, read_bytes, text_of
 from trackroller.numerics.cells import (
     Refused,
@@ -59,6 +59,11 @@ _STATISTICS = (
 )
 _STATISTIC = re.compile(r"\W*(?:{})\W*".format("|".join(_STATISTICS.split())), re.IGNORECASE)
 _EXCEL_ERROR = re.compile(r"#(?:DIV/0!|N/A|NAME\?|NULL!|NUM!|REF!|VALUE!|#+)", re.IGNORECASE)
+_STATED_UNIT = re.compile(
+    r"\[([^\[\]]{1,20})\]|\(([^()]{1,20})\)|\b(?:in|units?|einheit|einheiten)\b(?: is| =|:|=)? *([^\s,;:]{1,20})",
+    re.IGNORECASE,
+)
+_BARE_UNITS = ("N", "%", "lbf", "kgf", "kp")
 _OTHER_FORMATS = (".xls", ".xlsb", ".ods", ".fods", ".numbers")
 _OLD = "a workbook of the old format .xls, or one with a password"
 
@@ -121,7 +126,9 @@ def read_table(
         If the file is not readable, has only one line, or has heads that are no names.
     """
     lines, separator = _lines(path, field, what, most)
-    head, heads, lines = _split([(number, cells) for number, cells in lines if any(cells)])
+    filled = [(number, cells) for number, cells in lines if any(cells)]
+    head, heads, lines = _split(filled)
+    remarks = {number: " ".join(filter(None, cells)) for number, cells in filled if _is_comment(cells)}
     found = dict(_without_comments(lines, heads, path, field, wrong))
     if not heads or not found:
         raise InputError(field, str(path), f"a table with a line of names and at least one {what}")
@@ -137,6 +144,7 @@ def read_table(
         raise InputError(field, str(path), f"a table with at least one {what} below the units", "Add a line.")
     numbers = [j for j, name in enumerate(names) if name in UNITS or (name in used and table.all(j, is_number))]
     _read_numbers(table, numbers, units)
+    _check_remarks(table, {n: text for n, text in remarks.items() if n != head and n not in found}, path, field)
     _check_totals(table, numbers, path, field, what, wrong)
     _refuse_mixtures(table, numbers, used)
     _check_cells(table, optional, path, wrong)
@@ -265,6 +273,11 @@ def _without_unnamed(heads: list[str], found: dict[int, list[str]], field: str) 
             few = ", ".join(cells[:3])
             wrong = f"are cells of column {j + 1}, which has no name"
             raise InputError(field, few, "a name for each column", remedy, wrong)
+    inner = next((j for j in unnamed if any(k not in unnamed for k in range(j))), len(heads))
+    if beside := [head for j, head in enumerate(heads) if j > inner and j not in unnamed]:
+        wrong = f"stand{'s' * (len(beside) == 1)} beside the empty column {inner + 1}, as a second table does"
+        remedy = "Remove the empty column if these columns belong to the table, and these columns if not."
+        raise InputError(field, ", ".join(beside), "columns of one table", remedy, wrong)
     for line in found.values():
         line[:] = [cell for j, cell in enumerate(line) if j not in unnamed]
     return [head for j, head in enumerate(heads) if j not in unnamed]
@@ -336,6 +349,29 @@ def _read_units(table: UserTable, units: list[str], used: Collection[str], path:
         error.at(path, number)
     wrong.check()
     del table.lines[number]
+
+
+def _check_remarks(table: UserTable, remarks: dict[int, str], path: Path, field: str) -> None:
+    """Refuse a comment that states another unit for numbers of which neither the head nor the cells state one."""
+    names = [name for name in table.names if name in UNITS]
+    bare = [name for name in names if not any(map(_with_unit, table.column(table.names.index(name))))]
+    for number, text in itertools.islice(remarks.items(), HEAD_ROWS):
+        for unit in _units_of(text):
+            meant = [name for name in bare if unit != UNITS[name] and _is_unit(name, unit)]
+            meant = [name for name in meant if in_unit(1.0, unit, UNITS[name], name) != 1.0]
+            if meant:
+                allowed = "units at the heads of the columns"
+                remedy = f"Write {meant[0]} [{unit}] or {meant[0]} [{UNITS[meant[0]]}], or remove this line."
+                wrong = f"names the unit {unit}, and {listing(meant)} stand{'s' * (len(meant) == 1)} without a unit"
+                raise InputError(field, text, allowed, remedy, wrong).at(path, number)
+
+
+def _units_of(text: str) -> list[str]:
+    """Return the words of a comment that may be units: in brackets, behind 'in' or 'unit', or no word of plain text."""
+    stated = [next(filter(None, found)) for found in _STATED_UNIT.findall(text)]
+    words = re.sub(r"\d[\d.,]*\s*[^\s\d,;:=()\[\]]+", " ", text)  # without quantities such as 3 kN
+    others = [word.strip(".") for word in re.split(r"[\s,;:=#()\[\]]+", words)]
+    return [*stated, *(word for word in others if re.search(r"[A-ZµμΩ/%°]", word[1:]) or word in _BARE_UNITS)]
 
 
 def _is_unit(name: str, text: str) -> bool:
