@@ -10,7 +10,7 @@ from written_profiles import curve_of
 
 import trackroller as tr
 from trackroller.contact.drawn_profiles import cross_section
-from trackroller.contact.measured_points import TOLD, examined, in_order, noise_of
+from trackroller.contact.measured_points import TOLD, examined, gap, in_order, noise_of, waves
 from trackroller.contact.profiles import canonical
 from trackroller.materials import load_database
 from trackroller.roller.doubts import doubts_of_case
@@ -166,3 +166,48 @@ def test_a_noisy_fine_trace_is_smoothed_before_it_is_turned():
     assert shape.inner < -2.0 and shape.outer > 0.4
     u = np.linspace(-1.0, 0.4, 15)
     np.testing.assert_allclose(shape.slope(u), -u / np.sqrt(36 - u * u), atol=5e-3)
+
+
+def asked(x: np.ndarray, z: np.ndarray, **entries) -> str:
+    """Return what is asked about points."""
+    profile = {"points": np.column_stack([x, z]).tolist(), "frame": "section"} | entries
+    return " ".join(doubts_of_case(tr.Case(guide_profile=profile), load_database()))
+
+
+@pytest.mark.parametrize(("noise", "step", "error"), [(5e-3, 0.05, 0.19), (5e-3, 0.2, 0.25), (1e-3, 0.2, 0.13)])
+def test_noise_that_smoothing_cannot_remove_is_asked_about(noise, step, error):
+    """The errors were measured, see `LOUD`; 0.1 µm at 0.05 mm changes the pressure by 5 %."""
+    rng, x = np.random.default_rng(1), np.arange(-4.5, 4.5, step)
+    z = np.sqrt(36.0 - x**2)
+    loud = z + noise * rng.standard_normal(x.size)
+    assert examined(x, loud).error_if_smoothed == pytest.approx(error, rel=0.15)
+    assert "after smoothing, the pressure is wrong by about" in asked(x, loud, smooth="auto")
+    assert asked(x, z + 1e-4 * rng.standard_normal(x.size), smooth="auto") == ""
+
+
+@pytest.mark.parametrize(("height", "length"), [(3e-3, 0.5), (3e-3, 1.0), (1e-3, 0.5)])
+@pytest.mark.parametrize("noise", [0.0, 5e-6])
+def test_waves_are_told_with_their_size(height, length, noise):
+    z = Z + height * np.sin(2.0 * np.pi * X / length) + noise * np.random.default_rng(2).standard_normal(X.size)
+    found = waves(X, z, noise)
+    assert found is not None
+    assert found.length == pytest.approx(length, rel=0.3) and found.height == pytest.approx(height, rel=0.5)
+    assert "waves of ±" in asked(X, z, smooth="auto")
+
+
+def test_designed_curves_have_no_waves_however_their_points_lie():
+    rng = np.random.default_rng(3)
+    for _ in range(20):
+        x = np.sort(rng.uniform(-4.5, 4.5, int(rng.integers(12, 300))))
+        for z in (np.sqrt(36.0 - x**2), 0.1 * np.abs(x), np.where(np.abs(x) < 2, 0.0, (np.abs(x) - 2) ** 2 / 6)):
+            assert waves(x, z, 0.0) is None
+    assert waves(X, Z + 3e-6 * rng.standard_normal(X.size), 3e-6) is None
+
+
+@pytest.mark.parametrize(("start", "end"), [(1.0, 4.0), (-2.0, -1.4)])
+def test_a_length_without_points_is_told(start, end):
+    kept = (X <= start) | (X >= end)
+    assert X[kept][gap(X[kept])] == start
+    assert f"no points lie between x = {start:g} and {end:g} mm" in asked(X[kept], Z[kept])
+    assert gap(X) is None and gap(np.sort(np.concatenate([X[:60:3], X[60:]]))) is None
+    assert gap(np.linspace(-3.0, 3.0, 31) ** 3) is None  # dense in the middle

@@ -379,3 +379,49 @@ def test_a_missing_file_is_told_where_to_put(tmp_path, monkeypatch):
     (there / "link.csv").symlink_to(tmp_path / "outside.csv")
     with files_beside(there / "case.yaml"), pytest.raises(tr.InputError, match="a file below"):
         read_points("link.csv", "guide_profile.file")
+
+
+@pytest.mark.parametrize("mark", ["1.#QNAN", "-1.#IND", "1.#INF00", "1,#QNAN"])
+def test_marks_of_lost_points_are_no_remarks(mark, read):
+    """'#' begins a remark, and the 1 before it is no height."""
+    lines = lines_of("{x};{z}").split("\n")
+    lines[10] = f"-2;{mark}"
+    with pytest.raises(tr.InputError, match=r"c\.csv, line 11: .*is a point that was not measured"):
+        read("\n".join(lines))
+
+
+@pytest.mark.parametrize(
+    ("head", "scale"),
+    [
+        ("Scale 1:2\nx;z", "1:2"),
+        ("Massstab 10:1\nx;z", "10:1"),
+        ("# Überhöhung 10\nx;z", "10"),
+        ("# vertical exaggeration: 100x\nx;z", "100"),
+        ("# height magnified 10 times\nx;z", "10"),
+        ("x;10*z", "10"),
+        ("x;10z", "10"),
+        ("x;z x10", "10"),
+        ("x;z*10 [mm]", "10"),
+        ("x;z (x10)", "10"),
+        ("x [mm];z [mm] (10:1)", "10:1"),
+        ("# 10-fold\nx;z", "10"),
+        ("x;-z", "-1"),
+    ],
+)
+def test_a_scale_that_a_head_states_is_a_question(head, scale, read):
+    with pytest.raises(tr.InputError, match=rf"line 1: .*states a scale of {scale}, which is not applied.*Multiply"):
+        read(lines_of("{x};{z}", head))
+
+
+@pytest.mark.parametrize(
+    "head", ["scale 1:1\nx;z", "# Maßstab: 1\nx;z", "X2;Z2", "# measured 3 times on 2026-03-01 01:10\nx;z"]
+)
+def test_a_head_without_a_scale_is_read(head, read):
+    assert is_right(read(lines_of("{x};{z}", head)))
+
+
+@pytest.mark.parametrize(("units", "z"), [(",mm,um", 1e-3), (";mm;mm", 1.0), ("-\tmm\tµm", 1e-3), (",[mm],[um]", 1e-3)])
+def test_a_line_of_units_may_leave_out_the_count(units, z, read):
+    mark = next(mark for mark in ",;\t" if mark in units)
+    head = mark.join(["No.", "X", "Z"]) + f"\n{units}"
+    assert is_right(read(lines_of(mark.join(["{k}", "{x}", "{z}"]), head, (1.0, z))))

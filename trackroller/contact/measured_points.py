@@ -13,6 +13,14 @@ SAFETY = 1.05  # factor on the noise found in points: too little smoothing does 
 # 200 s/h: 2 % from TOLD on, 5 to 30 % from MISLEADING on (guide 6 mm, groove -7 mm, h from 0.01 to 0.2 mm).
 TOLD, MISLEADING = 2e-4, 1e-3
 
+# White noise of the deviation s at distances h, smoothed, changes the largest pressure of steel bodies by about
+# 10 % (s^2 h / LOUD)^0.2: 3 to 6 % at 1e-9 mm3, 17 to 43 % at 5e-6 (guide 6 mm, groove -7 mm, s from 0.1 to 5 um,
+# h from 0.01 to 0.2 mm). Waves whose curvature changes by WAVY of the median one change the pressure by 6 % and more.
+LOUD = 5e-8  # mm3
+WAVY, FLAT = 0.3, 5e-3  # of the median curvature; 1/mm, smallest change of the curvature that counts
+MOST_TURNS = 5  # of the curvature of a drawn section
+GAP = 8.0  # step over the median step, and over twice each step beside it, from which on it is a gap
+
 SAME = 1e-9  # mm; heights of one point that was written twice differ by no more
 LONGEST_RUN = 5  # points off the curve in a row that are found
 STEEP = 2.75  # tangent of 70 degrees; an instrument does not follow such a wall
@@ -67,10 +75,82 @@ class Findings(NamedTuple):
         return self.scatter / self.spacing
 
     @property
+    def error_if_smoothed(self) -> float:
+        """Return about how far the largest pressure of steel bodies is wrong if the scatter is smoothed, as a share."""
+        return float(0.1 * (self.scatter**2 * self.spacing / LOUD) ** 0.2)
+
+    @property
     def pressure_rise(self) -> str:
         """Return about how far the scatter can raise the largest pressure of steel bodies, in words."""
         rise = 200.0 * self.roughness
         return f"{float(f'{100 * rise:.1g}'):g} %" if rise < 1.0 else "a multiple"
+
+
+class Waves(NamedTuple):
+    """Waves on a section: number of turns of its curvature, length of a wave [mm], half its height [mm]."""
+
+    turns: int
+    length: float
+    height: float
+
+
+def waves(x: np.ndarray, z: np.ndarray, scatter: float) -> Waves | None:
+    """Return the waves on a section whose curvature goes to and fro, None if there are none.
+
+    The curvature is that of circles through three points. Arcs and lines have no waves, however their points lie.
+
+    Parameters
+    ----------
+    x, z : numpy.ndarray, shape (n,)
+        Points, x strictly increasing [mm].
+    scatter : float
+        Standard deviation of the scatter of z [mm]; the circles are so wide that it does not count.
+    """
+    usual = float(np.median(np.abs(_curvatures(x, z, max(1, x.size // 20)))))
+    least = max(WAVY * usual, FLAT)
+    wide = np.sqrt(2.5 * scatter / (0.1 * least))
+    apart = max(1, int(np.ceil(wide / float(np.median(np.diff(x))))))
+    if x.size < 4 * apart + FEWEST:
+        return None
+    changes = _changes(_curvatures(x, z, apart), least)
+    if len(changes) <= MOST_TURNS:
+        return None
+    length = 2.0 * float(x[-1] - x[0]) / len(changes)
+    return Waves(len(changes), length, 0.5 * float(np.median(changes)) * (length / (2.0 * np.pi)) ** 2)
+
+
+def _curvatures(x: np.ndarray, z: np.ndarray, apart: int) -> np.ndarray:
+    """Return the curvatures of the circles through points k, k + apart and k + 2 apart [1/mm], > 0 hollow."""
+    x0, x1, x2 = x[: -2 * apart], x[apart:-apart], x[2 * apart :]
+    z0, z1, z2 = z[: -2 * apart], z[apart:-apart], z[2 * apart :]
+    area = (x1 - x0) * (z2 - z0) - (x2 - x0) * (z1 - z0)
+    sides = np.hypot(x1 - x0, z1 - z0) * np.hypot(x2 - x1, z2 - z1) * np.hypot(x2 - x0, z2 - z0)
+    return np.asarray(2.0 * area / sides)
+
+
+def _changes(values: np.ndarray, least: float) -> list[float]:
+    """Return the changes of at least `least` between the places where values turn."""
+    changes: list[float] = []
+    start = extreme = float(values[0])
+    way = 0.0
+    for value in values.tolist():
+        if way * (value - extreme) > 0.0:
+            extreme = value
+        elif abs(value - extreme) >= least:
+            changes += [abs(extreme - start)] if way else []
+            start, extreme, way = extreme, value, float(np.sign(value - extreme))
+    return changes
+
+
+def gap(x: np.ndarray) -> int | None:
+    """Return the point behind which no points lie over a length that all others cover densely, None for none."""
+    steps = np.diff(x)
+    if steps.size < FEWEST:
+        return None
+    beside = np.maximum(steps[:-2], steps[2:])
+    wide = (steps[1:-1] > GAP * float(np.median(steps))) & (steps[1:-1] > 0.5 * GAP * beside)
+    places = np.flatnonzero(wide) + 1
+    return int(places[np.argmax(steps[places])]) if places.size else None
 
 
 def in_order(points: np.ndarray) -> np.ndarray:

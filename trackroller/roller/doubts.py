@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.measured_points import MISLEADING, TOLD, examined, in_order
+from trackroller.contact.measured_points import MISLEADING, TOLD, Findings, examined, gap, in_order, waves
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.units import in_unit
 from trackroller.parameters import PARAMETERS
@@ -36,6 +36,7 @@ USUAL: dict[str, tuple[float, float]] = {
     "permissible_wear_depth": (1e-4, 10.0),
 }
 FROM_ZERO = ("axial_force", "motor_force")  # small values are usual beside larger ones: only the largest counts
+UNSURE = 0.1  # error of the pressure, as a share, from which on smoothed points are asked about
 # ASSUME: magnesium to tungsten, and unfilled polyethylene to polymers with carbon fibres.
 METAL = {"youngs_modulus": (4e4, 4.5e5), "tensile_strength": (50.0, 4000.0), "density": (1500.0, 20000.0)}
 EXPONENT = (1.0, 100.0)  # of an S-N curve; welds have 3
@@ -177,7 +178,14 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
     if np.any(steps < 0):
         way = "run from large to small x" if np.all(steps <= 0) else "do not run in one direction"
         sentences.append(f"{name}: its points {way}; they were sorted by x.")
+    sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], found)]
     if profile.get("smooth"):
+        if found.error_if_smoothed >= UNSURE:
+            sentences.append(
+                f"{name}: its points scatter by {1e3 * found.scatter:.2g} µm at distances of {found.spacing:.2g} mm; "
+                f"after smoothing, the pressure is wrong by about {100 * found.error_if_smoothed:.0f} %. Measure with "
+                "less noise, or describe the shape by its radii (arc, arcs)."
+            )
         return sentences
     if found.runs or found.jumps:
         sentences.append(f"{name}: points lie off their neighbours, and smooth: 0 takes them as shape.")
@@ -188,6 +196,23 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
             f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, so that the scatter "
             f"counts as shape and can raise the pressure by {found.pressure_rise}; add smooth: auto, or the measured "
             f"noise, such as smooth: {noise} um{'' if meant else ', or smooth: 0 if it is meant'}."
+        )
+    return sentences
+
+
+def _gaps_and_waves(points: np.ndarray, found: Findings) -> list[str]:
+    """Return sentences about a length without points, and about waves that count as shape."""
+    sentences, (x, z) = [], points.T
+    if (place := gap(x)) is not None:
+        sentences.append(
+            f"no points lie between x = {x[place]:.4g} and {x[place + 1]:.4g} mm, and their usual distance is "
+            f"{found.spacing:.2g} mm; the curve there is only guessed. Measure this part if the bodies touch there."
+        )
+    if (wave := waves(x, z, found.scatter)) is not None and not found.runs:
+        height = f"{1e3 * wave.height:.2g}"
+        sentences.append(
+            f"its curvature goes to and fro {wave.turns} times, as waves of ± {height} µm and {wave.length:.2g} mm "
+            "length do; they count as shape. If they come from the measurement, describe the shape by its radii."
         )
     return sentences
 

@@ -37,14 +37,25 @@ CLEARLY = 2.0  # factor between the bends of two readings of a column from which
 EXPORT = "Export the position across the profile and the height as two columns of text, such as `x [mm]; z [mm]`."
 
 _LOST = re.compile(
-    r"|\*+|\?+|-+|[-+]?(?:nan|inf|infinity|∞)|#?n/?a!?|#?nv|null|none|bad|lost|over|overflow|invalid", re.IGNORECASE
+    r"|\*+|\?+|-+|[-+]?(?:nan|inf|infinity|∞)|#?n/?a!?|#?nv|null|none|bad|lost|over|overflow|invalid"
+    r"|[-+]?1[.,]#[a-z]+\d*",
+    re.IGNORECASE,
 )
-_REMARK = re.compile(r"#(?!n/?a\b|nv\b)", re.IGNORECASE)  # spreadsheets write #N/A, German ones #NV
+# spreadsheets write #N/A, German ones #NV; programs in C on Windows write 1.#QNAN, 1.#IND and 1.#INF
+_REMARK = re.compile(r"(?<!1[.,])#(?!n/?a\b|nv\b)", re.IGNORECASE)
 _WHOLE_REMARK = re.compile(r"[%!]|//|[;*]+(?=\s*[^\W\d_])[^;]*$")
 _DATE = re.compile(r"\d{1,4}[-./]\d{1,2}[-./]\d{1,4}\b")
 _PLAIN_SIGNS = dict.fromkeys(map(ord, DASHES), "-") | dict.fromkeys(map(ord, "\u00a0\u2007\u2009\u202f"), " ")
 _SCALE = re.compile(
-    r"(?:scal\w*|factors?|faktor|skal\w*|maßstab|magnification|multiplier|gain|facteur|échelle)(?:\W+[xyz])?\W+([-+\d.,eE]+)",
+    r"(?:scal\w*|factors?|faktor|skal\w*|ma(?:ß|ss)stab|magnif\w*|multiplier|gain|facteur|échelle|exaggerat\w*|zoom"
+    r"|überhöh\w*|ueberhoeh\w*|vergrößer\w*|vergroesser\w*|verstärk\w*|verstaerk\w*)(?:\W+[xyz])?"
+    r"\W+([-+\d.,eE]+(?:\s*[:/]\s*[\d.,]+)?)"
+    r"|(?<![\d:.,])((?:[125]|25)0*\s*:\s*1|1\s*:\s*(?:[125]|25)0*)(?![\d:.,])"
+    r"|(\d[\d.,]*)\s*-?\s*(?:fold|fach)\b",
+    re.IGNORECASE,
+)
+_TIMES = re.compile(  # in the cell of a name: `10*z`, `10z`, `z x10`, `z * 10`, `-z`
+    r"([-+]?\d[\d.,]*)\s*[*×·x]?\s*[xyz]\b.*|\b[xyz]\b.*?(?:[*×·]\s*|\sx\s?|\(x\s?)([-+]?\d[\d.,]*).*|([-−])\s*[xyz]\b.*",
     re.IGNORECASE,
 )
 
@@ -273,9 +284,20 @@ def _check_units(table: _Table, head: _Line | None, units: list[str]) -> None:
 def _check_scales(table: _Table) -> None:
     """Refuse a scale other than 1 in heads and remarks: nobody knows whether the numbers contain it."""
     for line in (*table.heads, *(remark for remark in table.remarks if remark.number < table.first)):
-        if (stated := _SCALE.search(line.text)) and number_or_nan(stated[1].replace(",", ".").rstrip(".")) != 1.0:
-            wrong = f"states a scale of {stated[1]}, which is not applied"
-            raise table.error(line, wrong, "points without a scale", "Multiply the numbers, or remove this line.")
+        cells = _head_cells(line.text, table.sign, table.width)
+        times = [found for cell in cells if (found := _TIMES.fullmatch(cell))] if len(cells) > 1 else []
+        for found in (*_SCALE.finditer(line.text), *times):
+            stated = next(filter(None, found.groups()))
+            stated = "-1" if stated in "-−" else stated
+            if _scale(stated) != 1.0:
+                wrong = f"states a scale of {stated}, which is not applied"
+                raise table.error(line, wrong, "points without a scale", "Multiply the numbers, or remove this line.")
+
+
+def _scale(text: str) -> float:
+    """Return the number of a scale such as '10', '2,5' or '1:2'; NaN for another text."""
+    parts = [number_or_nan(part.strip().replace(",", ".").rstrip(".")) for part in re.split("[:/]", text)]
+    return parts[0] / parts[1] if len(parts) == 2 and parts[1] else parts[0]
 
 
 def _wrong_line(text: str, cells: list[str], pair: Sequence[str], table: _Table) -> InputError:
@@ -385,7 +407,13 @@ def _head(table: _Table) -> tuple[_Line | None, list[str], list[str]]:
     for line in reversed(lines):
         cells = _head_cells(line.text, table.sign, table.width)
         bare = [_BRACKETS.sub(lambda found: found[found.lastindex or 0], cell).strip() for cell in cells]
-        if not units and len(cells) == table.width and all(cell.lower() in _LENGTHS for cell in bare):
+        stated = [cell.lower() in _LENGTHS for cell in bare]
+        if (
+            not units
+            and len(cells) == table.width
+            and sum(stated) > 1
+            and all(unit or cell in ("", "-") for cell, unit in zip(bare, stated, strict=True))
+        ):
             units = bare
             last = line
             continue
@@ -395,8 +423,8 @@ def _head(table: _Table) -> tuple[_Line | None, list[str], list[str]]:
         mark = table.sign.strip(" ")
         separated = line in table.heads and mark in line.text and mark != ""
         named = len(known) > 1 or (known and len(cells) == 1)
-        stated = all(_BRACKETS.search(cell) for cell in cells)
-        if separated or named or ((known or stated) and len(cells) == table.width and line in table.heads):
+        bracketed = all(_BRACKETS.search(cell) for cell in cells)
+        if separated or named or ((known or bracketed) and len(cells) == table.width and line in table.heads):
             return line, cells, units
         break
     return (last, units, units) if units else (None, [], [])
