@@ -44,7 +44,7 @@ class InputError(ValueError):
         self.line: int | None = None  # of the file, the first line being 1
         self.path: tuple[str, ...] = ()  # of the entry in the file, as far as `field` does not say it
         why = wrong or ("is missing or empty" if value is None else "is not usable")
-        what = f"{field} {why}" if value is None else f"{field} = {value!r} {why}"
+        what = f"{field} {why}" if value is None else f"{field} = {shortened(repr(value))} {why}"
         label = "Needed" if value is None else "Allowed"
         super().__init__(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy))))
 
@@ -74,6 +74,14 @@ class InputError(ValueError):
     def __reduce__(self):  # another process rebuilds the error from its parts
         parts = (self.field, self.value, self.allowed, self.remedy, self.wrong)
         return type(self), parts, {"file": self.file, "line": self.line, "path": self.path}
+
+
+MOST_CHARACTERS = 200  # of a value that a message shows
+
+
+def shortened(text: str) -> str:
+    """Return a text as a message shows it: of a long one the beginning and the end."""
+    return text if len(text) <= MOST_CHARACTERS else f"{text[:100]}...{text[-60:]}"
 
 
 MOST_SHOWN = 30  # errors of a file that a message names
@@ -184,7 +192,7 @@ MEANS = {  # names that a word of a designer stands for, the likeliest first
     "clearance gap play": "roller_profile_radius groove_depth axis_distance",
     "width": "roller_profile groove_depth",
     "lubrication lubricant oil grease": "friction_law friction_coefficient",
-    "mu µ μ": "friction_coefficient",
+    "mu mü mue µ μ": "friction_coefficient",
     "reliability survival confidence b10": "failure_probability failure_probabilities",
     "life lifetime": "pair_life_hours roller_life_hours guide_life_hours life_rule",
     "steel": "roller_material guide_material material_pair",

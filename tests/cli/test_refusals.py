@@ -30,8 +30,16 @@ STUDIES = {
     "a huge cell": (TABLE, b"axial_force,note\n1," + b"x" * 140_000 + b"\n2,b\n", "table"),
     "digits of another script in a table": (TABLE, "axial_force\n３\n4\n".encode(), "axial_force"),
     "an underscore in a table": (TABLE, b"axial_force\n3_0\n4\n", "axial_force"),
-    "a number too small for the computer": (TABLE, b"axial_force\n1e-400\n4\n", "1e-400 is too small"),
-    "a number too large for the computer": (TABLE, b"axial_force\n1e400\n4\n", "1e400 is too large"),
+    "a number too small for the computer": (
+        TABLE,
+        b"axial_force\n1e-400\n4\n",
+        "line 2: axial_force = '1e-400' is too small",
+    ),
+    "a number too large for the computer": (
+        TABLE,
+        b"axial_force\n1e400\n4\n",
+        "line 2: axial_force = '1e400' is too large",
+    ),
     "a file that is no YAML": ("name: [t\n", b"", "study or case file"),
     "a table named by its whole path": (TABLE.replace("cases.csv", "/etc/hostname"), b"", "table"),
     "a table above the folder": (TABLE.replace("cases.csv", "../cases.csv"), b"", "table"),

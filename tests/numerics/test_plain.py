@@ -15,6 +15,11 @@ from trackroller.numerics.numbers import written
 from trackroller.numerics.plain import mapping_of, plain
 
 
+def with_unit(values):
+    values.attrs["units"] = "kN"
+    return values
+
+
 @pytest.mark.parametrize(
     ("value", "expected"),
     [
@@ -34,6 +39,9 @@ from trackroller.numerics.plain import mapping_of, plain
         (pd.DataFrame({"a": [1, 2], "b": "c"}), [{"a": 1, "b": "c"}, {"a": 2, "b": "c"}]),
         (xr.DataArray([1.0, 2.0]), [1.0, 2.0]),
         (xr.DataArray([0.2], attrs={"units": "kN"}), ["0.2 kN"]),
+        (xr.DataArray([0.2], attrs={"Unit": "kN"}), ["0.2 kN"]),
+        (xr.DataArray([0.2], attrs={"units": "1"}), [0.2]),
+        (with_unit(pd.Series([0.2])), ["0.2 kN"]),
         (xr.Dataset({"a": 1}, coords={"b": 2}), {"a": 1, "b": 2}),
         (Decimal("0.15"), 0.15),
         (Decimal(8), 8),
@@ -52,11 +60,15 @@ def test_values_of_libraries(value, expected):
     assert repr(made) == repr(expected)  # the same types, too
 
 
-@pytest.mark.parametrize(
-    "value", [b"3", {1, 2}, np.ma.masked, np.longdouble(3), 1j, object()], ids=lambda v: type(v).__name__
-)
+@pytest.mark.parametrize("value", [b"3", {1, 2}, np.longdouble(3), 1j, object()], ids=lambda v: type(v).__name__)
 def test_other_values_stay_for_the_field_to_refuse(value):
     assert plain(value) is value
+
+
+@pytest.mark.parametrize("value", [np.ma.masked, np.ma.array([1.0, 2.0], mask=[False, True])], ids=["one", "some"])
+def test_masked_values_are_refused_with_the_call_to_write(value):
+    with pytest.raises(InputError, match=r"loads = .* Allowed: values that are not masked.*values\.compressed\(\)"):
+        plain({"loads": value}, "")
 
 
 def test_what_can_be_read_once_or_is_ambiguous_is_refused():

@@ -60,6 +60,11 @@ def test_a_number_that_no_computer_holds_is_refused_by_name(text):
         number_or_nan(text, "N", "axial_force")
 
 
+def test_a_number_of_400_figures_is_not_shown_in_full():
+    error = InputError("axial_force", "9" * 400, "a number")
+    assert len(str(error)) < 250 and error.value == "9" * 400
+
+
 def test_a_round_number_stays_round():
     """70 GPa and 70000 MPa must have one fingerprint."""
     for n in range(1, 400):

@@ -61,12 +61,42 @@ def test_a_condition_does_not_hold_where_a_value_is_not_known(text):
         ("9" * 400, "too large"),
         ("1e400 * x", "too large"),
         ("x + 1e-400", "too small"),
-        ("2(x)", "call at character 1"),
     ],
 )
 def test_odd_literals_are_refused_in_words(text, words):
     with pytest.raises(InputError, match=words):
         expressions.evaluate(text, COLUMNS)
+
+
+@pytest.mark.parametrize(
+    ("text", "remedy"),
+    [
+        ("x^2", r"the sign \^ .*Write \*\* for a power"),
+        ("x²", r"Write \*\* for a power"),
+        ("x // 2", "Write / for a quotient"),
+        ("0,5*x", "Write decimals with a point"),
+        ("max(0,5; x)", "Separate the arguments of a function by commas"),
+        ("x < 1,5", "Write decimals with a point"),
+        ("2(x)", r"Write \* for a product"),
+        ("2x", r"Write \* for a product"),
+        ("x × 2", r"Write \* for a product"),
+        ("x − 1", "Write - for a minus"),
+        ("x if n > 1 else 2", r"Write where\(condition, one, other\)"),
+        ("ln(x)", r"= 'ln' is not known. Allowed: the functions .* Write log\."),
+        ("np.sqrt(x)", r"= 'np.sqrt' is not known. .*Write sqrt\(...\)"),
+        ("math.pi * x", "Write sqrt.* and pi without"),
+        ("x <> 2", "Write != "),
+        ("x => 2", "Write <= or >="),
+        ("x && n", "Write and, or"),
+        ("sqrt(x", "Close each bracket once"),
+        ("x = 2", "Write == "),
+        ("lambda: 1", "neither arithmetic nor a comparison"),
+    ],
+)
+def test_signs_of_other_languages_are_refused_with_what_to_write(text, remedy):
+    with pytest.raises(InputError, match=remedy) as caught:
+        expressions.evaluate(text, COLUMNS)
+    assert not any(word in str(caught.value) for word in ("binop", "tuple", "ifexp", "attribute"))
 
 
 def test_any_row_of_tokens_is_evaluated_or_refused():

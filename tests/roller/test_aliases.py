@@ -105,6 +105,7 @@ FILES = {
     "both": "mu: 0.3\nfriction_coefficient: 0.3\n",
     "radii": "outer_radius: 25\ngroove_depth: 1.5\n",
     "axis": "axis_distance: 30\n",
+    "no radius": "outer_radius: wide\ngroove_depth: 1.5\n",
 }
 
 
@@ -134,6 +135,12 @@ def test_a_setting_wins_over_the_file_whichever_word_it_uses(file, words, wanted
         ("mu", ["friction_coefficient=9"], "^friction_coefficient = 9 "),
         ("axis", ["outer_radius=26"], "^outer_radius = 26 .* together with groove_depth"),
         ("both", ["axial_force=1"], "^line 2: friction_coefficient = 0.3 .* another name"),
+        ("no radius", ["axis_distance=22"], "^line 1: outer_radius = 'wide' "),
+        ("axis", ["mu="], "^--set = 'mu=' has no value"),
+        ("axis", ["mü=0.1"], "'mü' is not known. .*friction_coefficient"),
+        ("axis", ["mu=0,1"], "^friction_coefficient = '0,1' .*Write 0.1"),
+        ("axis", ["radial_force=-1.200,5 N"], "^radial_force = '-1.200,5 N' .*Write -1200.5 N"),
+        ("axis", ["mu=nan"], "^friction_coefficient = 'nan' .*such as 0.3, or leave it out"),
         ("axis", ["mu=0.1", "friction_coefficient=0.2"], "^friction_coefficient = 0.1 .* another name"),
     ],
 )

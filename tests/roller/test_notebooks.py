@@ -31,6 +31,8 @@ def expected():
         xr.Dataset({"axial_force": AXIAL}),
         xr.Dataset(coords={"axial_force": AXIAL}),
         xr.Dataset({"axial_force": ("case", [0.0, 0.07], {"units": "kN"})}),
+        xr.Dataset({"axial_force": ("case", [0.0, 0.07], {"Unit": "kN"})}),
+        xr.Dataset({"axial_force": ("case", np.array([0, 0.07], dtype=object), {"units": "kN"})}),
         xr.Dataset(coords={"axial_force": [0.0, 70.0]}).stack(case=["axial_force"]),
         pd.DataFrame({"axial_force": [0, 70]}).to_xarray().rename(index="case"),
         pd.DataFrame({"axial_force": [0, 70]}),
@@ -38,7 +40,7 @@ def expected():
         pd.Series([{"axial_force": 0}, {"axial_force": np.int64(70)}]),
         np.array([{"axial_force": 0}, {"axial_force": Decimal(70)}], dtype=object),
     ],
-    ids=range(9),
+    ids=range(11),
 )
 def test_cases_of_any_form(cases, expected):
     assert np.array_equal(forces(cases), expected)

@@ -39,6 +39,10 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
             raise InputError("--set", word, "key=value", "For example --set friction_coefficient=0.1")
         if len(word.splitlines()) > 1:
             raise InputError("--set", word, "one key=value on one line", "Give --set once for each key.")
+        if not value.strip():
+            raise InputError(
+                "--set", word, "key=value", f"Give a value, or leave --set {key.strip()} out.", "has no value"
+            )
         settings[key.strip()] = parse_yaml(value, f"--set {key}")
     return settings
 

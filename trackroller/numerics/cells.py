@@ -147,6 +147,21 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
     return f"{sign.strip('+')}{whole}{'.' * bool(decimals)}{decimals}{rest}"
 
 
+def plain_quantity(text: str) -> str:
+    """Return a number with its unit as the program writes it; '' for a text that is none, or that is so already.
+
+    Examples
+    --------
+    >>> plain_quantity("0,1"), plain_quantity("-1 200,5 N"), plain_quantity("−1.200,5"), plain_quantity("0.1")
+    ('0.1', '-1200.5 N', '-1200.5', '')
+    """
+    try:
+        plain = plain_cell(text, decimal_signs([text]))
+    except AmbiguousNumber:
+        return ""
+    return plain if plain != text and (is_number(plain) or split_quantity(plain)) else ""
+
+
 def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
     """Return the cells of a column of numbers as `plain` does, but fast where all are plain numbers already.
 

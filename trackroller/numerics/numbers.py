@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError
+from trackroller.numerics.cells import plain_quantity
 from trackroller.numerics.units import in_unit, split_quantity
 
 _TEXT = re.compile(r"[-+]?(?:(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?|\.?(?:inf|Inf|INF)|infinity)", re.ASCII)
@@ -51,7 +52,8 @@ def read_number(value: Any) -> float:
             return float(text.lstrip("."))
         number = float(text)
         if math.isinf(number) or (number == 0 and re.search("[1-9]", re.split("[eE]", text)[0])):
-            raise RangeError(f"{text} is too {'large' if number else 'small'} for a number of the computer")
+            size = "large" if number else "small"
+            raise RangeError(f"is too {size} for a number of the computer")
         return number
     try:
         with np.errstate(over="raise"):
@@ -70,7 +72,7 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
     unit : str, optional
         Unit of the number, '-' for none; a text may then have a unit that can be converted to it, such as '70 GPa'.
     field : str
-        Name of the field, for messages on the unit.
+        Name of the field, for messages on the unit and on numbers that no computer holds; without it these are NaN.
     difference : bool
         Whether the number is the difference of two values, see `in_unit`.
 
@@ -88,7 +90,11 @@ def number_or_nan(value: Any, unit: str | None = None, field: str = "", differen
     try:
         number = read_number(parts[0] if parts else value)
     except RangeError as exc:
-        raise InputError(field or "number", value, str(exc)) from None
+        if not field:
+            return math.nan
+        allowed = "0, and numbers between 1e-307 and 1e308 in size"
+        remedy = "Write inf for infinity." if "large" in str(exc) else "Write 0 if it is meant."
+        raise InputError(field, value, allowed, remedy, str(exc)) from None
     except ValueError:
         return math.nan
     return number if unit is None or parts is None else in_unit(number, parts[1], unit, field, difference)
@@ -127,7 +133,8 @@ def number_in(
     """
     number = number_or_nan(value, unit, field)
     if not lower <= number <= upper:
-        raise InputError(field, value, allowed)
+        plain = plain_quantity(value) if isinstance(value, str) else ""
+        raise InputError(field, value, allowed, f"Write {plain}." if plain else "")
     return number
 
 

@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.numerics.cells import plain_quantity
+
 SMALLEST = 1e-6  # least size of a number that must not be 0
 
 
@@ -72,11 +74,24 @@ class Parameter:
         parts.append("finite or inf" if self.allow_infinite else "finite")
         return f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
 
-    def remedy(self, value: float) -> str:
-        """Return what to write instead of a value that only has the wrong sign; '' for any other value."""
-        if not math.isfinite(value) or not self.accepts(-value):
-            return ""
-        return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
+    def remedy(self, value: float, written: object = None) -> str:
+        """Return what to write instead of a value that is not allowed.
+
+        Parameters
+        ----------
+        value : float
+            The number that was read, NaN if it is none.
+        written : object
+            What the user wrote.
+        """
+        if math.isfinite(value) and self.accepts(-value):
+            return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
+        plain = plain_quantity(written) if isinstance(written, str) else ""
+        if plain:
+            return f"Write {plain}."
+        example = "" if math.isnan(self.default) else f", such as {self.default:g}"
+        left_out = "" if not self.allow_missing else ", or leave it out"
+        return f"Write a number that is allowed{example}{left_out}."
 
     def accepts(self, value: np.ndarray | float) -> Any:
         """Return which values are allowed, elementwise, a bool array of the shape of `value`; a bool for a number."""

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError
+from trackroller.numerics.units import stated_unit
 
 _PLAIN = (float, int, str, bool, type(None))
 MOST_LEVELS = 40  # of lists in lists
@@ -33,13 +34,13 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     -------
     object
         Numbers, texts, lists and dicts. A data frame is a list of its rows, each a dict. A number with a unit, of pint
-        or in the attribute `units`, is a text such as '0.2 kN'. Other objects, such as sets and masked values, are
-        returned as they are: whoever reads the field refuses them.
+        or in the attribute `units` or `unit`, is a text such as '0.2 kN'. Other objects, such as sets, are returned as
+        they are: whoever reads the field refuses them.
 
     Raises
     ------
     InputError
-        For an iterator, for a data frame with two columns of one name, and for lists that contain themselves.
+        For an iterator, masked values, a data frame with two columns of one name, and lists that contain themselves.
 
     Examples
     --------
@@ -61,6 +62,9 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
         }
     if hasattr(value, "columns") and hasattr(value, "to_dict"):
         return [plain(row, field, level + 1) for row in rows_of(value, field)]
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        remedy = "Give the values that count, such as values.compressed()."
+        raise InputError(field, str(value), "values that are not masked", remedy)
     if isinstance(value, Iterator):
         raise InputError(field, type(value).__name__, "a list, which can be read twice", "Write list(...) around it.")
     if isinstance(value, (Sequence, KeysView, ValuesView)) and not isinstance(value, (str, bytes, bytearray)):
@@ -72,12 +76,12 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
 
 def _array(value: Any) -> Any:
     """Return an array, a column or a scalar of NumPy as a list or a number; what cannot be one as it is."""
-    if hasattr(value, "dims"):  # xarray
-        unit = str(value.attrs.get("units", "")).strip() if hasattr(value, "attrs") else ""
+    unit = stated_unit(value.attrs) if hasattr(value, "attrs") else ""
+    if hasattr(value, "dims") or unit:  # xarray, or a column of pandas
         own = np.asarray(value.values)
-        return _with_unit(own, unit) if unit not in ("", "1", "-") and own.dtype.kind in "fiu" else own
+        return _with_unit(own, unit) if unit and own.dtype.kind in "fiu" else own
     if isinstance(value, np.ma.MaskedArray):
-        return value if np.ma.is_masked(value) else value.filled()
+        return value.filled()
     if isinstance(value, np.ndarray) and value.dtype.names:
         return value
     if getattr(value, "dtype", None) in (np.float16, np.float32):  # 0.1 stays 0.1

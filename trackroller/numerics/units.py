@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import functools
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from trackroller.errors import InputError
@@ -25,6 +25,13 @@ def split_quantity(value: Any) -> tuple[str, str] | None:
     value = re.sub(rf"^(\s*{_NUMBER})\s*/", r"\1 1/", value, flags=re.ASCII) if isinstance(value, str) else ""  # 10/min
     parts = _QUANTITY.fullmatch(value)
     return (parts[1], parts[2]) if parts else None
+
+
+def stated_unit(attributes: Mapping[Any, Any]) -> str:
+    """Return the unit that attributes of an array state as `units` or `unit`, in any case; '' for none."""
+    stated = {str(key).lower(): str(value).strip() for key, value in attributes.items()}
+    unit = stated.get("units") or stated.get("unit", "")
+    return "" if unit in PLAIN else unit
 
 
 def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -> str:

@@ -25,7 +25,7 @@ import numpy as np
 
 from trackroller.errors import InputError, unknown_name
 from trackroller.numerics.units import split_quantity
-from trackroller.parameters.syntax_checks import check_tree
+from trackroller.parameters.syntax_checks import check_tree, not_allowed, syntax_remedy, unknown_function
 
 MAX_LENGTH = 500  # characters; a longer calculation belongs in a script
 
@@ -229,7 +229,8 @@ def _tree(text: str, field: str) -> ast.expr:
     except InputError:
         raise
     except SyntaxError as exc:
-        raise InputError(field, text, "", _REMEDY, f"has a syntax error at character {exc.offset}") from None
+        wrong = f"has a syntax error at character {max(exc.offset or 1, 1)}"
+        raise InputError(field, text, "", syntax_remedy(text) or _REMEDY, wrong) from None
     except (RecursionError, MemoryError, ValueError):
         raise InputError(field, text, "", _REMEDY, "has too deep brackets, or is not a text") from None
 
@@ -335,7 +336,9 @@ class _Evaluation:
                 sides = [self.value(part) for part in (left, *rest)]
                 held = [self.compared(*part, node) for part in zip(ops, sides, sides[1:], strict=False)]
                 return self.joined(np.logical_and, held)  # a part of constants has another shape
-        raise self.refused(node, type(node).__name__.lower())
+            case ast.Call() if error := unknown_function(node, FUNCTIONS, self.field):
+                raise error
+        raise self.refused(node, *not_allowed(node))
 
     def joined(self, join: Any, parts: list[_Truth]) -> _Truth:
         """Return several comparisons joined; they are decided where each of them is."""
@@ -396,9 +399,9 @@ class _Evaluation:
         word = next((one for one in np.asarray(value, dtype=object).flat if isinstance(one, str)), None)
         told = "" if word is None else f" ('{word}')"
         units = "Only parameters take units: write the numbers of a factor of your own without them."
-        return self.refused(node, f"arithmetic with a text{told}", units if split_quantity(word) else _REMEDY)
+        return self.refused(node, f"arithmetic with a text{told}", units if split_quantity(word) else "")
 
-    def refused(self, node: ast.AST, what: str, remedy: str = _REMEDY) -> InputError:
+    def refused(self, node: ast.AST, what: str, remedy: str = "") -> InputError:
         at = getattr(node, "col_offset", 0) + 1
         return InputError(
             self.field, self.text, "", remedy or _REMEDY, f"holds {what} at character {at}, which is not allowed"

@@ -3,13 +3,82 @@
 from __future__ import annotations
 
 import ast
+import re
+from collections.abc import Collection
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, unknown_name
 from trackroller.parameters import PARAMETERS
 
 MAX_DEPTH = 60  # of the syntax tree
 TRIGONOMETRIC = ("sin", "cos", "tan")
 DEGREES = frozenset(name for name, parameter in PARAMETERS.items() if parameter.unit == "deg")
+
+_COMMA = "Write decimals with a point, such as 0.5."
+_MULTIPLY = "Write * for a product."
+_POWER = "Write ** for a power, such as x ** 2."
+_SYNTAX = {  # what a person writes who expects another language -> what to write
+    r"[²³]": _POWER,
+    r"[×·⋅]|\d\s*[^\W\d]|\)\s*[\w(]": _MULTIPLY,
+    "[\u2010-\u2013\u2212]": "Write - for a minus; the text has another dash.",
+    r"√": "Write sqrt(x) for a root.",
+    r"<>|≠": "Write != for 'not equal'.",
+    r"=[<>]|[≤≥]": "Write <= or >=.",
+    r"&&|\|\|": "Write and, or.",
+    r";": "Separate the arguments of a function by commas, and write decimals with a point.",
+    r"(?<![<>=!])=(?!=)": "Write == for 'equal'.",
+    r"%": "Write a share of 5 % as 0.05; % is the remainder of a division.",
+}
+_NODES: dict[type[ast.AST], tuple[str, str]] = {
+    ast.BitXor: ("the sign ^", _POWER),
+    ast.FloorDiv: ("the sign //", "Write / for a quotient."),
+    ast.MatMult: ("the sign @", _MULTIPLY),
+    ast.BitAnd: ("the sign &", "Write and."),
+    ast.BitOr: ("the sign |", "Write or."),
+    ast.Invert: ("the sign ~", "Write not."),
+    ast.Tuple: ("a comma outside a function", _COMMA),
+    ast.IfExp: ("if and else", "Write where(condition, one, other)."),
+    ast.Attribute: ("names joined by a point", "Write sqrt(x) and pi without np. or math. before them."),
+    ast.Call: ("named arguments", "Write the arguments of a function without names."),
+    ast.Is: ("the word is", "Write ==."),
+    ast.IsNot: ("the words is not", "Write !=."),
+    ast.In: ("the word in", "Compare with each value, as in x == 1 or x == 2."),
+    ast.NotIn: ("the words not in", "Compare with each value, as in x != 1 and x != 2."),
+}
+_OTHER_NAMES = {"ln": "log", "pow": "**", "lg": "log10", "sqr": "** 2", "if": "where"}
+
+
+def syntax_remedy(text: str) -> str:
+    """Return what to write in a text that is no expression; '' if nothing is known."""
+    if text.count("(") != text.count(")"):
+        return "Close each bracket once."
+    found = (remedy for pattern, remedy in _SYNTAX.items() if re.search(pattern, text))
+    return next(found, "")
+
+
+def not_allowed(node: ast.AST) -> tuple[str, str]:
+    """Return in words what is not allowed at a node, and what to write instead, '' if nothing is known."""
+    if isinstance(node, ast.Call) and not isinstance(node.func, ast.Name):
+        return "no function before a bracket", _MULTIPLY
+    parts = [node, getattr(node, "op", None), *getattr(node, "ops", ())]
+    known = next((_NODES[type(part)] for part in parts if type(part) in _NODES), None)
+    return known or ("a part that is neither arithmetic nor a comparison", "")
+
+
+def unknown_function(node: ast.Call, functions: Collection[str], field: str) -> InputError | None:
+    """Return the error for a function that is not known, None for another call."""
+    name = ast.unparse(node.func).rpartition(".")[2]
+    if (name in functions and isinstance(node.func, ast.Name)) or not isinstance(node.func, (ast.Name, ast.Attribute)):
+        return None
+    error = unknown_name(f"{field} (character {node.col_offset + 1})", name, functions)
+    instead = f"Write {name}(...) without a name before it." if name in functions else ""
+    instead = f"Write {_OTHER_NAMES[name]}." if _OTHER_NAMES.get(name) else instead
+    return InputError(
+        error.field,
+        ast.unparse(node.func),
+        "the functions " + ", ".join(functions),
+        instead or error.remedy,
+        error.wrong,
+    )
 
 
 def check_tree(tree: ast.expr, text: str, field: str) -> None:

@@ -45,9 +45,13 @@ def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
 def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
     """Return the values of a file with those of the command line in their place, whichever name each of them has.
 
-    An axis distance takes the place of both radii of the roller, and a radius that of the axis distance.
+    An axis distance takes the place of both radii of the roller, which must be lengths all the same, and a radius takes
+    the place of the axis distance.
     """
     given = renamed(given)
+    for name in RADII if "axis_distance" in given else ():
+        if name in values:
+            radius(name, values[name])
     instead = {*given, *(RADII if "axis_distance" in given else ())}
     instead |= {"axis_distance"} if set(RADII) & set(given) else set()
     return renamed({name: value for name, value in values.items() if ALIASES.get(name, name) not in instead}) | given

@@ -17,7 +17,7 @@ from trackroller.errors import Collector, InputError, check_names, raise_all, un
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.numerics.plain import how_to_write, mapping_of, plain, rows_of
 from trackroller.numerics.rows import once_each
-from trackroller.numerics.units import in_unit
+from trackroller.numerics.units import in_unit, stated_unit
 from trackroller.parameters import (
     FRICTION_LEVELS,
     MAPPING_FIELDS,
@@ -170,10 +170,10 @@ angle [deg], >= 1e-06 deg, < 90 deg, finite
         if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
             return math.nan
         if value is not None and isinstance(value, float) and math.isnan(value):
-            raise InputError(name, value, parameter.allowed())
+            raise InputError(name, value, parameter.allowed(), parameter.remedy(value))
         given = number(name, value)
         if not parameter.accepts(given):
-            raise InputError(name, value, parameter.allowed(), parameter.remedy(given))
+            raise InputError(name, value, parameter.allowed(), parameter.remedy(given, value))
         object.__setattr__(self, name, None if math.isnan(given) else given)
         return given
 
@@ -354,12 +354,16 @@ def _along_case(dims: tuple[Any, ...]) -> tuple[str, str]:
 
 
 def _in_own_unit(name: str, variable: Any) -> np.ndarray:
-    """Return the values of a parameter in its unit; the attribute `units` may name another one."""
-    values, unit = variable.values, str(variable.attrs.get("units", "")).strip()
-    own = PARAMETERS.get(name)
-    if own is None or unit in ("", "1", "-", own.unit, own.units) or values.dtype.kind not in "fiu":
-        return np.asarray(values)
-    return np.array([in_unit(float(one), unit, own.unit, name) for one in np.ravel(values)]).reshape(values.shape)
+    """Return the values of a parameter in its unit; the attribute `units` or `unit` may name another one."""
+    values, unit, own = np.asarray(variable.values), stated_unit(variable.attrs), PARAMETERS.get(name)
+    if own is None or unit in ("", own.unit, own.units) or values.dtype.kind not in "fiuO":
+        return values
+    found = [in_unit(float(one), unit, own.unit, name) if _is_number(one) else one for one in np.ravel(values)]
+    return np.array(found, dtype=values.dtype if values.dtype.kind == "O" else float).reshape(values.shape)
+
+
+def _is_number(value: Any) -> bool:
+    return isinstance(value, (int, float, np.number)) and not isinstance(value, bool)
 
 
 def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.ndarray]:
@@ -379,8 +383,9 @@ def _checked_numbers(columns: Mapping[str, np.ndarray], n: int) -> dict[str, np.
         good = parameter.accepts(numbers[name])
         if not good.all():
             bad = int(np.argmin(good))
-            remedy = parameter.remedy(float(numbers[name][bad]))
-            raise InputError(f"{name} (case {bad})", raw[bad : bad + 1].tolist()[0], parameter.allowed(), remedy)
+            value = raw[bad : bad + 1].tolist()[0]
+            remedy = parameter.remedy(float(numbers[name][bad]), value)
+            raise InputError(f"{name} (case {bad})", value, parameter.allowed(), remedy)
     return numbers
 
 
@@ -391,7 +396,7 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     ----------
     cases : Case, mapping, list or data frame of them, or xarray.Dataset
         A data set has one variable or coordinate for each parameter along the dimension `case`, in the unit of its
-        attribute `units` if it has one. Parameters that it does not name take their default.
+        attribute `units` or `unit` if it has one. Parameters that it does not name take their default.
     database : MaterialDatabase, optional
         The materials; by default the built-in ones with the user's own over them.
 

@@ -12,7 +12,7 @@ import numpy as np
 from trackroller.contact import friction_laws, profiles
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
-from trackroller.numerics.numbers import number_in
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.rows import once_each
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.parameters.example import EXAMPLE
@@ -80,7 +80,10 @@ def number(name: str, value: Any) -> float:
         return math.nan
     if isinstance(value, float) and math.isnan(value):  # the caller checks whether the parameter may be left out
         return math.nan
-    return number_in(value, name, parameter.allowed(), unit=parameter.unit)
+    given = number_or_nan(value, parameter.unit, name)
+    if math.isnan(given):
+        raise InputError(name, value, parameter.allowed(), parameter.remedy(given, value))
+    return given
 
 
 def own_friction(law: Any) -> float:

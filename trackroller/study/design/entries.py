@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
-from trackroller.errors import InputError, nearest, unknown_name
+from trackroller.errors import InputError, listing, nearest, unknown_name
 from trackroller.methods.factor import LISTS, parse
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
@@ -166,7 +166,7 @@ def _number(name: str, value: Any, where: str) -> Any:
         return value
     number = number_or_nan(value, parameter.unit, where)
     if math.isnan(number) or not parameter.accepts(number):
-        remedy = parameter.remedy(number)
+        remedy = parameter.remedy(number, value)
         if isinstance(value, list):
             remedy = f"Give several values under factors: {{{name}: {{values: {value}}}}}."
         if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
@@ -195,7 +195,7 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
     where = f"factors.{key}"
     own = key not in FACTOR_NAMES
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
-        raise unknown_name("factors", str(key), (*FACTOR_NAMES, *ALIASES, *RADII), OPTIONS)
+        raise _unused(str(key), factors)
     if isinstance(spec, Mapping):
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
     checked = parse(key, spec)
@@ -209,8 +209,24 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
 
 def _used(name: str, factors: Mapping[Any, Any]) -> bool:
     """Return whether the expression of another factor uses the name."""
+    return name in _in_expressions(factors)
+
+
+def _in_expressions(factors: Mapping[Any, Any]) -> set[str]:
+    """Return the names that the expressions of factors use."""
     texts = [s["expression"] for s in factors.values() if isinstance(s, Mapping) and "expression" in s]
-    return any(isinstance(t, str) and name in expressions.names(t, "factors") for t in texts)
+    return set().union(*(expressions.names(text, "factors") for text in texts if isinstance(text, str)))
+
+
+def _unused(name: str, factors: Mapping[Any, Any]) -> InputError:
+    """Return the error for a factor that is neither a parameter nor a name of an expression."""
+    error = unknown_name("factors", name, (*FACTOR_NAMES, *ALIASES, *RADII), OPTIONS)
+    unknown = sorted(_in_expressions(factors) - {*FACTOR_NAMES, *map(str, factors)})
+    if not unknown:
+        return error
+    allowed = "parameters, and names that an expression of another factor uses"
+    remedy = f"The expressions use {listing(unknown)}, which is no factor: give both the same name."
+    return InputError("factors", name, allowed, remedy, "is not known")
 
 
 def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
