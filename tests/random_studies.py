@@ -62,7 +62,7 @@ def random_study(seed: int) -> xr.Dataset:
 def _constraints(columns: dict[str, np.ndarray], results: dict, rng: np.random.Generator) -> list[str]:
     """Return constraints on a factor, a list, a result or the regime as 'name operator value'; often none."""
     limits = ["regime != lift_off"] if "regime" in results else []
-    for name, values in {**columns, "roller_peak_stress": results["peak_stress"][1][:, :, 0].max(axis=1)}.items():
+    for name, values in {**columns, "peak_stress_roller": results["peak_stress"][1][:, :, 0].max(axis=1)}.items():
         if name in ("material_pair", "motor_force"):
             limits.append(f"{name} != {values[rng.integers(len(values))].item()!r}")
         elif np.isfinite(values).all():

@@ -205,7 +205,7 @@ MEANS = {  # names that a word of a designer stands for, the likeliest first
     "limit": "constraints analysis stop_if",
     "variable parameter": "factors base",
     "tolerance resolution mesh": "accuracy",
-    "stress": "peak_stress roller_peak_stress guide_peak_stress stress_bodies",
+    "stress": "peak_stress peak_stress_roller peak_stress_guide stress_bodies",
     "hours days years shift": "duty guide_overrollings_per_hour",
 }
 _MEANS = {word: names.split() for words, names in MEANS.items() for word in words.split()}

@@ -73,7 +73,7 @@ def test_columns_hold_every_bit_of_the_study(study):
     wanted = view.table["guide_curve_radius"].to_numpy()
     assert np.array_equal(np.array([float(level) for level in levels])[codes], wanted)
     peak = study["peak_stress"].isel(contact=1, body=0).values.ravel()
-    assert np.array_equal(found["peak_stress[2,roller]"], peak.astype("f4"), equal_nan=True)
+    assert np.array_equal(found["peak_stress_roller_2"], peak.astype("f4"), equal_nan=True)
 
 
 def test_states_tell_every_case_that_is_left_out(study):

@@ -106,7 +106,7 @@ def test_every_text_has_at_least_seven_points(make):
 def test_a_sample_shows_medians_and_bands_and_is_not_coloured_by_its_own_fit():
     ds = sampled_study(300)
     names = ["friction_coefficient", "roller_profile_radius", "axial_force", "motor_force", "material_pair"]
-    share = xr.DataArray([[0.1, 0.3, 0.1, 0.0, 0.2]], {"output": ["roller_peak_stress"], "factor": names})
+    share = xr.DataArray([[0.1, 0.3, 0.1, 0.0, 0.2]], {"output": ["peak_stress_roller"], "factor": names})
     view = view_of(ds, xr.Dataset({"first": share}, attrs={"method": "lhs"}))
     with style.look():
         figure, info = stress_against_fit(view)
@@ -372,7 +372,7 @@ def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_fil
     names = ("material_pair", "friction_coefficient", "axial_force")
     sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.1, 0.2, 0.7]
     assert list(ranked_factors(sens, "roller_life_hours", names)) == ["axial_force", "friction_coefficient", names[0]]
-    sens["main_share"].loc[{"output": "roller_peak_stress"}] = [0.2, 0.5, 0.3]
+    sens["main_share"].loc[{"output": "peak_stress_roller"}] = [0.2, 0.5, 0.3]
     assert next(iter(ranked_factors(sens, "peak_stress_roller", names))) == "friction_coefficient"
     assert (
         list(ranked_factors(sens, "no_such_output", names)) == list(names) == list(ranked_factors(None, "slip", names))

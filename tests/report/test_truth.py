@@ -53,7 +53,7 @@ class Raw:
         if name == "regime":
             return self.regime != ("rolling", "full_slip", "lift_off", "failed").index(limit)
         limit = limit.strip("'") if name == "material_pair" else float(limit)
-        own = self.column("peak_stress_roller") if name == "roller_peak_stress" else self.columns[name]
+        own = self.column(name) if name == "peak_stress_roller" else self.columns[name]
         met = {"<": own < limit, ">=": own >= limit} if how != "!=" else {"!=": own != limit}
         return met[how]
 

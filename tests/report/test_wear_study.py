@@ -28,8 +28,8 @@ factors:
 outputs: [forces, contact, peak_stress, life, wear, limits]
 contact_model: sliding
 accuracy: preview
-analysis: {outputs: [run_in_distance, roller_wear_life_hours, guide_wear_life_hours]}
-pareto: {roller_wear_life_hours: max, max_pressure: min}
+analysis: {outputs: [run_in_distance, wear_life_hours_roller, wear_life_hours_guide]}
+pareto: {wear_life_hours_roller: max, max_pressure: min}
 chunk_size: 8
 """
 
@@ -63,10 +63,10 @@ def test_sentences_on_wear(study):
 
 def test_run_in_and_wear_life_are_axes_goals_and_analysed(study):
     columns = {column.name: column for column in collect(study.view)}
-    for name in ("run_in_distance", "roller_wear_life_hours", "guide_wear_life_hours"):
+    for name in ("run_in_distance", "wear_life_hours_roller", "wear_life_hours_guide"):
         assert columns[name].role == "output" and columns[name].log
         assert name in study.indices().output.values
-    assert "roller_wear_life_hours:beyond" not in columns  # no S-N data behind it
+    assert "wear_life_hours_roller:beyond" not in columns  # no S-N data behind it
     assert len(study.pareto()) > 0
 
 

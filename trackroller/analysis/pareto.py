@@ -247,13 +247,9 @@ def default_objectives(ds: xr.Dataset) -> dict[str, str]:
     if lives:
         goals[lives[0]] = "max"
     elif "life_cycles" in ds:
-        goals["roller_life_cycles"] = "max"
-    for name, variable in (
-        ("friction_power", "friction_power"),
-        ("friction_energy", "friction_energy_per_distance"),
-        ("max_pressure", "max_pressure"),
-    ):
-        if variable in ds and len(goals) == 1:
+        goals["life_cycles_roller"] = "max"
+    for name in ("friction_power", "friction_energy_per_distance", "max_pressure"):
+        if name in ds and len(goals) == 1:
             goals[name] = "min"
     return goals if len(goals) == 2 else {}
 

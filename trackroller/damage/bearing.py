@@ -16,6 +16,7 @@ import numpy as np
 from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
+from trackroller.numerics.variable import LIFE
 
 LIFE_EXPONENT = {"ball": 3.0, "roller": 10.0 / 3.0}
 WEIBULL = {"ball": 10.0 / 9.0, "roller": 9.0 / 8.0}  # slope of the lives, also of rows that run together
@@ -182,7 +183,7 @@ LIMIT = Limit(
     verdict=verdict,
     results=variables(
         "bearing",
-        ("bearing_life_hours", (), "h", "L_10h", "basic rating life of the bearing inside (10 % failed)"),
+        ("bearing_life_hours", (), "h", "L_10h", "basic rating life of the bearing inside (10 % failed)", LIFE),
         ("bearing_static_safety", (), "1", "C_0/P_0", "static safety of the bearing inside"),
         ("bearing_utilisation", (), "1", "", "largest of P_0/C_0, moment and radial force over what is permissible"),
     ),

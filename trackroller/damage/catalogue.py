@@ -7,6 +7,7 @@ import numpy as np
 from trackroller.damage.bearing import Loads
 from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables
 from trackroller.damage.mapping import MappingField
+from trackroller.numerics.variable import LIFE
 
 LAWS = ("dry", "lubricated", "cubic")
 
@@ -74,7 +75,7 @@ LIMIT = Limit(
     results=variables(
         "bearing",
         ("catalogue_load_factor", (), "1", "LF", "sum of the loads over the limits of the catalogue"),
-        ("catalogue_life_km", (), "km", "L_km", "travel that the catalogue allows"),
+        ("catalogue_life_km", (), "km", "L_km", "travel that the catalogue allows", LIFE),
     ),
     mappings=(FIELD,),
     requires=("catalogue",),

@@ -11,6 +11,7 @@ import numpy as np
 from trackroller.damage.limit import SN_SCATTER, Limit, Results, SolvedRollers, Verdict, variables, worst
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
+from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST
 
 # results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1 stands for sigma_D
 STRESS_OF = {
@@ -126,19 +127,41 @@ LIMIT = Limit(
     needs=("peak_stress",),
     results=variables(
         "life",
-        ("life_cycles", ("contact", "body"), "1", "N", "overrollings to failure"),
+        ("life_cycles", ("contact", "body"), "1", "N", "overrollings to failure", SMALLEST | LIFE),
         (
             "life_error_estimate",
             ("contact", "body"),
             "1",
             "k delta(sigma)/sigma",
             "estimated relative error of the life",
+            LARGEST,
         ),
-        ("fatigue_stress", ("contact", "body"), "MPa", "sigma_a,eq", "amplitude that enters the S-N curve"),
-        ("life_hours", ("contact", "body"), "h", "L_h", "life in hours of travel"),
-        ("roller_life_hours", (), "h", "L_h,TR", "hours of travel to the first failure of the roller"),
-        ("guide_life_hours", (), "h", "L_h,G", "hours to the first failure of the guide"),
-        ("pair_life_hours", (), "h", "L_h", "hours to the first failure of roller or guide"),
+        ("fatigue_stress", ("contact", "body"), "MPa", "sigma_a,eq", "amplitude that enters the S-N curve", LARGEST),
+        ("life_hours", ("contact", "body"), "h", "L_h", "life in hours of travel", SMALLEST | LIFE),
+        (
+            "roller_life_hours",
+            (),
+            "h",
+            "L_h,TR",
+            "hours of travel to the first failure of the roller",
+            LIFE | {"label": "life of the roller"},
+        ),
+        (
+            "guide_life_hours",
+            (),
+            "h",
+            "L_h,G",
+            "hours to the first failure of the guide",
+            LIFE | {"label": "life of the guide"},
+        ),
+        (
+            "pair_life_hours",
+            (),
+            "h",
+            "L_h",
+            "hours to the first failure of roller or guide",
+            LIFE | {"label": "life of the pair"},
+        ),
     ),
     requires=("guide_overrollings_per_hour",),
     requires_by={"life_criterion": dict.fromkeys(("findley", "dang_van"), ("fatigue_limit_torsion",))},

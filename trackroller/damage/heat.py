@@ -18,6 +18,7 @@ import numpy as np
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
 from trackroller.numerics.parameter import Parameter
+from trackroller.numerics.variable import LARGEST, SUM
 
 STEP, REACH = 0.3, 1e4  # step of the logarithm of the diffusion length, and its end over the sides of the grid
 SPREAD = 5.0  # diffusion lengths beyond which no heat arrives
@@ -184,12 +185,26 @@ LIMIT = Limit(
     needs=(TRACTIONS,),
     results=variables(
         "heat",
-        ("flash_temperature_rise", _CB, "K", "theta_f", "largest rise of the surface temperature in the patch"),
-        ("bulk_temperature_rise", _CB, "K", "theta_b", "mean temperature rise of the body by friction and hysteresis"),
-        ("heat_utilisation", _CB, "1", "", "temperature rise over what the material's limit leaves"),
+        (
+            "flash_temperature_rise",
+            _CB,
+            "K",
+            "theta_f",
+            "largest rise of the surface temperature in the patch",
+            LARGEST,
+        ),
+        (
+            "bulk_temperature_rise",
+            _CB,
+            "K",
+            "theta_b",
+            "mean temperature rise of the body by friction and hysteresis",
+            LARGEST,
+        ),
+        ("heat_utilisation", _CB, "1", "", "temperature rise over what the material's limit leaves", LARGEST),
         ("heat_partition", _C, "1", "beta", "share of the heat that flows into the roller"),
-        ("hysteresis_moment", _C, "N mm", "M_h", "rolling resistance by the loss of strain energy in both bodies"),
-        ("pressure_velocity", _C, "MPa m s-1", "p v", "mean of pressure times slip speed over the patch"),
+        ("hysteresis_moment", _C, "N mm", "M_h", "rolling resistance by the loss of strain energy in both bodies", SUM),
+        ("pressure_velocity", _C, "MPa m s-1", "p v", "mean of pressure times slip speed over the patch", LARGEST),
     ),
     parameters=(
         optional("heat_transfer_coefficient", "h", "W/(m2 K)", "heat transfer coefficient of the roller", 0.0),

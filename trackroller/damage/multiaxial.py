@@ -11,6 +11,7 @@ import numpy as np
 
 from trackroller.damage.histories import Tractions, deep_planes, planes
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, optional, variables
+from trackroller.numerics.variable import LARGEST
 
 
 def findley_constants(bending: np.ndarray, torsion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -102,13 +103,27 @@ LIMIT = Limit(
     needs=(TRACTIONS,),
     results=variables(
         "multiaxial",
-        ("von_mises_amplitude", _CB, "MPa", "sigma_a", "half the longest chord of the deviator's path, von Mises"),
-        ("findley_stress", _CB, "MPa", "tau_a + k_F sigma_n", "largest stress of Findley's criterion"),
-        ("dang_van_stress", _CB, "MPa", "tau + a_D sigma_h", "largest stress of Dang Van's criterion"),
-        ("dang_van_stress_without_pressure", _CB, "MPa", "", "the same, with negative sigma_h counted as 0"),
-        ("findley_utilisation", _CB, "1", "", "Findley's stress over its limit"),
-        ("dang_van_utilisation", _CB, "1", "", "Dang Van's stress over its limit"),
-        ("dang_van_utilisation_without_pressure", _CB, "1", "", "the same, with negative sigma_h counted as 0"),
+        (
+            "von_mises_amplitude",
+            _CB,
+            "MPa",
+            "sigma_a",
+            "half the longest chord of the deviator's path, von Mises",
+            LARGEST,
+        ),
+        ("findley_stress", _CB, "MPa", "tau_a + k_F sigma_n", "largest stress of Findley's criterion", LARGEST),
+        ("dang_van_stress", _CB, "MPa", "tau + a_D sigma_h", "largest stress of Dang Van's criterion", LARGEST),
+        ("dang_van_stress_without_pressure", _CB, "MPa", "", "the same, with negative sigma_h counted as 0", LARGEST),
+        ("findley_utilisation", _CB, "1", "", "Findley's stress over its limit", LARGEST),
+        ("dang_van_utilisation", _CB, "1", "", "Dang Van's stress over its limit", LARGEST),
+        (
+            "dang_van_utilisation_without_pressure",
+            _CB,
+            "1",
+            "",
+            "the same, with negative sigma_h counted as 0",
+            LARGEST,
+        ),
     ),
     materials=(optional("fatigue_limit_torsion", "tau_D", "MPa", "fully reversed fatigue limit in torsion", 0.0, 2e5),),
     requires=("fatigue_limit_torsion",),

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables, worst
+from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST
 
 RESISTANCE = 1.1  # partial factor of the material, on the force
 CONTACTS = 6.4e6  # contacts that the fatigue limit stands for
@@ -75,8 +76,15 @@ LIMIT = Limit(
     verdict=verdict,
     results=variables(
         "rating",
-        ("rating_utilisation_static", ("contact", "body"), "1", "p_0/p_Rd", "pressure over its static limit"),
-        ("rating_life_hours", ("contact", "body"), "h", "L_h,R", "hours to the contacts that the standard allows"),
+        ("rating_utilisation_static", ("contact", "body"), "1", "p_0/p_Rd", "pressure over its static limit", LARGEST),
+        (
+            "rating_life_hours",
+            ("contact", "body"),
+            "h",
+            "L_h,R",
+            "hours to the contacts that the standard allows",
+            SMALLEST | LIFE,
+        ),
     ),
     materials=(
         optional("hardness", "HB", "HB", "Brinell hardness", 0.0, 2000.0),

@@ -15,6 +15,7 @@ import numpy as np
 
 from trackroller.damage.histories import DEPTHS, Tractions, deep_planes
 from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, variables, worst
+from trackroller.numerics.variable import LARGEST
 
 
 def shears(t: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
@@ -74,10 +75,38 @@ LIMIT = Limit(
     needs=("peak_stress", TRACTIONS),
     results=variables(
         "shakedown",
-        ("elastic_utilisation", ("contact", "body"), "1", "sigma_DEH,max/R_e", "peak stress over the yield strength"),
-        ("shakedown_utilisation", ("contact", "body"), "1", "k_s/k", "load over the load that just shakes down"),
-        ("surface_fatigue_index", ("contact",), "1", "mu_used - k/p_max", "surface fatigue index of the resultants"),
-        ("surface_fatigue_index_local", ("contact",), "1", "max|tau|/p - k/p_max", "the same, of the largest |tau|/p"),
+        (
+            "elastic_utilisation",
+            ("contact", "body"),
+            "1",
+            "sigma_DEH,max/R_e",
+            "peak stress over the yield strength",
+            LARGEST,
+        ),
+        (
+            "shakedown_utilisation",
+            ("contact", "body"),
+            "1",
+            "k_s/k",
+            "load over the load that just shakes down",
+            LARGEST,
+        ),
+        (
+            "surface_fatigue_index",
+            ("contact",),
+            "1",
+            "mu_used - k/p_max",
+            "surface fatigue index of the resultants",
+            LARGEST,
+        ),
+        (
+            "surface_fatigue_index_local",
+            ("contact",),
+            "1",
+            "max|tau|/p - k/p_max",
+            "the same, of the largest |tau|/p",
+            LARGEST,
+        ),
     ),
     requires=("yield_strength",),
     compares=("shakedown_utilisation", "load that just shakes down"),

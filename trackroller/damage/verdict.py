@@ -9,7 +9,7 @@ import numpy as np
 from trackroller.damage.limit import Limit, Results, SolvedRollers, variables
 from trackroller.damage.pair import first_failure
 from trackroller.numerics.parameter import Parameter
-from trackroller.numerics.variable import BODIES
+from trackroller.numerics.variable import BODIES, LIFE
 
 GROUP = "limits"
 MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
@@ -27,10 +27,24 @@ POSITION = Parameter(
 _LB = ("limit", "body")
 RESULTS = variables(
     GROUP,
-    ("utilisation", _LB, "1", "", "load over the load at which the limit is reached"),
-    ("life_hours_by_limit", _LB, "h", "", "hours to the limit at the failure probability"),
-    ("life_to_first_limit_hours", ("body",), "h", "", "hours to the first limit that is known"),
-    ("pair_life_to_first_limit_hours", (), "h", "", "hours to the first limit of roller or guide that is known"),
+    ("utilisation", _LB, "1", "", "load over the load at which the limit is reached", {"label": "utilisation"}),
+    ("life_hours_by_limit", _LB, "h", "", "hours to the limit at the failure probability", LIFE | {"label": "life"}),
+    (
+        "life_to_first_limit_hours",
+        ("body",),
+        "h",
+        "",
+        "hours to the first limit that is known",
+        LIFE | {"label": "life to the first limit"},
+    ),
+    (
+        "pair_life_to_first_limit_hours",
+        (),
+        "h",
+        "",
+        "hours to the first limit of roller or guide that is known",
+        LIFE | {"label": "life to the first limit"},
+    ),
 )
 
 

@@ -21,6 +21,7 @@ from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, V
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
 from trackroller.numerics.parameter import Parameter
+from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST, SUM
 
 KM_PER_HOUR = 0.06  # for 1 m/min
 # Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
@@ -267,13 +268,27 @@ LIMIT = Limit(
     needs=("friction_work", TRACTIONS),
     results=variables(
         "wear",
-        ("wear_depth_per_overrolling", _CB, "mm", "delta", "largest depth that an overrolling wears off"),
-        ("wear_depth_per_km", _CB, "mm km-1", "", "largest depth that is worn off per km of travel"),
+        ("wear_depth_per_overrolling", _CB, "mm", "delta", "largest depth that an overrolling wears off", LARGEST),
+        ("wear_depth_per_km", _CB, "mm km-1", "", "largest depth that is worn off per km of travel", LARGEST),
         ("wear_place", _CB, "mm", "x_C", "lateral place of the largest wear depth", {"odd": True}),
-        ("wear_volume_per_km", _CB, "mm3 km-1", "V", "volume that is worn off per km of travel"),
-        ("wear_error_estimate", ("contact",), "1", "", "estimated relative error of the wear depth"),
-        ("run_in_distance", (), "km", "", "run-in distance, until wear equals the gap at the edge", {"shown": True}),
-        ("wear_life_hours", _CB, "h", "L_h,W", "hours to the permissible wear depth at the rate of new profiles"),
+        ("wear_volume_per_km", _CB, "mm3 km-1", "V", "volume that is worn off per km of travel", SUM),
+        ("wear_error_estimate", ("contact",), "1", "", "estimated relative error of the wear depth", LARGEST),
+        (
+            "run_in_distance",
+            (),
+            "km",
+            "",
+            "run-in distance, until wear equals the gap at the edge",
+            LIFE | {"shown": True, "label": "run-in distance"},
+        ),
+        (
+            "wear_life_hours",
+            _CB,
+            "h",
+            "L_h,W",
+            "hours to the permissible wear depth at the rate of new profiles",
+            SMALLEST | LIFE | {"label": "wear life"},
+        ),
     ),
     parameters=(
         optional("permissible_wear_depth", "h_zul", "mm", "permissible wear depth of roller and guide", 0.0, 1e3),

@@ -16,7 +16,7 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})\s*", re.ASCI
 
 PLAIN = ("-", "1", "")  # ways to write that a number has no unit
 _COMPARED = re.compile(
-    rf"([A-Za-z_]\w*(?:\[[\w, ]*\])?)(\s*[<>=!]=?\s*)({_NUMBER})\s*({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))", re.ASCII
+    rf"([A-Za-z_]\w*)(\s*[<>=!]=?\s*)({_NUMBER})\s*({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))", re.ASCII
 )
 
 
@@ -61,7 +61,7 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
         name, sign, number, unit = found.groups()
         end = ")" * (unit.endswith(")") and "(" not in unit)  # of the comparison, not of the unit
         unit = unit.removesuffix(end)
-        wanted = unit_of(name.split("[")[0])
+        wanted = unit_of(name)
         if wanted is None:  # whoever reads the text refuses the name
             return f"{name}{sign}{number}{end}"
         return f"{name}{sign}{in_unit(float(number), unit, wanted, field):.15g}{end}"

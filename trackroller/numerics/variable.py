@@ -6,6 +6,9 @@ from dataclasses import dataclass
 
 BODIES = ("roller", "guide")  # values of the coordinate `body`
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")  # `regime` holds the place of the word, from 0
+# further fields of a variable: the worse contact counts, or both contacts add up
+LARGEST, SMALLEST, SUM = ({"joined": way} for way in ("max", "min", "sum"))
+LIFE = {"scale": "log10"}
 
 
 @dataclass(frozen=True)
@@ -24,6 +27,12 @@ class Variable:
         Whether the value changes its sign in the mirror image of a roller, as lateral positions and forces do.
     shown : bool
         Whether the sheet, the table of cases and the explorer show the value; the dimensions are none or `contact`.
+    joined : str
+        How one number follows from both contacts: `max`, `min`, `sum`, or not at all (an empty text).
+    scale : str
+        Scale on which an analysis compares the values, `natural` or `log10`.
+    label : str
+        Words of a report, if they are not the long name.
     """
 
     name: str
@@ -34,3 +43,6 @@ class Variable:
     long_name: str
     odd: bool = False
     shown: bool = False
+    joined: str = ""
+    scale: str = "natural"
+    label: str = ""

@@ -105,7 +105,7 @@ def names(text: str, field: str = "expression") -> set[str]:
     Returns
     -------
     set of str
-        Names; the part of a variable is one name, such as ``peak_stress[1,roller]``.
+        Names.
 
     Raises
     ------
@@ -205,7 +205,7 @@ def comparisons(text: str, field: str) -> tuple[Comparison, ...]:
         if not isinstance(part, ast.Compare) or len(part.ops) != 1 or type(part.ops[0]) not in _COMPARE:
             allowed = "comparisons (> >= < <= == !=) joined by 'or'"
             raise InputError(field, text, allowed, "For example: slip > 0.1 or max_pressure > 1500.")
-        left = _name(part.left) or ast.unparse(part.left)
+        left = ast.unparse(part.left)
         compared.append(Comparison(left, _COMPARE[type(part.ops[0])][0], ast.unparse(part.comparators[0])))
     return tuple(compared)
 
@@ -235,20 +235,9 @@ def _tree(text: str, field: str) -> ast.expr:
         raise InputError(field, text, "", _REMEDY, "has too deep brackets, or is not a text") from None
 
 
-def _name(node: ast.AST) -> str | None:
-    """Return the name of a node: ``slip``, or ``peak_stress[1,roller]`` for the part of a variable."""
-    match node:
-        case ast.Name(id=name):
-            return name
-        case ast.Subscript(value=ast.Name(id=name), slice=part):
-            keys = part.elts if isinstance(part, ast.Tuple) else [part]
-            return f"{name}[{','.join(ast.unparse(key) for key in keys)}]"
-    return None
-
-
 def _names(node: ast.AST) -> set[str]:
-    if name := _name(node):
-        return {name} - set(CONSTANTS)
+    if isinstance(node, ast.Name):
+        return {node.id} - set(CONSTANTS)
     children = node.args if isinstance(node, ast.Call) else ast.iter_child_nodes(node)
     return set().union(*map(_names, children))
 
@@ -297,7 +286,7 @@ class _Evaluation:
                 return self.constant(node)
             case ast.Constant(value=str() as word):
                 return word
-            case ast.Name() | ast.Subscript():
+            case ast.Name():
                 return self.named(node)
             case ast.BinOp(left=left, op=op, right=right) if type(op) in _BINARY:
                 return self.applied(_BINARY[type(op)], [left, right], node)
@@ -345,14 +334,11 @@ class _Evaluation:
         known = reduce(np.logical_and, [part.known for part in parts])
         return _Truth(np.asarray(reduce(join, [part.holds for part in parts])), np.asarray(known))
 
-    def named(self, node: ast.Name | ast.Subscript) -> Any:
-        name = _name(node)
+    def named(self, node: ast.Name) -> Any:
         for known in (self.values, CONSTANTS):
-            if name is not None and name in known:
-                return known[name]
-        if name is None or isinstance(node, ast.Subscript):
-            raise self.refused(node, "a subscript that does not name the part of a variable")
-        raise unknown_name(f"{self.field} (character {node.col_offset + 1})", name, list(self.values))
+            if node.id in known:
+                return known[node.id]
+        raise unknown_name(f"{self.field} (character {node.col_offset + 1})", node.id, list(self.values))
 
     def applied(self, function: Any, parts: list[ast.expr], node: ast.AST) -> np.ndarray:
         """Return a function of numbers, NaN wherever an argument is NaN, as in nan ** 0."""

@@ -11,6 +11,7 @@ import numpy as np
 from trackroller import __version__
 from trackroller.damage import verdict, with_limits
 from trackroller.damage.limit import variables
+from trackroller.numerics.variable import LARGEST, SUM
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, LIMITS, REGIMES
 from trackroller.parameters.accuracy import RUNGS
 from trackroller.parameters.validity import VALIDITY
@@ -45,8 +46,8 @@ _GROUPS = {
         ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller", _SHOWN | _ODD),
         ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller", _SHOWN),
         ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _SHOWN | _ODD),
-        ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N"),
-        ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N"),
+        ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N", LARGEST),
+        ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N", LARGEST),
         ("error_over_tolerance", (), "1", "", "largest estimated error over its tolerance, if accuracy is a tolerance"),
         ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
@@ -58,14 +59,14 @@ _GROUPS = {
             "N mm",
             "(M_R1 - M_R2) sin(alpha)",
             "drilling torque, the share of the spin moments in the drive torque",
-            _SHOWN,
+            _SHOWN | {"label": "drilling torque"},
         ),
         ("tilting_moment", (), "N mm", "M_yR", "tilting moment about the rolling direction, eq. (11)", _SHOWN | _ODD),
         ("yaw_moment", (), "N mm", "M_zR", "yaw moment about the radial direction, eq. (12)", _SHOWN | _ODD),
     ),
     "contact": (
-        ("max_pressure", _C, "MPa", "p_max", "largest contact pressure", _SHOWN),
-        ("max_shear", _C, "MPa", "tau_max", "largest surface shear traction", _SHOWN),
+        ("max_pressure", _C, "MPa", "p_max", "largest contact pressure", _SHOWN | LARGEST),
+        ("max_shear", _C, "MPa", "tau_max", "largest surface shear traction", _SHOWN | LARGEST),
         ("semi_axis_lateral", _C, "mm", "a", "lateral semi-axis, or half width of a patch", _SHOWN),
         ("semi_axis_rolling", _C, "mm", "b", "semi-axis in the rolling direction, or half length", _SHOWN),
         ("patch_area", _C, "mm2", "A", "area of the contact patch"),
@@ -75,14 +76,22 @@ _GROUPS = {
         ("stick_area_fraction", _C, "1", "A_stick/A", "adhesion (stick) area over the area of the patch", _SHOWN),
     ),
     "friction_work": (
-        ("friction_power", _C, "W", "P_f", "friction power at the travel speed", _SHOWN),
-        ("friction_energy_per_distance", _C, "J m-1", "W_f", "friction energy per distance", _SHOWN),
+        (
+            "friction_power",
+            _C,
+            "W",
+            "P_f",
+            "friction power at the travel speed",
+            _SHOWN | SUM | {"label": "friction power"},
+        ),
+        ("friction_energy_per_distance", _C, "J m-1", "W_f", "friction energy per distance", _SHOWN | SUM),
         (
             "friction_energy_balance",
             _C,
             "J m-1",
             "-(xi F_A + phi M_R)",
             "friction energy per distance that the forces and moments imply",
+            SUM,
         ),
         (
             "friction_energy_error_estimate",
@@ -90,11 +99,19 @@ _GROUPS = {
             "1",
             "delta(W_f)/W_f",
             "estimated relative error of the friction energy from discretisation",
+            LARGEST,
         ),
         ("energy_residual", (), "1", "", "relative difference of friction energy and work of the drive"),
     ),
     "peak_stress": (
-        ("peak_stress", _CB, "MPa", "sigma_DEH,max", "largest von Mises stress of the body"),
+        (
+            "peak_stress",
+            _CB,
+            "MPa",
+            "sigma_DEH,max",
+            "largest von Mises stress of the body",
+            LARGEST | {"label": "peak stress"},
+        ),
         ("peak_x", _CB, "mm", "x_C", "lateral position of the peak stress", _ODD),
         ("peak_y", _CB, "mm", "y_C", "position of the peak stress in the rolling direction"),
         ("peak_z", _CB, "mm", "z_C", "depth of the peak stress"),
@@ -127,7 +144,7 @@ _GROUPS = {
     ),
     "status": (
         ("residual", (), "1", "", "largest imbalance of forces and torque over the load"),
-        ("error_estimate", _CB, "1", "", "estimated relative error of the peak stress"),
+        ("error_estimate", _CB, "1", "", "estimated relative error of the peak stress", LARGEST),
     ),
 }
 

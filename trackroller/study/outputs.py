@@ -2,18 +2,17 @@
 
 from __future__ import annotations
 
-import itertools
-import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
-from typing import Any
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, unknown_name
-from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.numerics.variable import Variable
+from trackroller.parameters import BODIES, LIMITS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.roller.dataset import FLAGS, VARIABLES
+from trackroller.roller.output_names import PARTS, Part, parts_of
 
 BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
     *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),
@@ -21,34 +20,26 @@ BOOKKEEPING = {  # variables that describe how a case was solved; an analysis co
 }
 FIELDS = {"x", "y", "z", "grid"}
 
-# Outputs that are analysed by default: name -> (variable, selection, how contacts are joined, scale, words).
-DEFAULTS: dict[str, tuple[str, dict[str, Any], str, str, str]] = {
-    "pair_life_to_first_limit_hours": (
-        "pair_life_to_first_limit_hours",
-        {},
-        "min",
-        "log10",
-        "life to the first limit",
-    ),
-    "pair_life_hours": ("pair_life_hours", {}, "min", "log10", "life of the pair"),
-    "roller_life_hours": ("roller_life_hours", {}, "min", "log10", "life of the roller"),
-    "guide_life_hours": ("guide_life_hours", {}, "min", "log10", "life of the guide"),
-    "run_in_distance": ("run_in_distance", {}, "min", "log10", "run-in distance"),
-    "roller_wear_life_hours": ("wear_life_hours", {"body": "roller"}, "min", "log10", "wear life of the roller"),
-    "guide_wear_life_hours": ("wear_life_hours", {"body": "guide"}, "min", "log10", "wear life of the guide"),
-    "roller_life_cycles": ("life_cycles", {"body": "roller"}, "min", "log10", "life of the roller in overrollings"),
-    "guide_life_cycles": ("life_cycles", {"body": "guide"}, "min", "log10", "life of the guide in overrollings"),
-    "roller_peak_stress": ("peak_stress", {"body": "roller"}, "max", "natural", "peak stress in the roller"),
-    "guide_peak_stress": ("peak_stress", {"body": "guide"}, "max", "natural", "peak stress in the guide"),
-    "max_pressure": ("max_pressure", {}, "max", "natural", "highest contact pressure"),
-    "friction_power": ("friction_power", {}, "sum", "natural", "friction power of both contacts"),
-    "friction_energy": ("friction_energy_per_distance", {}, "sum", "natural", "friction work per distance"),
-    "normal_force_1": ("normal_force", {"contact": 1}, "sum", "natural", "normal force in contact 1"),
-    "normal_force_2": ("normal_force", {"contact": 2}, "sum", "natural", "normal force in contact 2"),
-    "drilling_torque": ("drilling_torque", {}, "sum", "natural", "drilling torque"),
-    "slip": ("slip", {}, "sum", "natural", "longitudinal creepage"),
-}
-_JOIN: dict[str, Any] = {"min": np.nanmin, "max": np.nanmax, "sum": np.nansum}
+USUAL = (  # outputs that are analysed by default, as far as the study has them
+    "pair_life_to_first_limit_hours",
+    "pair_life_hours",
+    "roller_life_hours",
+    "guide_life_hours",
+    "run_in_distance",
+    "wear_life_hours_roller",
+    "wear_life_hours_guide",
+    "life_cycles_roller",
+    "life_cycles_guide",
+    "peak_stress_roller",
+    "peak_stress_guide",
+    "max_pressure",
+    "friction_power",
+    "friction_energy_per_distance",
+    "normal_force_1",
+    "normal_force_2",
+    "drilling_torque",
+    "slip",
+)
 
 
 @dataclass(frozen=True)
@@ -65,9 +56,11 @@ class Output:
 
 def of_fatigue(name: str) -> bool:
     """Return whether an output of an analysis is a life by the S-N curve."""
-    variable = DEFAULTS[name][0] if name in DEFAULTS else name.partition("[")[0]
-    by_curve = variable in VARIABLES and VARIABLES[variable].group == "life" and "error" not in variable
-    return (by_curve and "life" in variable) or name.startswith("life_hours_by_limit[fatigue")
+    part = PARTS.get(name)
+    if part is None:
+        return False
+    by_curve = part.variable.group == "life" and part.variable.scale == "log10"
+    return by_curve or (part.variable.name == "life_hours_by_limit" and part.at.get("limit") == "fatigue")
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
@@ -101,61 +94,42 @@ def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> 
     ]
 
 
+def _parts(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dict[str, Part]:
+    """Return the parts with one number a case of variables; a variable that is not declared takes its attributes."""
+    found: dict[str, Part] = {}
+    for name in names:
+        var = ds[name]
+        inner = tuple(str(dim) for dim in var.dims if dim not in dims)
+        words = str(var.attrs.get("long_name", name))
+        scale = "log10" if "life" in name else "natural"  # of a result of another solver, by its name
+        own = VARIABLES.get(name) or Variable(name, "", inner, str(var.attrs.get("units", "1")), "", words, scale=scale)
+        asked = set(map(str, ds["limit"].values)) if "limit" in inner else set()
+        limits = [LIMITS[limit] for limit in LIMITS if limit in asked]
+        found |= {part.name: part for part in parts_of(replace(own, dims=inner), limits)}
+    return found
+
+
 def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the names of all outputs, those that are analysed by default first."""
     factors = list(factors)
-    names = default_names(ds, factors, dims)
-    for name in available(ds, factors, dims):
-        places = itertools.product(*(map(str, ds[dim].values.tolist()) for dim in ds[name].dims if dim not in dims))
-        names += [f"{name}[{','.join(place)}]" if place else name for place in places]
+    names = [*default_names(ds, factors, dims), *_parts(ds, available(ds, factors, dims), dims)]
     return list(dict.fromkeys(names))
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
-    """Return the outputs that are analysed by default: those of `DEFAULTS`, otherwise every scalar result."""
+    """Return the outputs that are analysed by default: those of `USUAL`, otherwise every scalar result."""
     free = available(ds, factors, dims)
-    names = [n for n, (var, *_) in DEFAULTS.items() if var in free and np.isfinite(ds[var]).any()]
+    known = _parts(ds, free, dims)
+    names = [name for name in USUAL if name in known and np.isfinite(ds[known[name].variable.name]).any()]
     for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
-        if f"{body}_life_hours" in names and f"{body}_life_cycles" in names:
-            names.remove(f"{body}_life_cycles")
+        if f"{body}_life_hours" in names and f"life_cycles_{body}" in names:
+            names.remove(f"life_cycles_{body}")
     if "pair_life_hours" in names and "guide_life_hours" not in names:
         names.remove("pair_life_hours")  # Without hours of the guide it repeats the life of the roller.
     if not names or not {"peak_stress", "normal_force"} & set(free):
-        used = {DEFAULTS[n][0] for n in names}
+        used = {known[name].variable.name for name in names}
         names += [n for n in free if n not in used and set(ds[n].dims) <= set(dims)]
     return names
-
-
-def _raw(ds: xr.Dataset, name: str, dims: tuple[str, ...], options: list[str]) -> tuple[np.ndarray, str, str, str]:
-    """Return values (n,), units, words and scale of a default output, a variable, or `variable[contact,body]`."""
-    if name in DEFAULTS and DEFAULTS[name][0] in ds:
-        variable, choice, join, scale, words = DEFAULTS[name]
-    else:
-        match = re.fullmatch(r"(\w+)(?:\[([^\]]+)\])?", name)
-        if not match or match[1] not in options:
-            raise unknown_name("analysis.outputs", name, [*options, *(n for n in DEFAULTS if DEFAULTS[n][0] in ds)])
-        variable, join = match[1], ""
-        keys = [key.strip() for key in (match[2] or "").split(",") if key.strip()]
-        choice = dict((("contact", int(k)) if k.isdigit() else ("body" if k in BODIES else "limit", k)) for k in keys)
-        scale = "log10" if "life" in variable else "natural"
-        words = str(ds[variable].attrs.get("long_name", variable)) + (f" ({match[2]})" if match[2] else "")
-    try:
-        part = ds.sel({k: v for k, v in choice.items() if k in ds[variable].dims})
-    except KeyError:
-        raise InputError("analysis.outputs", name, "contact 1 or 2, body roller or guide, a limit asked for") from None
-    values = flat(part, variable, dims).astype(float)
-    if values.ndim > 1 and not join:
-        raise InputError(
-            "analysis.outputs",
-            name,
-            "an output with one number for each case",
-            f"Choose a contact and body, such as {variable}[1,roller].",
-        )
-    if values.ndim > 1:
-        values = values.reshape(len(values), -1)
-        empty = np.isnan(values).all(axis=1)
-        values = np.where(empty, np.nan, _JOIN[join](np.where(empty[:, None], 0.0, values), axis=1))
-    return values, str(ds[variable].attrs.get("units", "1")), words, scale
 
 
 def regimes(ds: xr.Dataset, dims: tuple[str, ...]) -> np.ndarray:
@@ -221,7 +195,7 @@ def outputs(
     factors : iterable of str
         Names of the study's factors in their order.
     names : iterable of str, optional
-        Names of `DEFAULTS`, scalar variables, or `variable[contact,body]`. Default: `default_names`.
+        Names, see `trackroller.roller.output_names`. Default: `default_names`.
     keep : iterable of str
         Regimes whose rows are used. Rows of other regimes become NaN and are counted.
     unlimited : bool
@@ -240,7 +214,7 @@ def outputs(
     Raises
     ------
     InputError
-        If a name is unknown, or an output has more than one number for a case.
+        If a name is unknown.
     """
     factors = list(factors)
     dims = case_dims(ds, factors)
@@ -250,13 +224,17 @@ def outputs(
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
-    options = available(ds, factors, dims)
+    known = _parts(ds, available(ds, factors, dims), dims)
     columns = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
-        values, units, words, usual = _raw(ds, name, dims, options)
-        on = (scale if isinstance(scale, str) else scale.get(name, "")) or usual
-        values, why = _countable(values, usable, stopped, unlimited, on)
-        columns.append(Output(name, values, units, words, on, lost | why))
+        if name not in known:
+            raise unknown_name("analysis.outputs", name, known)
+        part = known[name]
+        single = part.values(ds).to_dataset(name=name)
+        units = str(ds[part.variable.name].attrs.get("units", "1"))
+        on = (scale if isinstance(scale, str) else scale.get(name, "")) or part.variable.scale
+        values, why = _countable(flat(single, name, dims).astype(float), usable, stopped, unlimited, on)
+        columns.append(Output(name, values, units, part.words, on, lost | why))
     for i, name in enumerate(REGIMES):
         if i and (regime == i).any() and not unlimited:
             words = f"occurrence of {REGIME_LABELS[i].replace('failed', 'failure')}"

@@ -2,7 +2,7 @@
 import { copy, el, replace } from "./dom.js";
 import { count, letter, number, withUnit } from "./words.js";
 
-const IN_SHORT = ["roller_life_hours", "roller_life_cycles", "guide_life_hours", "guide_life_cycles", "roller_peak_stress", "guide_peak_stress", "max_pressure"];
+const IN_SHORT = ["roller_life_hours", "life_cycles_roller", "guide_life_hours", "life_cycles_guide", "peak_stress_roller", "peak_stress_guide", "max_pressure"];
 
 // A word as the shell reads it, in quotes where it needs them.
 export const quoted = (word) => (/^[\w@%+=:,./-]+$/.test(word) ? word : `'${word.replaceAll("'", `'"'"'`)}'`);
@@ -51,7 +51,7 @@ const material = (study, row, body) => {
 function utilisation(study, row) {
   const found = [];
   for (const body of ["roller", "guide"]) {
-    const peak = study.columns.get(`${body}_peak_stress`)?.values[row];
+    const peak = study.columns.get(`peak_stress_${body}`)?.values[row];
     const known = study.strengths[material(study, row, body)];
     if (peak >= 0 && known) found.push([`Peak stress of the ${body} as a share of its fatigue limit`, `${number((100 * peak) / known[1], 3)} %`], [`Peak stress of the ${body} as a share of its tensile strength`, `${number((100 * peak) / known[0], 3)} %`]);
   }

@@ -171,7 +171,7 @@ def test_a_unit_at_the_head_of_a_further_column_is_kept_or_refused(tmp_path):
         "-x",
         "x" * 201,
         "normal_force_1",
-        "roller_peak_stress",
+        "peak_stress_roller",
         "peak_stress",
         "case",
     ],

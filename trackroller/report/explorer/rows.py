@@ -19,7 +19,9 @@ from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTI
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
+from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.duty import years
+from trackroller.roller.output_names import parts_of
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
@@ -152,15 +154,10 @@ def _output(one: Output, role: str, view: StudyView) -> Column:
 
 
 def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], view: StudyView) -> list[Column]:
-    """Return figures of each contact and body, under names such as `peak_stress[1,roller]`."""
-    names = []
-    for variable in (n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)):
-        contacts = ["1", "2"] if "contact" in ds[variable].dims else [""]
-        bodies = BODIES if "body" in ds[variable].dims else [""]
-        for keys in ([k for k in (c, b) if k] for c in contacts for b in bodies):
-            name = f"{variable}[{','.join(keys)}]" if keys else variable
-            if name not in known and f"{variable}_{keys[0] if keys else ''}" not in known:
-                names.append(name)
+    """Return figures of each contact and body, under names such as `peak_stress_roller_1`."""
+    there = [VARIABLES[n] for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)]
+    parts = [part for variable in there for part in parts_of(variable)]
+    names = [p.name for p in parts if p.name not in known and ("contact" in p.at or "contact" not in p.variable.dims)]
     return [_output(one, "detail", view) for one in _outputs(ds, dims, names)]
 
 

@@ -23,7 +23,7 @@ from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, with_unit
 from trackroller.report.words import indices
 from trackroller.report.words.samples import grown, quantity_words
-from trackroller.study.outputs import DEFAULTS
+from trackroller.study.outputs import USUAL
 
 Look = dict[str, Any]
 MAX_BARS = 12
@@ -34,8 +34,7 @@ def main_outputs(sens: xr.Dataset) -> list[str]:
     """Name the outputs that have an index, the most important first."""
     index = headline(sens)
     names = [str(n) for n in sens["output"].values if np.isfinite(sens[index].sel(output=n)).any()]
-    usual = list(DEFAULTS)  # lives first
-    return sorted(names, key=lambda n: usual.index(n) if n in usual else len(usual))
+    return sorted(names, key=lambda n: USUAL.index(n) if n in USUAL else len(USUAL))  # lives first
 
 
 def title(sens: xr.Dataset, output: str) -> str:

@@ -18,8 +18,8 @@ from trackroller.report.tables.table import Table
 from trackroller.report.words.indices import of_output
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import samples_of_points, target_words
+from trackroller.roller.output_names import PARTS
 from trackroller.study.file.goals import statistic
-from trackroller.study.outputs import DEFAULTS
 
 HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
 FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
@@ -92,7 +92,7 @@ def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
 def quantity_words(name: str, method: Method) -> str:
     """Name an entry of `until.of` in words."""
     kind, output = statistic(name) if method.points else ("", name)
-    words = DEFAULTS[output][4] if output in DEFAULTS else plain(output)
+    words = PARTS[output].words if output in PARTS else plain(output)
     if method.points:
         return f"probability of {words}" if kind == "probability" else f"log10 B10 of the {words}"
     return words

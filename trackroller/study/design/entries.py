@@ -15,7 +15,7 @@ from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIE
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
-from trackroller.study.outputs import DEFAULTS
+from trackroller.roller.output_names import PARTS
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 OPTION_FACTORS = {option.name: option.values for option in OPTIONS.values() if option.factor}
@@ -53,7 +53,7 @@ def check_own_name(name: str, where: str) -> None:
     if name in FACTOR_NAMES:
         return
     part = _PART_OF_RESULT.fullmatch(name)
-    if name in RESERVED or name in DEFAULTS or (part and part[1] in VARIABLES):
+    if name in RESERVED or name in PARTS or (part and part[1] in VARIABLES):
         allowed = "a name that the results do not use for something else"
         raise InputError(where, name, allowed, f"Rename it, for example {name}_factor.")
     try:

@@ -1,7 +1,7 @@
 """Check the keys of a study file that state how results are analysed and which designs are best.
 
     analysis:
-      outputs: [roller_life_hours, friction_power, peak_stress[1,guide]]
+      outputs: [roller_life_hours, friction_power, peak_stress_guide_1]
       scale: {friction_power: log10}
       groups: {load: [radial_force, axial_force]}
       target: {roller_life_hours: {min: 500}}
@@ -27,10 +27,10 @@ from trackroller.errors import InputError, collected, listing, raise_all, unknow
 from trackroller.methods.factor import Factor
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity, without_units
-from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
+from trackroller.roller.output_names import PARTS, parts_of
 from trackroller.study.design.entries import choice
-from trackroller.study.outputs import DEFAULTS, FIELDS
 
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
@@ -79,9 +79,9 @@ def _limit(name: str, given: Any, where: str) -> float:
 
 
 def unit_of(name: str) -> str | None:
-    """Return the unit of a result with or without its places, or of a parameter; None for any other name."""
-    name = name.split("[")[0].strip()
-    name = DEFAULTS[name][0] if name in DEFAULTS else name
+    """Return the unit of a result, of its variable, or of a parameter; None for any other name."""
+    if name in PARTS:
+        return PARTS[name].variable.units
     return VARIABLES[name].units if name in VARIABLES else PARAMETERS[name].unit if name in PARAMETERS else None
 
 
@@ -170,18 +170,8 @@ def names_in(constraint: str) -> set[str]:
 def output_names(groups: Iterable[str]) -> list[str]:
     """Return the names that `analysis.outputs`, `pareto` and `constraints` may use: results with one number a case."""
     groups = set(groups)
-    there = {name for name, v in VARIABLES.items() if v.group in groups and not set(v.dims) & FIELDS}
-    names = [name for name, (variable, *_) in DEFAULTS.items() if variable in there]
-    for name in VARIABLES:
-        dims = VARIABLES[name].dims
-        if name in there and set(dims) <= {"contact", "limit", "body"}:
-            places = [(limit.name, body) for limit in judged(groups) for body in limit.bodies]
-            if "limit" not in dims:
-                contacts = ("1", "2") if "contact" in dims else ("",)
-                places = [(c, b) for c in contacts for b in (BODIES if "body" in dims else ("",))]
-            keys = [",".join(key for key in place if key) for place in places]
-            names += [f"{name}[{key}]" if key else name for key in keys]
-    return list(dict.fromkeys(names))
+    limits = judged(groups)
+    return [p.name for v in VARIABLES.values() if v.group in groups for p in parts_of(v, limits)]
 
 
 def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
@@ -202,7 +192,7 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
     if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."
         raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)
-    asked = config.analysis.outputs or [f"{body}_life_cycles" for body in materials if "life" in config.outputs]
+    asked = config.analysis.outputs or [f"life_cycles_{body}" for body in materials if "life" in config.outputs]
     for body, used in materials.items():
         bare = [m.name for m in used if m.scatter_in_cycles is None and m.scatter_in_stress is None]
         if wanted is True and bare and any("life" in name and body in name for name in asked):
@@ -296,21 +286,12 @@ def unknown_result(where: str, name: str, known: Iterable[str], groups: Iterable
     if kinds := STATISTICS_OF.get(where) if "(" in name else None:
         allowed = f"a result, or {listing(kinds, 'or')} of one"
         return InputError(where, name, allowed, f"For example {kinds[0]}({name.partition('(')[2].rstrip(') ')}).")
-    variable = name.split("[")[0].strip()
-    name_of = DEFAULTS[variable][0] if variable in DEFAULTS else variable
-    if name_of in VARIABLES and (group := VARIABLES[name_of].group) not in set(groups):
-        if group == "status":
+    variable = PARTS[name].variable if name in PARTS else VARIABLES.get(name)
+    if variable is not None and variable.group not in set(groups):
+        if variable.group == "status":
             return InputError(where, name, "a result or a factor")
-        return InputError(
-            where,
-            name,
-            f"results of the study's outputs; its group {group} is not among them",
-            f"Add {group} to outputs.",
-        )
-    if name_of in VARIABLES and variable not in DEFAULTS and "[" not in name:
-        dims = VARIABLES[name_of].dims
-        example = ",".join(word for d, word in (("contact", "1"), ("limit", "static"), ("body", "roller")) if d in dims)
-        if example:
-            return InputError(where, name, "one number a case", f"Choose one, such as {name}[{example}].")
-    short = [n for n in dict.fromkeys(known) if "[" not in n]  # with the parts of variables the list is too long
-    return unknown_name(where, name, short)
+        allowed = f"results of the study's outputs; its group {variable.group} is not among them"
+        return InputError(where, name, allowed, f"Add {variable.group} to outputs.")
+    if variable is not None and (parts := [part.name for part in parts_of(variable)]):
+        return InputError(where, name, "one number a case", f"Choose one, such as {parts[0]}.")
+    return unknown_name(where, name, known)

@@ -18,6 +18,7 @@ from trackroller.materials import load_database
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import ALIASES, study_with_radii
+from trackroller.roller.output_names import present_names
 from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
@@ -40,6 +41,7 @@ EXAMPLES = {  # of keys that are mappings or lists
     "analysis.target": "{roller_life_hours: {min: 500}}",
 }
 ROOMS = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
+NAMING = ("analysis", "pareto", "goals", "constraints", "until")  # keys that name results
 FORMER = ("measures", "resamples")  # keys of `analysis` that studies of earlier versions hold
 FORMER_KEYS = {  # keys of the study itself that earlier versions held, and what the program does now
     "exchange": "saltelli exchanges the groups of analysis.groups",
@@ -100,9 +102,39 @@ def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
     return kept | ({"analysis": own} if given else {})
 
 
+def with_present_names(data: Mapping[str, Any], former: set[str] | None = None) -> dict[str, Any]:
+    """Return a study file in which results have the names of today; texts that change are added to `former`."""
+
+    def present(text: str) -> str:
+        now = present_names(text)
+        if former is not None and now != text:
+            former.add(text)
+        return now
+
+    def renamed(value: Any) -> Any:
+        if isinstance(value, str):
+            return present(value)
+        if isinstance(value, Mapping):
+            return {present(str(name)): renamed(own) for name, own in value.items()}
+        return [renamed(one) for one in value] if isinstance(value, (list, tuple)) else value
+
+    return {key: renamed(value) if key in NAMING else value for key, value in data.items()}
+
+
+def _check_names_of_results(data: Mapping[str, Any], wrong: Collector) -> None:
+    """Refuse names of results as earlier versions wrote them."""
+    for key in NAMING:
+        former: set[str] = set()
+        with_present_names({key: data.get(key)}, former)
+        for text in sorted(former):
+            allowed = "names of results as tables have them"
+            wrong.errors.append(InputError(key, text, allowed, f"Write {present_names(text)}."))
+
+
 def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     wrong = Collector()
+    _check_names_of_results(data, wrong)
     data = study_with_radii(without_former(data), wrong)
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))

@@ -1,0 +1,123 @@
+"""Names of results with one number a case: the same in tables, study files, goals, targets, pages and the explorer.
+
+A name is the variable, then body, contact and limit as far as the variable has them: `peak_stress_roller`,
+`peak_stress_roller_2`, `normal_force_1`, `utilisation_guide_heat`. Without a contact it means the worse contact, or the
+sum of both where the variable adds up.
+"""
+
+from __future__ import annotations
+
+import itertools
+import re
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.damage.limit import Limit
+from trackroller.numerics.variable import BODIES, Variable
+from trackroller.parameters import LIMITS
+from trackroller.roller.dataset import VARIABLES
+
+CONTACTS = ("1", "2")
+PLACES = ("body", "contact", "limit")  # dimensions of a variable that a name can give, in the order of a name
+_JOIN: dict[str, Any] = {"max": np.fmax.reduce, "min": np.fmin.reduce, "sum": np.nansum}
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of a result variable with one number a case.
+
+    Parameters
+    ----------
+    variable : Variable
+        The variable.
+    at : mapping of str to str
+        Body, contact and limit, as far as the name gives them.
+    """
+
+    variable: Variable
+    at: Mapping[str, str] = field(default_factory=lambda: MappingProxyType({}))
+
+    @property
+    def name(self) -> str:
+        """Return the name."""
+        return "_".join([self.variable.name, *(self.at[dim] for dim in PLACES if dim in self.at)])
+
+    @property
+    def words(self) -> str:
+        """Return the words for a report, such as 'peak stress of the roller in contact 2'."""
+        words = self.variable.label or self.variable.long_name
+        body, contact, limit = (self.at.get(dim, "") for dim in PLACES)
+        if body:
+            words = words.replace("the body", f"the {body}") if "the body" in words else f"{words} of the {body}"
+        if contact:
+            words += f" in contact {contact}"
+        elif self.variable.joined == "sum" and "contact" in self.variable.dims:
+            words += " of both contacts"
+        return f"{words}: {LIMITS[limit].title}" if limit in LIMITS else words
+
+    def values(self, ds: xr.Dataset) -> xr.DataArray:
+        """Return the values of every case; NaN where no contact has a value.
+
+        Raises
+        ------
+        KeyError
+            If the data set lacks the variable, or the contact, body or limit.
+        """
+        place: dict[str, Any] = {dim: int(key) if dim == "contact" else key for dim, key in self.at.items()}
+        part = ds[self.variable.name].sel(place, drop=True)
+        if "contact" not in part.dims:
+            return part
+        joined: xr.DataArray = part.reduce(_JOIN[self.variable.joined], "contact", keep_attrs=True)
+        return joined.where(part.notnull().any("contact"))
+
+
+def parts_of(variable: Variable, limits: Iterable[Limit] = tuple(LIMITS.values())) -> Iterator[Part]:
+    """Yield the parts of a variable that have one number a case, those without a contact first.
+
+    Parameters
+    ----------
+    variable : Variable
+        The variable; one over a patch or a section has no such parts.
+    limits : iterable of Limit
+        Limits whose parts are wanted, of a variable along limits.
+    """
+    if not set(variable.dims) <= set(PLACES):
+        return
+    contacts = (("",) if variable.joined else ()) + CONTACTS if "contact" in variable.dims else ("",)
+    bodies = BODIES if "body" in variable.dims else ("",)
+    places = itertools.product(bodies, contacts)
+    for body, contact in sorted(places, key=lambda place: bool(place[1])):
+        for limit in limits if "limit" in variable.dims else (None,):
+            if limit is None or body in limit.bodies:
+                at = {"body": body, "contact": contact, "limit": limit.name if limit else ""}
+                yield Part(variable, MappingProxyType({dim: key for dim, key in at.items() if key}))
+
+
+_FORMER = (  # names of earlier versions
+    (re.compile(r"\b(\w+)\[\s*([\w\s,]+)\]"), lambda found: _joined(found[1], found[2])),
+    (re.compile(r"\b(roller|guide)_(peak_stress|life_cycles|wear_life_hours)\b"), r"\2_\1"),
+    (re.compile(r"\bfriction_energy\b"), "friction_energy_per_distance"),
+)
+
+
+def _joined(variable: str, places: str) -> str:
+    """Return the name of `variable[contact,body]`."""
+    keys = [key.strip() for key in places.split(",") if key.strip()]
+    return "_".join([variable, *sorted(keys, key=lambda key: 0 if key in BODIES else 1)])
+
+
+def present_names(text: str) -> str:
+    """Return a name of a result, or an expression, with the names of earlier versions replaced by those of today."""
+    for pattern, now in _FORMER:
+        text = pattern.sub(now, text)
+    return text
+
+
+PARTS: Mapping[str, Part] = MappingProxyType(
+    {part.name: part for variable in VARIABLES.values() for part in parts_of(variable)}
+)
