@@ -14,6 +14,7 @@ __version__ = "0.1.0"
 _WHERE = {
     "Case": "trackroller.roller.case",
     "InputError": "trackroller.errors",
+    "find": "trackroller.roller.find",
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
     "open_study": "trackroller.solved",
@@ -39,6 +40,7 @@ if TYPE_CHECKING:
     from trackroller.halfspace.stress import von_mises as von_mises
     from trackroller.materials import load_database as load_database
     from trackroller.roller.case import Case as Case
+    from trackroller.roller.find import find as find
     from trackroller.roller.solver import solve as solve
     from trackroller.roller.wear import wear as wear
     from trackroller.solved import open_study as open_study

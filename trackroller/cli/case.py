@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from pathlib import Path
@@ -149,19 +150,27 @@ def _groups(limits: str | None, sheet: bool, plain: bool) -> tuple[str, ...]:
     return () if plain else (*COMPLETE, *CHEAP)
 
 
-def solve_and_tell(
+def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the command
     case: Path | None,
     settings: list[str] | None,
     as_json: bool,
     out: Path | None,
     sheet: Path | None,
     limits: str | None,
+    find: str | None,
+    condition: str | None,
     no_shortcuts: bool,
 ) -> int:
     """Solve a case, write or print what was asked for, and return the exit code: 1 if the case failed.
 
-    `limits` are names of limits, of which the margins alone are printed.
+    `limits` are names of limits, of which the margins alone are printed. `find` is a parameter, and `condition` what is
+    met in the range that is sought.
     """
+    if find is not None or condition is not None:
+        if out is not None or sheet is not None or limits is not None:
+            remedy = "Give one of them at a time."
+            raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
+        return _find_and_tell(case, settings, find, condition, as_json)
     target = None if out is None else writable_data(out, PRINTED)
     page = None if sheet is None else writable_page(sheet)
     plain = as_json or target is not None or "outputs" in case_of(case, settings)[1]
@@ -185,6 +194,22 @@ def solve_and_tell(
     if as_json or target is not None:
         print(f"trackroller: the case failed: {dataset['reason'].item()}", file=sys.stderr)
     return 1
+
+
+def _find_and_tell(
+    path: Path | None, settings: list[str] | None, name: str | None, condition: str | None, as_json: bool
+) -> int:
+    """Print the range of a parameter in which a condition is met; return 1 if no value meets it."""
+    if name is None or condition is None:
+        lacking, example = ("--find", "axial_force") if name is None else ("--for", "'max_pressure < 900'")
+        raise InputError(lacking, "", "both --find and --for", f"For example {lacking} {example}.", "is missing")
+    case, options, _ = case_of(path, settings)
+    tell_doubts(case)
+    from trackroller.roller.find import find  # heavy: xarray and dask
+
+    found = find(case, name, condition, **{key: value for key, value in options.items() if key != "outputs"})
+    print(json.dumps(found.as_dict(), allow_nan=False) if as_json else found.text)
+    return 0 if found.met else 1
 
 
 def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | None) -> None:

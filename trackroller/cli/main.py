@@ -79,16 +79,18 @@ def _root(
 
 
 @command("trackroller.cli.case", "solve_and_tell")
-def solve(
+def solve(  # noqa: PLR0913 - one argument for each option of the command
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) instead")] = None,
     sheet: Annotated[Path | None, typer.Option("--report", help="write a sheet (.html or .pdf) as well")] = None,
     limits: Annotated[str | None, typer.Option(help="print limits in one table: all, or names with commas")] = None,
+    find: Annotated[str | None, typer.Option("--find", help="parameter whose range is sought; needs --for")] = None,
+    condition: Annotated[str | None, typer.Option("--for", help="what is met there, e.g. 'max_pressure < 900'")] = None,
     no_shortcuts: NoShortcuts = False,
 ) -> None:
-    """Solve one case, and exit with 1 if it fails.
+    """Solve one case, or find how far a parameter may go, and exit with 1 if the case or the search fails.
 
     The keys are the parameters and materials of a case and the options of a study file.
     """

@@ -1,0 +1,95 @@
+"""How far a parameter may go: closed forms, the results just inside and outside, and what is refused."""
+
+from __future__ import annotations
+
+import json
+import math
+
+import pytest
+
+import trackroller as tr
+from trackroller.cli.main import app, run_app
+
+SLIDING = {"contact_model": "sliding"}
+FREE = {"friction_coefficient": 0, "motor_force": 0, "axial_force": 10}
+
+
+def test_lift_off_without_friction_is_the_closed_form():
+    """A contact carries load while |F_ax| < |F_rad| tan(alpha)."""
+    edge = 200.0 * math.tan(math.radians(30.0))
+    found = tr.find(FREE, "axial_force", "regime == rolling", between=(-300, 300), **SLIDING)
+    assert found.low == pytest.approx(-edge, rel=1e-5) and found.high == pytest.approx(edge, rel=1e-5)
+    assert "lift off" in found.below and "lift off" in found.above
+
+
+def test_the_pressure_of_a_point_contact_grows_with_the_cube_root_of_the_load():
+    case = FREE | {"axial_force": 0}
+    now = tr.solve(case, outputs="contact", **SLIDING).max_pressure.values[0]
+    found = tr.find(case, "radial_force", f"max_pressure <= {1.2 * now}", **SLIDING)
+    assert found.low == pytest.approx(-200.0 * 1.2**3, rel=1e-4)
+    assert found.value == found.low and found.above == ""
+
+
+@pytest.mark.parametrize("limit", ["0.9 GPa", "900"])
+def test_results_on_either_side_of_the_end_are_those_of_solve(limit):
+    case = {"motor_force": 0, "friction_coefficient": 0.2}
+    found = tr.find(case, "radial_force", f"max_pressure < {limit} and regime == rolling", **SLIDING)
+    pressures = [
+        float(tr.solve(case | {"radial_force": force}, outputs="contact", **SLIDING).max_pressure.max())
+        for force in (found.low, found.low * (1 + 1e-4))
+    ]
+    assert pressures[0] < 900 <= pressures[1]
+
+
+def test_a_case_that_does_not_meet_the_condition_gets_the_nearest_range():
+    found = tr.find(FREE | {"axial_force": 150}, "axial_force", "regime == rolling", **SLIDING)
+    assert found.met and not found.low <= found.start <= found.high
+    assert found.high == pytest.approx(200.0 * math.tan(math.radians(30.0)), rel=1e-4)
+    assert "where it is not met" in found.text
+
+
+def test_a_condition_that_no_value_meets_has_a_reason():
+    found = tr.find(FREE, "axial_force", "max_pressure < 1", **SLIDING)
+    assert not found.met and math.isnan(found.value)
+    assert found.text.startswith("No axial force between -110 and 130 N meets") and "max_pressure" in found.text
+
+
+def test_values_that_the_program_refuses_end_the_range():
+    """A guide of the groove's radius conforms to it, and has no point contact."""
+    found = tr.find(FREE, "guide_profile_radius", "slip < 10", **SLIDING)
+    assert found.high == pytest.approx(7.0, rel=1e-4) and "refused" in found.above
+
+
+@pytest.mark.parametrize(
+    ("name", "condition", "why"),
+    [
+        ("axial", "slip < 1", "axial_force"),
+        ("axial_force", "slipp < 1", "slip"),
+        ("axial_force", "slip", "a comparison"),
+        ("axial_force", "max_pressure < 1 mm", "mm"),
+        ("axial_force", "normal_force < 1", "normal_force"),
+    ],
+)
+def test_wrong_questions_are_refused(name, condition, why):
+    with pytest.raises(tr.InputError, match=why):
+        tr.find(FREE, name, condition, **SLIDING)
+
+
+def test_the_command_prints_the_range_and_its_exit_code_says_whether_there_is_one(capsys):
+    words = [
+        "solve",
+        "--set",
+        "mu=0",
+        "--set",
+        "motor_force=0",
+        "--set",
+        "contact_model=sliding",
+        "--find",
+        "axial_force",
+    ]
+    assert run_app(lambda: app([*words, "--for", "regime == rolling"])) == 0
+    assert "to 115.47 N of axial force" in capsys.readouterr().out
+    assert run_app(lambda: app([*words, "--for", "max_pressure < 1", "--json"])) == 1
+    told = json.loads(capsys.readouterr().out)
+    assert told["low"] is None and told["name"] == "axial_force"
+    assert run_app(lambda: app(words)) == 2 and "--for" in capsys.readouterr().err

@@ -1,0 +1,272 @@
+"""How far a parameter of a roller may go until a condition on its results is no longer met: `tr.find`."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+import numpy as np
+
+from trackroller.damage import groups_of
+from trackroller.damage.verdict import GROUP as VERDICT
+from trackroller.errors import InputError, unknown_name
+from trackroller.materials import MaterialDatabase
+from trackroller.numerics.units import without_units
+from trackroller.parameters import PARAMETERS, REGIMES, Parameter
+from trackroller.parameters.expressions import condition as meets
+from trackroller.parameters.expressions import names
+from trackroller.roller.aliases import ALIASES
+from trackroller.roller.case import Case
+from trackroller.roller.output_names import PARTS
+from trackroller.roller.solver import solve
+
+STEPS = 24  # values tried on either side of the case
+RATIO = 16.0  # a value of one sign is tried from a sixteenth to sixteen times the case's
+PARTS_OF_A_STEP = (8,) * 5  # each round cuts the step that holds an end into so many parts
+STATUS = "status"  # group of results that are always there
+
+
+@dataclass(frozen=True)
+class Found:
+    """The range of a parameter in which a condition is met.
+
+    Attributes
+    ----------
+    name, unit : str
+        The parameter.
+    condition : str
+        The condition.
+    start : float
+        Value of the case.
+    low, high : float
+        Ends of the range that holds the case's value, or that lies next to it if the case itself does not meet the
+        condition; NaN if no value meets it.
+    tried : tuple of float
+        Smallest and largest value that was tried. An end of the range that equals one of these is no limit.
+    below, above : str
+        What is the case just outside either end; an empty text where the search ended.
+    """
+
+    name: str
+    unit: str
+    condition: str
+    start: float
+    low: float
+    high: float
+    tried: tuple[float, float]
+    below: str
+    above: str
+
+    @property
+    def value(self) -> float:
+        """Return the end of the range that is a limit; the one nearer to the start of two, NaN if there is none."""
+        ends = [end for end, why in ((self.low, self.below), (self.high, self.above)) if why]
+        return min(ends, key=lambda end: abs(end - self.start), default=math.nan)
+
+    @property
+    def met(self) -> bool:
+        """Return whether any value meets the condition."""
+        return not math.isnan(self.low)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Return the attributes and the answer in words, as values of JSON; a number that is not known is None."""
+        numbers = {key: getattr(self, key) for key in ("start", "low", "high", "value")}
+        known = {key: number if math.isfinite(number) else None for key, number in numbers.items()}
+        texts = {key: getattr(self, key) for key in ("name", "unit", "condition", "below", "above", "text")}
+        return {**known, **texts, "tried": list(self.tried)}
+
+    @property
+    def text(self) -> str:
+        """Return the answer in words."""
+        unit = "" if self.unit == "-" else f" {self.unit}"
+        words, tried = PARAMETERS[self.name].long_name, f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
+        if not self.met:
+            return f"No {words} between {tried} meets '{self.condition}': {self.below}"
+        inside = self.low <= self.start <= self.high
+        said = f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words}"
+        said += f" (now {self.start:g}{unit}{', where it is not met' * (not inside)})."
+        for end, why in ((f"Below {self.low:.6g}", self.below), (f"Above {self.high:.6g}", self.above)):
+            said += f" {end}{unit}: {why}" if why else ""
+        if not (self.below and self.above):
+            open_ = [f"{end:.4g}{unit}" for end, why in ((self.low, self.below), (self.high, self.above)) if not why]
+            said += f" The search ended at {' and '.join(open_)}."
+        return said
+
+
+def find(
+    case: Case | Mapping[str, Any],
+    name: str,
+    condition: str,
+    *,
+    between: tuple[float, float] | None = None,
+    database: MaterialDatabase | None = None,
+    **options: Any,
+) -> Found:
+    """Find the values of a parameter for which a roller meets a condition.
+
+    Parameters
+    ----------
+    case : Case or mapping
+        The roller with its loads.
+    name : str
+        The parameter that is changed, such as "axial_force".
+    condition : str
+        Comparisons of results with one number a case, such as "pair_life_to_first_limit_hours >= 10500 h and slip <
+        0.01"; see `trackroller.roller.output_names` for the names. `regime` and parameters may be compared, too.
+    between : tuple of float, optional
+        Values between which the parameter is tried, in its unit. Default: a sixteenth to sixteen times the value of the
+        case; for a parameter of either sign, four times the size of the larger of value and example both ways. Bounds
+        of the parameter cut both.
+    database : MaterialDatabase, optional
+        Materials; the built-in ones and the user's own if not given.
+    **options
+        Options of `trackroller.solve`.
+
+    Returns
+    -------
+    Found
+        The range of values that meet the condition and holds the case's value, or is next to it.
+
+    Raises
+    ------
+    InputError
+        If a name is unknown, the condition is no comparison, or the parameter cannot be changed.
+
+    Notes
+    -----
+    The search tries 49 values, and then cuts the steps at both ends of the range into eight parts, five times. An
+    interval that lies between two tried values is not seen. Values that the program refuses do not meet the condition.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> found = tr.find({"friction_coefficient": 0, "motor_force": 0}, "axial_force", "regime == rolling",
+    ...                 contact_model="sliding")
+    >>> round(found.high, 2)  # F_rad tan(alpha)
+    115.47
+    """
+    given = case if isinstance(case, Case) else Case(**case)
+    name = ALIASES.get(name, name)
+    if name not in PARAMETERS:
+        raise unknown_name("find", name, PARAMETERS)
+    start = getattr(given, name)
+    if not isinstance(start, (int, float)) or not math.isfinite(start):
+        raise InputError("find", name, "a parameter with a number in the case", f"Give the case a finite {name}.")
+    search = _Search(given, name, condition, database, options)
+    return search.found(float(start), _values(PARAMETERS[name], float(start), between))
+
+
+def _values(parameter: Parameter, start: float, between: tuple[float, float] | None) -> np.ndarray:
+    """Return the values to try first, rising, the start among them."""
+    signed = parameter.lower < 0.0 < parameter.upper
+    if between is not None:
+        low, high = sorted(map(float, between))
+        if not low <= start <= high:
+            low, high = min(low, start), max(high, start)
+        values = np.concatenate([np.linspace(low, start, STEPS + 1), np.linspace(start, high, STEPS + 1)[1:]])
+    elif signed or start == 0.0:
+        example = 0.0 if math.isnan(parameter.default) else abs(parameter.default)
+        width = 4.0 * max(abs(start), example if math.isfinite(example) else 0.0, 1e-6)
+        values = start + width * np.linspace(-1.0, 1.0, 2 * STEPS + 1)
+    else:
+        values = np.sort(start * RATIO ** np.linspace(-1.0, 1.0, 2 * STEPS + 1))
+    values[np.argmin(np.abs(values - start))] = start
+    return np.unique(values[parameter.accepts(values)])
+
+
+class _Search:
+    """Solve a roller at values of one parameter, and compare its results."""
+
+    def __init__(
+        self, case: Case, name: str, condition: str, database: MaterialDatabase | None, options: Mapping[str, Any]
+    ) -> None:
+        self.case, self.name, self.database = case, name, database
+        self.plain = without_units(condition, _unit_of, "find")
+        self.condition = condition
+        asked = names(self.plain, "find") - set(REGIMES)
+        for one in asked - {"regime"}:
+            if one not in PARTS and one not in PARAMETERS:
+                raise unknown_name("find", one, (*PARTS, "regime", *PARAMETERS))
+        self.results = sorted(asked & set(PARTS))
+        self.parameters = sorted(asked & set(PARAMETERS))
+        groups = {PARTS[one].variable.group for one in self.results} - {STATUS}
+        if VERDICT in groups:
+            groups |= set(groups_of("find", ["all"]))
+        self.options = {**options, "outputs": tuple(sorted(groups | {"forces"}))}
+
+    def at(self, values: Iterable[float]) -> list[tuple[bool, str]]:
+        """Return for each value whether the condition is met, and what the results are."""
+        cases: list[Case | None] = []
+        why: list[str] = []
+        for value in values:
+            try:
+                cases.append(replace(self.case, **{self.name: float(value)}))
+                why.append("")
+            except InputError as error:
+                cases.append(None)
+                why.append(str(error.errors[0]))
+        solved = [one for one in cases if one is not None]
+        told = iter(self._solved(solved) if solved else ())
+        return [
+            (False, f"it is refused: {text}") if one is None else next(told)
+            for one, text in zip(cases, why, strict=True)
+        ]
+
+    def _solved(self, cases: list[Case]) -> list[tuple[bool, str]]:
+        ds = solve(cases, database=self.database, **self.options)
+        columns: dict[str, Any] = {
+            one: PARTS[one].values(ds).values for one in self.results if PARTS[one].variable.name in ds
+        }
+        lacking = [one for one in self.results if one not in columns]
+        if lacking:
+            raise InputError("find", self.condition, f"results of this roller; it has no {', '.join(lacking)}")
+        regime = ds["regime"].values
+        columns["regime"] = np.array(REGIMES, dtype=object)[regime]
+        columns |= {one: np.array([getattr(case, one) for case in cases], dtype=object) for one in self.parameters}
+        held = np.broadcast_to(meets(self.plain, {**columns, **{r: r for r in REGIMES}}, "find"), (len(cases),))
+        out = []
+        for i, good in enumerate(held.tolist()):
+            said = [f"{one} {float(columns[one][i]):.5g}" for one in self.results]
+            if regime[i] != REGIMES.index("rolling") or not said:
+                said.insert(0, REGIMES[regime[i]].replace("_", " "))
+            out.append((bool(good), ", ".join(said) + "."))
+        return out
+
+    def found(self, start: float, values: np.ndarray) -> Found:
+        """Return the range of values that meet the condition and holds the start, or is next to it."""
+        told = self.at(values)
+        held = np.array([good for good, _ in told])
+        tried = (float(values[0]), float(values[-1]))
+        unit = PARAMETERS[self.name].unit
+        if not held.any():
+            nearest = told[int(np.argmin(np.abs(values - start)))][1]
+            return Found(self.name, unit, self.condition, start, math.nan, math.nan, tried, f"now {nearest}", "")
+        inside = np.flatnonzero(held)[np.argmin(np.abs(values[held] - start))]
+        first, last = inside, inside
+        while first > 0 and held[first - 1]:
+            first -= 1
+        while last < len(values) - 1 and held[last + 1]:
+            last += 1
+        ends = [(float(values[first]), float(values[first - 1]) if first else math.nan)]
+        ends += [(float(values[last]), float(values[last + 1]) if last < len(values) - 1 else math.nan)]
+        whys = [told[first - 1][1] if first else "", told[last + 1][1] if last < len(values) - 1 else ""]
+        for parts in PARTS_OF_A_STEP:
+            going = [i for i, (_, outside) in enumerate(ends) if not math.isnan(outside)]
+            inner = {i: np.linspace(*ends[i], parts + 1)[1:-1] for i in going}
+            answers = self.at([value for i in going for value in inner[i]]) if going else []
+            for place, i in enumerate(going):
+                own = answers[place * (parts - 1) : (place + 1) * (parts - 1)]
+                good = [held for held, _ in own]
+                stop = good.index(False) if False in good else len(good)
+                line = [ends[i][0], *inner[i].tolist(), ends[i][1]]
+                whys[i] = own[stop][1] if stop < len(own) else whys[i]
+                ends[i] = (line[stop], line[stop + 1])
+        return Found(self.name, unit, self.condition, start, ends[0][0], ends[1][0], tried, *whys)
+
+
+def _unit_of(name: str) -> str | None:
+    if name in PARTS:
+        return PARTS[name].variable.units
+    return PARAMETERS[name].unit if name in PARAMETERS else None
