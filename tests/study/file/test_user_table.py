@@ -281,3 +281,12 @@ def test_lines_that_a_program_adds_are_no_cases(first, last, tmp_path):
 def test_a_separator_that_is_no_character_is_refused(tmp_path):
     with pytest.raises(tr.InputError, match=r"line 1: table = 'sep=tab'.*such as sep=;"):
         cases("sep=tab\nradial_force\tvelocity\n-100\t60\n", tmp_path)
+
+
+def test_a_line_below_the_units_is_named_before_the_table_counts_as_empty(tmp_path):
+    with pytest.raises(tr.InputError, match=r"line 3: table = '43, 2'.*Write decimal points"):
+        cases("velocity\nm/min\n43,2\n", tmp_path)
+
+
+def test_a_separator_behind_the_only_name_counts(tmp_path):
+    assert cases('velocity\t\n"43,2"\t\n7,5\t\n', tmp_path) == {"velocity": [43.2, 7.5]}

@@ -43,7 +43,6 @@ def csv_lines(text: str, path: Path, field: str) -> tuple[Iterator[tuple[int, li
     if not stated and re.match(r'"?sep=', first, re.IGNORECASE):
         allowed = "sep= and the character between the cells, such as sep=;"
         raise InputError(field, first, allowed, "Correct or remove this line.").at(path, 1)
-    first = first.strip()
     if not stated and first[:1] not in ("", "#"):
         return _lines(text, path, field, _separator(first)), _separator(first)
     head = next((line for line in lines if line.strip() and line.strip()[0] != "#"), "")

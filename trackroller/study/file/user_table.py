@@ -141,6 +141,7 @@ def read_table(
     table = UserTable(names, head, found)
     _read_units(table, units, used, path)
     if not found:
+        wrong.check()
         raise InputError(field, str(path), f"a table with at least one {what} below the units", "Add a line.")
     numbers = [j for j, name in enumerate(names) if name in UNITS or (name in used and table.all(j, is_number))]
     _read_numbers(table, numbers, units)
