@@ -150,9 +150,21 @@ class _Writer:
             lines.insert(int(self.rng.integers(len(lines) + 1)), [""] * len(heads))
         if self.chance(0.05, "comment"):
             lines.insert(int(self.rng.integers(len(lines) + 1)), ["# measured on Monday"])
+        above: list[list[str]] = []
+        if self.chance(0.04, "unit in a comment"):
+            above = [["# forces in kN"]]
+            self.values = {} if self.has_bare_force() else self.values
+        if self.chance(0.03, "second table"):
+            heads, lines = [*heads, "", "load"], [[*line, "", "5"] for line in lines]
+            self.values = {}
         if self.chance(0.03, "title"):
             lines, heads = [heads, *lines], ["Load cases"]
-        return [heads, *lines]
+        return [*above, heads, *lines]
+
+    def has_bare_force(self) -> bool:
+        """Return whether a column of forces has its unit neither at its head, nor below it, nor in its cells."""
+        bare = [name for name, head in self.heads.items() if head == name and name not in self.units]
+        return any(name.endswith("_force") and "N" not in self.cells[name][0] for name in bare)
 
     def spoil(self, lines: list[list[str]]) -> None:
         """Empty, add or remove a cell of the last line, so that nobody knows its values."""
@@ -256,6 +268,9 @@ def _spoil(writer: _Writer, sheet: Any) -> None:
     writer.values = {}
     if writer.chance(0.08, "hidden row"):
         sheet.row_dimensions[last].hidden = True
+    elif writer.chance(0.05, "struck row"):
+        for cell in sheet[last]:
+            cell.font = openpyxl.styles.Font(strike=True)
     elif writer.chance(0.05, "hidden column"):
         sheet.column_dimensions["A"].hidden = True
     elif writer.chance(0.06, "formula"):
