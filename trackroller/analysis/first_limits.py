@@ -11,7 +11,7 @@ from trackroller.analysis.designs import Designs
 from trackroller.analysis.lives import FIRST_LIMIT
 from trackroller.analysis.table import MOST_LEVELS, StudyView
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import until_reached
+from trackroller.damage.verdict import reached_by_breaking, until_reached
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.study.outputs import flat
 
@@ -85,10 +85,9 @@ def reached_hours(view: StudyView) -> np.ndarray:
     """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
     used, hours = (flat(view.data, name, view.dims) for name in ("utilisation", "life_hours_by_limit"))
     timed = view.data["life_hours_by_limit"].notnull().any([*view.dims, "body"]).values
-    names = view.data["limit"].values.tolist()
+    limits = [LIMITS[name] for name in view.data["limit"].values.tolist()]
     breaks = np.stack([view.flagged("static", body if view.by_body else "") for body in BODIES], axis=1)
-    broken = breaks[:, None, :] & np.array([name == "fatigue" for name in names])[:, None]
-    reached = until_reached(used, hours, timed, [LIMITS[name] for name in names], broken)
+    reached = until_reached(used, hours, timed, limits, reached_by_breaking(breaks, limits))
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
 
 

@@ -70,6 +70,22 @@ def until_reached(
     return np.where(now if broken is None else now | broken, 0.0, np.where(timed[:, None], life, never))
 
 
+def reached_by_breaking(breaks: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
+    """Return which limits are reached at once because a body breaks, (..., limit, body).
+
+    A body that is loaded above its tensile strength has no life by the S-N curve: fatigue counts as reached at once.
+
+    Parameters
+    ----------
+    breaks : numpy.ndarray of bool
+        Where a body is loaded above its tensile strength, (..., body).
+    limits : sequence of Limit
+        The limits.
+    """
+    of_fatigue = np.array([limit.name == "fatigue" for limit in limits], dtype=bool)
+    return np.asarray(breaks[..., None, :] & of_fatigue[:, None])
+
+
 def first_of(
     reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit], broken: np.ndarray | None = None
 ) -> tuple[np.ndarray, np.ndarray]:

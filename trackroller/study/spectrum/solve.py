@@ -19,7 +19,7 @@ from trackroller.damage import LIMITS, fatigue, miner
 from trackroller.damage.limit import skidding
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
-from trackroller.damage.verdict import first_of, until_reached
+from trackroller.damage.verdict import first_of, reached_by_breaking, until_reached
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
@@ -281,8 +281,7 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
     critical = np.array([spectrum.critical_damage if limit.name == "fatigue" else 1.0 for limit in limits])[:, None]
     shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
-    of_fatigue = np.array([limit is fatigue.LIMIT for limit in limits])
-    broken = of_fatigue[:, None] & (breaks & (travel[:, 0] > 0)).any(axis=0)
+    broken = reached_by_breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
     reached = until_reached(most, shifts, timed, limits, broken)
     first, which = (one[0] for one in first_of(reached[None], most[None], limits, broken[None]))
     words = (*LIMITS, "unknown")
