@@ -5,6 +5,7 @@ The formulas only have the right tendencies (Hertz exponents, S-N curves, Coulom
 
 from __future__ import annotations
 
+import dataclasses
 import itertools
 import json
 
@@ -12,10 +13,10 @@ import numpy as np
 import xarray as xr
 import yaml
 
-from trackroller.analysis.stored_study import read_results
-from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.methods import METHODS, Design
 from trackroller.methods.factor import parse
+from trackroller.results.results import Results
+from trackroller.results.stored_study import open_study
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.study import Study
@@ -207,13 +208,20 @@ def sampled_study(n: int = 400, seed: int = 3, **options) -> xr.Dataset:
     return _finish(ds, factors, "lhs")
 
 
-def results_of(ds) -> StudyResults:
-    """Return a solved study from its data set; made-up data may have an unchecked study file, and have no design."""
-    if isinstance(ds, StudyResults):
+def results_of(ds, indices: xr.Dataset | None = None) -> Results:
+    """Return the results in a data set, with these indices or without any.
+
+    Made-up data may have an unchecked study file, and have no design.
+    """
+    return dataclasses.replace(_results_of(ds), known_indices=xr.Dataset() if indices is None else indices)
+
+
+def _results_of(ds) -> Results:
+    if isinstance(ds, Results):
         return ds
     ds = ds if isinstance(ds, xr.Dataset) else xr.load_dataset(ds)
     if "design_meta" in ds.attrs and ds.attrs.get("commit") != MADE_UP:
-        return read_results(ds)
+        return open_study(ds)
     told = yaml.safe_load(ds.attrs.get("study", "")) or {}
     told = {key: tuple(value) if isinstance(value, list) else value for key, value in told.items()}
     told["analysis"] = Analysis.model_validate(told.get("analysis", {}))
@@ -228,9 +236,4 @@ def results_of(ds) -> StudyResults:
     factors = {n: factor for n in columns if (factor := parse(n, specs[n])).varies}
     unit = [np.unique(columns[n], return_inverse=True)[1] for n in factors]
     method, meta = told.get("design", "grid"), {"shape": tuple(ds.sizes[d] for d in dims), "rank_correlations": ()}
-    return StudyResults(study, Design(columns, factors, METHODS[method], np.array(unit, float).T, meta), ds)
-
-
-def view_of(ds, analysis: xr.Dataset | None = None) -> StudyView:
-    """Return the table of cases of a data set, see `results_of`."""
-    return results_of(ds).view.analysed(analysis)
+    return Results(study, Design(columns, factors, METHODS[method], np.array(unit, float).T, meta), ds)

@@ -17,8 +17,8 @@ _WHERE = {
     "find": "trackroller.roller.find",
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
-    "open_study": "trackroller.solved",
-    "run": "trackroller.solved",
+    "open_study": "trackroller.results.stored_study",
+    "run": "trackroller.results.solving",
     "wear": "trackroller.roller.wear",
     "load_database": "trackroller.materials",
     "stress_from_tractions": "trackroller.halfspace.stress",
@@ -39,12 +39,12 @@ if TYPE_CHECKING:
     from trackroller.halfspace.stress import stress_on_grid as stress_on_grid
     from trackroller.halfspace.stress import von_mises as von_mises
     from trackroller.materials import load_database as load_database
+    from trackroller.results.solving import run as run
+    from trackroller.results.stored_study import open_study as open_study
     from trackroller.roller.case import Case as Case
     from trackroller.roller.find import find as find
     from trackroller.roller.solver import solve as solve
     from trackroller.roller.wear import wear as wear
-    from trackroller.solved import open_study as open_study
-    from trackroller.solved import run as run
     from trackroller.study.file.load import load_study as load_study
 
 

@@ -7,11 +7,11 @@ from __future__ import annotations
 
 SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
-WEAR = ("damage/test_wear.py", "analysis/test_unsure.py")
-SOBOL = ("analysis/test_sensitivity.py",)
+WEAR = ("damage/test_wear.py", "results/test_unsure.py")
+SOBOL = ("results/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
-CONVERGENCE = ("analysis/test_sensitivity.py", "analysis/test_enough.py", "analysis/test_given_data.py")
-BORDERS = "analysis/test_decisions.py"
+CONVERGENCE = ("results/test_sensitivity.py", "results/test_enough.py", "results/test_given_data.py")
+BORDERS = "results/test_decisions.py"
 WORDS = (
     BORDERS,
     "report/test_sentences.py",
@@ -19,11 +19,11 @@ WORDS = (
     "report/test_truth_analysis.py",
     "report/test_report.py",
 )
-DESIGNS = (BORDERS, "analysis/test_designs.py", "report/test_sentences.py", "report/test_truth.py")
-TARGETS = (BORDERS, "analysis/test_targets.py", "analysis/test_robustness.py", "report/test_truth_targets.py")
+DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py", "report/test_truth.py")
+TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py", "report/test_truth_targets.py")
 PACKED = (BORDERS, "report/test_explorer.py")
 STORE = ("study/test_resume.py", "study/test_two_runs.py")
-ANALYSED = (BORDERS, "analysis/test_sensitivity.py", "analysis/test_robustness.py", "report/test_report.py")
+ANALYSED = (BORDERS, "results/test_sensitivity.py", "results/test_robustness.py", "report/test_report.py")
 PLANNED = (BORDERS, "study/test_levels.py", "study/test_resume.py")
 SAMPLED = (BORDERS, "study/test_sampling.py")
 FORMULAS = {
@@ -86,12 +86,12 @@ FORMULAS = {
     "total-index": ("methods/saltelli.py", '("ST", 1 - rest)', '("ST", rest)', SOBOL),
     "second-order": ("methods/saltelli.py", "first[:, i] - first[:, j]", "first[:, i] + first[:, j]", SOBOL),
     "dominated": (
-        "analysis/pareto.py",
+        "results/pareto.py",
         "(held < costs[row]).any",
         "(held < costs[row]).all",
-        ("analysis/test_pareto.py",),
+        ("results/test_pareto.py",),
     ),
-    "direction": ("analysis/pareto.py", '"min" else -1.0', '"min" else 1.0', ("analysis/test_pareto.py",)),
+    "direction": ("results/pareto.py", '"min" else -1.0', '"min" else 1.0', ("results/test_pareto.py",)),
     "wear-depth": ("damage/wear.py", "return np.asarray(1e-3 * k.reshape", "return np.asarray(1e-2 * k.reshape", WEAR),
     "wear-tied": ("damage/wear.py", "np.where(braked, pressed, rubbed)", "np.where(braked, pressed, shear)", WEAR),
     "wear-place": ("damage/wear.py", "0.5 * (right - left)", "0.5 * (left - right)", WEAR),
@@ -100,28 +100,28 @@ FORMULAS = {
     "wear-gap": ("damage/wear.py", "0.5 * curvature[:, None]", "curvature[:, None]", WEAR),
     "wear-standing-roller": ("damage/wear.py", "where(locked, 1.0,", "where(locked, 0.5,", WEAR),
     "wear-run-in": ("damage/wear.py", "np.max(counted, axis=2), axis=1)", "np.min(counted, axis=2), axis=1)", WEAR),
-    "wear-of-designs": ("analysis/unsure.py", "least[None, :] > most[:, None]", "most[None, :] > most[:, None]", WEAR),
+    "wear-of-designs": ("results/unsure.py", "least[None, :] > most[:, None]", "most[None, :] > most[:, None]", WEAR),
 }
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
     "converged": ("report/templates/sentences/indices.txt.j2", "if times <= 1", "if times <= 4", CONVERGENCE),
     "interval-of-a-step": ("methods/intervals.py", "a - low_a))", "high_a - a))", WORDS),
-    "rising": ("analysis/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
-    "fewest-conditions": ("analysis/designs.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
-    "unequal-loads": ("analysis/designs.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
-    "median-case": ("analysis/designs.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
-    "beyond-data": ("analysis/table.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
-    "class-of-a-value": ("analysis/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
-    "target-met": ("analysis/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
-    "all-targets": ("analysis/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
+    "rising": ("results/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
+    "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
+    "unequal-loads": ("results/candidates.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
+    "median-case": ("results/candidates.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
+    "beyond-data": ("results/results.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
+    "class-of-a-value": ("results/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
+    "target-met": ("results/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
+    "all-targets": ("results/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
-    "rounded-outwards": ("analysis/events.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
+    "rounded-outwards": ("results/events.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
     "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
     "pareto-end": (
-        "analysis/pareto.py",
+        "results/pareto.py",
         '-1.0 if way == "max" else 1.0',
         '1.0 if way == "max" else -1.0',
         WORDS,

@@ -22,7 +22,7 @@ factors:
 contact_model: sliding
 outputs: [forces, contact]
 """
-ANALYSE = "import trackroller.cli.workflow, sys, pathlib; from trackroller.solved import open_study; "
+ANALYSE = "import trackroller.cli.workflow, sys, pathlib; from trackroller.results.stored_study import open_study; "
 ANALYSE += "from trackroller.report.build import write_analysis; "
 ANALYSE += "write_analysis(open_study('results/bits/study.nc'), pathlib.Path(sys.argv[1]))"
 

@@ -214,4 +214,4 @@ def test_figures_hold_the_most_exact_of_several_contact_models():
         compat="override",
         combine_attrs="override",
     )
-    assert results_of(ds).view.held_level("contact_model") == "kalker_table"
+    assert results_of(ds).held_level("contact_model") == "kalker_table"

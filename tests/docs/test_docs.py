@@ -155,7 +155,7 @@ def test_the_reference_shows_every_public_name():
     things = {name: resolved(name) for name in shown}
     assert all(len(inspect.getdoc(thing) or "") > 40 for thing in things.values())
     rooms = {getattr(thing, "__module__", "trackroller.study").split(".")[1] for thing in things.values()}
-    assert rooms >= {"errors", "materials", "halfspace", "contact", "damage", "roller", "study", "analysis", "report"}
+    assert rooms >= {"errors", "materials", "halfspace", "contact", "damage", "roller", "study", "results", "report"}
 
 
 def test_the_site_has_every_page_once():

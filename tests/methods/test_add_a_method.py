@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.analysis.growing import grow_study
-from trackroller.analysis.looks import looks_of
 from trackroller.app.fields import all_fields
 from trackroller.methods import METHODS, Method, register
+from trackroller.results.growing import grow_study
+from trackroller.results.looks import looks_of
 
 RECIPE = Path(__file__).parents[2] / "CONTRIBUTING.md"
 STUDY = {

@@ -15,7 +15,6 @@ import pandas as pd
 import pytest
 
 import trackroller as tr
-from trackroller.report.build import _analysis
 from trackroller.report.pages.study import contents
 
 STUDIES = int(os.environ.get("TRACKROLLER_AUDITS", "8"))
@@ -141,7 +140,7 @@ class Audit:
         solved = tr.run(self.told, progress=False)
         self.frame = rows_of(solved.data, self.told)
         self.frame["valid"] &= self.frame["pressure"] < self.limit
-        self.page = contents(solved.view.analysed(_analysis(solved.indices)))
+        self.page = contents(solved)
         self.short = dict(self.page["summary"])
         names = list(self.told["factors"])
         inner = {"friction_coefficient", "axial_force"} if self.told.get("design") == "inner_outer" else set(CONDITIONS)

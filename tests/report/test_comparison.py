@@ -11,13 +11,9 @@ import pandas as pd
 import pytest
 import xarray as xr
 import yaml
-from synthetic_results import grid_study, view_of
+from synthetic_results import grid_study, results_of
 
 import trackroller as tr
-from trackroller.analysis import contact_models as ladder
-from trackroller.analysis.groups import drives, groups
-from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
 from trackroller.report.figures import style
 from trackroller.report.figures.comparison import model_errors
@@ -26,6 +22,9 @@ from trackroller.report.pages.study import contents, write_report
 from trackroller.report.words import comparison
 from trackroller.report.words.comparison import levels_kept
 from trackroller.report.words.levels import group_texts
+from trackroller.results import contact_models as ladder
+from trackroller.results.groups import drives, groups
+from trackroller.results.pareto import study_pareto
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from validation.benchmarks.contact_spin import spin
@@ -66,27 +65,22 @@ def shown(gathered, place):
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(style, "save", save)
-        infos = draw_all(view_of(gathered), place / "figures")
-    text = write_report(view_of(gathered), place / "figures", place / "report.html").read_text(encoding="utf-8")
+        infos = draw_all(results_of(gathered), place / "figures")
+    text = write_report(results_of(gathered), place / "figures", place / "report.html").read_text(encoding="utf-8")
     return {i.name: i for i in infos}, re.sub(r'src="data[^"]*"', "", text)
 
 
 def compared(gathered, place):
     """Return the captions of the figures that compare models, and the text of the report."""
     with xr.open_dataset(gathered) as ds, style.look():
-        infos = [drawn[1]] if (drawn := model_errors(view_of(ds))) else []
-    page = write_report(view_of(gathered), place / "figures", place / "report.html")
+        infos = [drawn[1]] if (drawn := model_errors(results_of(ds))) else []
+    page = write_report(results_of(gathered), place / "figures", place / "report.html")
     return {i.name: i for i in infos}, page.read_text(encoding="utf-8")
 
 
 def sentences(paired):
     """Return all sentences of a comparison."""
     return [comparison.overview(paired), *comparison.short(paired), *comparison.details(paired)]
-
-
-def made_view(name, values):
-    """Return designs that differ in one factor."""
-    return StudyView(pd.DataFrame({name: values}), (name,), {}, True, {})
 
 
 @pytest.fixture(scope="module")
@@ -103,7 +97,7 @@ def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(o
     assert "normal forces up to a friction of 0.04" in text and "Contact models compared" in text
     assert "The sliding model is within 5 % of kalker" in drawn["models-error"].sentence
     with xr.open_dataset(own[0]) as ds:
-        paired = ladder.pairs(view_of(ds))
+        paired = ladder.pairs(results_of(ds))
     assert paired.sizes["design"] == 4 and paired.attrs["reference"] == "kalker"
     found = ladder.errors(paired)
     driven = found.isel(design=np.flatnonzero(paired["motor_force"] == -10))
@@ -124,7 +118,7 @@ def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(o
 
 def test_best_designs_and_pareto_set_are_those_of_one_model(own):
     with xr.open_dataset(own[0]) as ds:
-        page, front = contents(view_of(ds)), study_pareto(view_of(ds))
+        page, front = contents(results_of(ds)), study_pareto(results_of(ds))
         exact = ds["roller_life_hours"].where(ds["regime"] == 0).sel(contact_model="kalker")
         valid = (ds["regime"] == 0) & ((ds["validity"] & 0b100001111) == 0)
         best = {row[0]: row[1:] for row in page["tables"]["decide"][0].rows}
@@ -142,13 +136,13 @@ def test_best_designs_and_pareto_set_are_those_of_one_model(own):
 def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "motor_force": {"values": [0, -10, 10]}}
     with xr.open_dataset(study(tmp_path, factors, outputs=["forces", "contact"])) as ds:
-        figure = model_errors(view_of(ds))[0]
+        figure = model_errors(results_of(ds))[0]
     figure.draw_without_rendering()
     bottom = [axes for axes in figure.axes if axes.get_xlabel()]
     boxes = [axes.xaxis.label.get_window_extent() for axes in bottom]
     assert len(boxes) == 3 and boxes[-1].x1 <= figure.bbox.x1
     assert all(left.x1 < right.x0 for left, right in pairwise(boxes))
-    texts = group_texts(drives(made_view("motor_force", [-20.0, -5.0, 0.0, 5.0, 9.0])))
+    texts = group_texts(drives(pd.DataFrame({"motor_force": [-20.0, -5.0, 0.0, 5.0, 9.0]})))
     assert texts == ["driven, 5 to 20 N", "free rolling", "braked, 5 to 9 N"]
 
 
@@ -159,7 +153,7 @@ def test_motor_force_in_the_base_and_another_factor(tmp_path):
     assert set(drawn) >= FIGURES
     assert not any("Paper" in i.caption + i.sentence for i in drawn.values())
     with xr.open_dataset(gathered) as ds:
-        paired = ladder.pairs(view_of(ds))
+        paired = ladder.pairs(results_of(ds))
     alpha = np.deg2rad(30)  # spin of the paper's roller: sin(alpha)/r_A times 4 over the sum of curvatures
     r_a = 21.75 - 6 * np.cos(alpha)
     k = 1 / 6 - 1 / 7 + np.cos(alpha) * (1 / r_a + 1 / 220)
@@ -187,8 +181,8 @@ def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_
 def test_without_kalker_its_table_is_the_reference(tmp_path):
     factors = {"axial_force": {"values": [0, 20]}}
     with xr.open_dataset(study(tmp_path, factors, models=["sliding", "kalker_table"], outputs=["forces"])) as ds:
-        paired = ladder.pairs(view_of(ds))
-        assert model_errors(view_of(ds))[1].name == "models-error"
+        paired = ladder.pairs(results_of(ds))
+        assert model_errors(results_of(ds))[1].name == "models-error"
     assert paired.attrs["reference"] == "kalker_table" and list(paired.contact_model.values) == [
         "sliding",
         "kalker_table",
@@ -197,8 +191,8 @@ def test_without_kalker_its_table_is_the_reference(tmp_path):
 
 
 def test_one_model_or_none_is_not_compared():
-    view = view_of(grid_study())
-    assert ladder.pairs(view) is None and comparison.report_section(view) == {} and model_errors(view) is None
+    results = results_of(grid_study())
+    assert ladder.pairs(results) is None and comparison.report_section(results) == {} and model_errors(results) is None
 
 
 def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_cases():
@@ -211,7 +205,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
         {"regime": ("case", np.zeros(3 * n, "i1")), "normal_force": (("case", "contact"), force)},
         coords={"contact_model": ("case", model), "friction_coefficient": ("case", np.tile(mu, 3)), "contact": [1, 2]},
     ).isel(case=order)
-    paired = ladder.pairs(view_of(ds.isel(case=slice(1, None))))
+    paired = ladder.pairs(results_of(ds.isel(case=slice(1, None))))
     lost = str(ds["contact_model"][0].item())
     assert paired.sizes["design"] == (n if lost != "kalker" else n - 1)
     found = ladder.errors(paired).normal_force
@@ -223,7 +217,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
 
 def test_the_levels_that_keep_the_tolerance_are_named():
     mu = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5]
-    along = groups(made_view("friction_coefficient", mu), "friction_coefficient")
+    along = groups(pd.DataFrame({"friction_coefficient": mu}), "friction_coefficient")
     told = {
         (0, 0, 1, 1, 1, 1): "up to a friction of 0.05",
         (1, 1, 0, 0, 1, 0): "at a friction of 0.1 to 0.2 and from a friction of 0.5 on",
@@ -273,7 +267,7 @@ def test_the_shipped_study_holds_friction_drive_and_spin():
 
 def test_the_sentences_of_a_solved_study_say_where_sliding_is_good_enough(own):
     with xr.open_dataset(own[0]) as ds:
-        words = sentences(ladder.pairs(view_of(ds)))
+        words = sentences(ladder.pairs(results_of(ds)))
     assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
 
 
@@ -281,14 +275,14 @@ def test_the_table_of_the_exact_theory_is_compared_like_any_other_model(tmp_path
     """Its section stands in the report; full sliding is not judged by an adhesion area that it does not have."""
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 10, 200]}}
     ds = xr.load_dataset(study(tmp_path, factors, {"motor_force": 0}, ["sliding", "kalker_table", "kalker"]))
-    paired = ladder.pairs(view_of(ds))
+    paired = ladder.pairs(results_of(ds))
     rolls = int(((ds["regime"] == 0).all("contact_model")).sum())
     said = " ".join(sentences(paired))
     assert f"{rolls} with sliding and {rolls} with kalker_table" in said and 0 < rolls < paired.sizes["design"]
     assert "The table of the exact theory is within 5 % of kalker" in said
     stick = ladder.errors(paired)["stick"]
     assert stick.sel(contact_model="sliding").isnull().all() and stick.sel(contact_model="kalker_table").notnull().any()
-    rows = [row[0] for row in comparison.report_section(view_of(ds))["tables"][0].rows]
+    rows = [row[0] for row in comparison.report_section(results_of(ds))["tables"][0].rows]
     assert any("kalker_table: adhesion" in row for row in rows) and not any("sliding: adhesion" in row for row in rows)
     with style.look():
-        assert model_errors(view_of(ds))[1].name == "models-error"
+        assert model_errors(results_of(ds))[1].name == "models-error"

@@ -113,7 +113,7 @@ def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypat
     table = solved.to_table()
     for body in ("roller", "pair"):
         assert table[f"{body}_life_years"].tolist() == pytest.approx((table[f"{body}_life_hours"] / 1760).tolist())
-    columns = {c.name: c for c in collect(solved.view)}
+    columns = {c.name: c for c in collect(solved)}
     years_ = columns["roller_life_hours:years"]
     assert (years_.label, years_.unit) == (columns["roller_life_hours"].label, "years")
     assert years_.values.tolist() == pytest.approx((columns["roller_life_hours"].values / 1760).tolist())
@@ -121,4 +121,4 @@ def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypat
     assert "[h; 1760 h = 1 year]" in page and " years)" in page
     plain = tr.run("e.yaml", progress=False)
     assert "1 year]" not in plain.report("e.html").read_text(encoding="utf-8")
-    assert not any("years" in name for name in (*plain.to_table(), *(c.name for c in collect(plain.view))))
+    assert not any("years" in name for name in (*plain.to_table(), *(c.name for c in collect(plain))))

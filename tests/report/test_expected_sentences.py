@@ -13,9 +13,8 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view_of
+from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 
-from trackroller.analysis.sensitivity import analyse
 from trackroller.report.explorer.pack import pack, sample_rows
 from trackroller.report.explorer.rows import Column
 from trackroller.report.figures import style
@@ -24,6 +23,7 @@ from trackroller.report.numbers import shortened
 from trackroller.report.pages.study import contents
 from trackroller.report.words.cases import occurrence
 from trackroller.report.words.pareto import pareto_table
+from trackroller.results.sensitivity import analyse
 
 CALM = {"friction_coefficient": [0.2, 0.3, 0.4], "roller_profile_radius": [-9.0, -8.0, -7.0]}  # all of it rolls
 GRIDS = {
@@ -53,16 +53,16 @@ def study_of(name):
     return ds.drop_vars("peak"), table
 
 
-def page(view):
+def page(results):
     """Return all sentences of the page: its first lines, tables and the figure of all factors."""
-    told = contents(view)
+    told = contents(results)
     lines = [s.text for _, said in told["summary"] for s in said]
     lines += [
         str(cell) for key in ("decide", "why", "ends") for t in told["tables"][key] for row in t.rows for cell in row
     ]
     lines += [t.note for key in ("decide", "why", "ends") for t in told["tables"][key]]
     with style.look():
-        drawn = by_factor(view)
+        drawn = by_factor(results)
     return " ".join([*lines, drawn[1].sentence if drawn else ""])
 
 
@@ -70,7 +70,7 @@ def page(view):
 def test_a_sentence_that_should_appear_does(name):
     ds, table = study_of(name)
     grid = name in GRIDS
-    text = page(view_of(ds, analyse(results_of(ds)) if grid else None))
+    text = page(results_of(ds, analyse(results_of(ds)) if grid else None))
     rolls, total = int((table["regime"] == 0).sum()), len(table)
     counts = {"full slip": int((table["regime"] == 1).sum()), "lift-off": int((table["regime"] == 2).sum())}
     why = ", ".join(f"{n} {words}" for words, n in counts.items() if n)
@@ -143,7 +143,7 @@ def test_what_a_constraint_removes_is_named(name):
     ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": [limit]}, sort_keys=False)
     inside = (table["regime"] == 0) & (table["validity"] & 15 == 0)
     kept = inside & (table["axial_force"] < 20 if name == "axial" else table["material_pair"] != PAIRS[2])
-    text = dict(contents(view_of(ds))["summary"])["Valid cases"][0].text
+    text = dict(contents(results_of(ds))["summary"])["Valid cases"][0].text
     assert f"{kept.sum()} of the {inside.sum()} meet `{limit}`" in text
     gone = "Axial force 30 N" if name == "axial" else "EN AW-7075 on 1.7225-normalised"
     assert f"{gone} meets the constraints nowhere." in text
@@ -151,18 +151,18 @@ def test_what_a_constraint_removes_is_named(name):
     ds.attrs["study"] = one
     assert (
         "Only friction coefficient 0.4 meets the constraints."
-        in dict(contents(view_of(ds))["summary"])["Valid cases"][0].text
+        in dict(contents(results_of(ds))["summary"])["Valid cases"][0].text
     )
 
 
 def test_pairs_of_materials_say_that_the_friction_of_the_database_changes_too():
     """Two materials, friction given as a word: designs that differ in the pair differ in its friction as well."""
     ds = grid_study({"material_pair": list(PAIRS[:2]), "axial_force": [0.0, 5.0, 10.0, 15.0, 20.0, 25.0]})
-    same = view_of(ds)
+    same = results_of(ds)
     ds = ds.assign_coords(friction_coefficient_value=("material_pair", [0.19, 0.4]))
-    both = view_of(ds)
+    both = results_of(ds)
     with style.look():
-        one, two = (by_factor(view)[1].sentence for view in (same, both))
+        one, two = (by_factor(results)[1].sentence for results in (same, both))
     assert "pairs of valid cases that differ in nothing else;" in one
     assert "that differ in nothing else than the friction coefficient that follows from it" in two
 
@@ -171,14 +171,14 @@ def test_an_index_from_less_than_half_of_the_design_decides_nothing():
     """Most lives are unlimited: the life names no factor, the next output does, with the share it uses."""
     ds = grid_study(CALM | {"axial_force": [0.0, 10.0, 20.0, 30.0]})
     ds["roller_life_hours"] = ds["roller_life_hours"].where(ds["friction_coefficient"] > 0.35, np.inf)
-    view = view_of(ds, analyse(results_of(ds)))
-    said = dict(contents(view)["summary"])["What decides"]
-    used = float(view.analysis["used_share"].sel(output="roller_life_hours"))
+    results = results_of(ds, analyse(results_of(ds)))
+    said = dict(contents(results)["summary"])["What decides"]
+    used = float(results.analysis["used_share"].sel(output="roller_life_hours"))
     assert used < 0.5 and said[0].kind == "no_index"
     what = "No factor is named as decisive for log life of the roller"
     assert said[0].text == f"{what}: its indices use only {100 * used:.0f} % of the cases."
     next_one = said[1].values["output"]
-    assert said[1].kind == "index" and float(view.analysis["used_share"].sel(output=next_one)) >= 0.5
+    assert said[1].kind == "index" and float(results.analysis["used_share"].sel(output=next_one)) >= 0.5
 
 
 def test_small_sets_are_named_by_their_common_property_and_radial_loads_by_their_weight():
@@ -187,7 +187,7 @@ def test_small_sets_are_named_by_their_common_property_and_radial_loads_by_their
     hit = (ds["radial_force"] > -100) & (ds["axial_force"] == 30)
     few = ds.isel(friction_coefficient=[1], roller_profile_radius=[1])
     few["regime"] = xr.where(hit, 2, 0).broadcast_like(few["regime"]).transpose(*few["regime"].dims)
-    said = dict(contents(view_of(few))["summary"])["What limits"][0].text
+    said = dict(contents(results_of(few))["summary"])["What limits"][0].text
     assert said.startswith("Lift-off occurs in 2 of 8 cases (25 %), only at ") and "in all cases there" in said
     assert "radial force −60 N or −50 N" in said and "axial force 30 N" in said and "(" not in said.split(",", 1)[1]
 
@@ -213,7 +213,7 @@ def test_a_difference_between_levels_is_named_above_noise_and_a_tenth(rows, low,
     hit = np.concatenate([np.arange(half) < low * half, np.arange(half) < high * half])
     ds = xr.Dataset({"regime": ("case", hit.astype("i1"))}, {"contact_angle": ("case", angle), "case": np.arange(rows)})
     ds.attrs["study"] = yaml.safe_dump({"factors": {"contact_angle": {"values": [30.0, 40.0]}}})
-    said = occurrence(view_of(ds), hit, "Full slip")
+    said = occurrence(results_of(ds), hit, "Full slip")
     assert (said.kind == "frequent") == named and said.text.startswith(f"Full slip occurs in {hit.sum():,} of {rows:,}")
     if named:
         wanted = [f"contact angle {a}° ({hit[angle == a].sum():,} of {half:,} cases)" for a in (40, 30)]
@@ -245,7 +245,7 @@ def test_end_points_that_the_sentence_names_stand_in_the_table():
     goals = {name: ("row", values) for name, values in zip("abc", rng.random((3, 200)), strict=True)}
     front = xr.Dataset(goals | {"optimal": ("row", np.ones(200, np.int8))}, {"row": np.arange(200)})
     front.attrs = {"objectives": "a max, b min, c max", "excluded": "none", "factors": ""}
-    view = view_of(grid_study(GRIDS["curves"] | {"axial_force": list(np.arange(8.0))}))
-    rows = {row[0] for row in pareto_table(front, view, None).rows}
+    results = results_of(grid_study(GRIDS["curves"] | {"axial_force": list(np.arange(8.0))}))
+    rows = {row[0] for row in pareto_table(front, results, None).rows}
     a, b, c = (front[name].values for name in "abc")
     assert {int(a.argmax()), int(b.argmin()), int(c.argmax())} <= rows and len(rows) <= 15

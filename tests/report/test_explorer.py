@@ -13,10 +13,9 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from synthetic_results import grid_study, results_of, sampled_study, view_of
+from synthetic_results import grid_study, results_of, sampled_study
 from typer.testing import CliRunner
 
-from trackroller.analysis.pareto import pareto
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.explorer.designs import design_columns
@@ -24,7 +23,8 @@ from trackroller.report.explorer.pack import MOST_BYTES, MOST_ROWS, RARE, afford
 from trackroller.report.explorer.page import explorer, pareto_rows, secured, write_explorer
 from trackroller.report.explorer.rows import STATES, Column, collect, flag_text, solve_inputs
 from trackroller.report.figures import style
-from trackroller.solved import open_study
+from trackroller.results.pareto import pareto
+from trackroller.results.stored_study import open_study
 from trackroller.study.file.load import parse_study
 
 FACTORS = {
@@ -59,8 +59,8 @@ def unpacked(header, block):
 
 
 def test_columns_hold_every_bit_of_the_study(study):
-    view = view_of(study)
-    columns = collect(view)
+    results = results_of(study)
+    columns = collect(results)
     header, block = pack(columns)
     found = unpacked(header, block)
     known = (study["regime"] == 0) & ((study["validity"] & 4) == 0)  # a roller that skids or breaks has no life
@@ -70,7 +70,7 @@ def test_columns_hold_every_bit_of_the_study(study):
     levels = next(h for h in header if h["name"] == "guide_curve_radius")["levels"]
     assert levels == [220.0, "inf"]
     codes = found["guide_curve_radius"].astype(int) - 1
-    wanted = view.table["guide_curve_radius"].to_numpy()
+    wanted = results.table["guide_curve_radius"].to_numpy()
     assert np.array_equal(np.array([float(level) for level in levels])[codes], wanted)
     peak = study["peak_stress"].isel(contact=1, body=0).values.ravel()
     assert np.array_equal(found["peak_stress_roller_2"], peak.astype("f4"), equal_nan=True)
@@ -83,13 +83,13 @@ def test_states_tell_every_case_that_is_left_out(study):
     ds["regime"][0, 0, 0, 1] = 3
     ds["reason"] = xr.full_like(ds["regime"], "", dtype=object)
     ds["reason"][0, 0, 0, 1] = "no convergence"
-    view = view_of(ds)
-    columns = {c.name: c for c in collect(view)}
+    results = results_of(ds)
+    columns = {c.name: c for c in collect(results)}
     state = np.array(STATES)[columns["state"].values]
-    assert (state == "valid").sum() == view.valid.sum() and state[1] == "failed"
+    assert (state == "valid").sum() == results.valid.sum() and state[1] == "failed"
     assert (state == "not converged").sum() == 1 == (state == "failed").sum()
     assert (state == "lift-off").sum() == (ds["regime"] == 2).sum()
-    assert (state == "outside the model").sum() == (view.rolling & ~view.valid).sum()
+    assert (state == "outside the model").sum() == (results.rolling & ~results.valid).sum()
     assert columns["reason"].texts[columns["reason"].values[1]] == "no convergence"
     assert flag_text(5, ["half_space", "yield", "static"]).startswith(
         "the patch is too large for a half-space; the peak"
@@ -131,18 +131,18 @@ def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
     )
     monkeypatch.setattr("trackroller.report.explorer.pack.RARE", 10)
     ds = as_table(sampled_study(2_000), pareto={"roller_life_hours": "max", "friction_coefficient": "max"})
-    content = explorer(view_of(ds))
+    content = explorer(results_of(ds))
     header = json.loads(content["header"])
     rows = unpacked(header["columns"], content["rows"])["row"]
     assert header["rows"] == len(rows) < header["cases"] == 2_000
     assert "of 2,000 cases are shown" in content["sampled"]
-    front = np.flatnonzero(pareto_rows(view_of(ds), 2_000))
+    front = np.flatnonzero(pareto_rows(results_of(ds), 2_000))
     assert len(front) and set(front) <= set(rows)
     for name in ("axial_force", "roller_life_hours"):
         values = ds[name].values[np.isfinite(ds[name].values) & (ds["regime"].values == 0)]
         shown = ds[name].values[rows.astype(int)]
         assert {values.min(), values.max()} <= set(shown.tolist())
-    assert explorer(view_of(sampled_study(40)))["sampled"] == ""
+    assert explorer(results_of(sampled_study(40)))["sampled"] == ""
 
 
 def test_the_pareto_set_marks_the_rows_of_the_data_set():
@@ -150,10 +150,10 @@ def test_the_pareto_set_marks_the_rows_of_the_data_set():
     ds = grid_study({"velocity": [1.0, 2.0], "friction_coefficient": [0.1, 0.2, 0.3], "axial_force": [0.0, 30.0]})
     goals = {"roller_life_hours": "max", "friction_coefficient": "max"}
     ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"pareto": goals}, sort_keys=False)
-    rows = np.flatnonzero(pareto_rows(view_of(ds), 12))
+    rows = np.flatnonzero(pareto_rows(results_of(ds), 12))
     front = pareto(results_of(ds), goals)
     lives = front["roller_life_hours"].values[front["optimal"].values == 1]
-    told = view_of(ds).table["roller_life_hours"].to_numpy()
+    told = results_of(ds).table["roller_life_hours"].to_numpy()
     assert sorted(told[rows]) == sorted(lives) and len(rows)
 
 
@@ -161,7 +161,7 @@ def test_only_rows_of_the_most_exact_model_are_compared():
     ds = grid_study({"velocity": [1.0, 2.0], "axial_force": [0.0, 30.0]})
     models = ds.rename(velocity="contact_model").assign_coords(contact_model=["sliding", "kalker"])
     models.attrs["study"] = ds.attrs["study"].replace("velocity:", "contact_model:")
-    told = [json.loads(explorer(view_of(each))["header"])["compared"] for each in (models, ds)]
+    told = [json.loads(explorer(results_of(each))["header"])["compared"] for each in (models, ds)]
     assert told == ["kalker", ""]
 
 
@@ -171,7 +171,7 @@ def test_a_material_has_the_colour_of_the_figures_in_every_study():
     found = []
     for order in (pairs, pairs[::-1]):
         ds = grid_study({"axial_force": [0.0, 30.0], "material_pair": order})
-        entries = {c["name"]: c for c in json.loads(explorer(view_of(ds))["header"])["columns"]}
+        entries = {c["name"]: c for c in json.loads(explorer(results_of(ds))["header"])["columns"]}
         pair = entries["material_pair"]
         found.append(dict(zip(pair["texts"], pair["colours"], strict=True)))
         assert entries["axial_force"]["colours"] == style.palette(2) and "colours" not in entries["state"]
@@ -186,32 +186,32 @@ def test_a_uniform_factor_does_not_stand_on_a_logarithmic_axis():
         data = {"name": "axes", "design": "lhs", "samples": 400, "factors": factors, "outputs": ["forces"]}
         study = parse_study(data)
         ds = study.design().assign(regime=("case", np.zeros(400, np.int8))).assign_attrs(study=study.merged())
-        column = collect(view_of(ds))[0]
+        column = collect(results_of(ds))[0]
         assert column.name == "friction_coefficient" and column.values.max() > 100 * column.values.min()
         assert column.log == log
 
 
 def test_designs_and_conditions_are_numbered_where_designs_repeat(study):
-    view = view_of(study)
-    columns, lists = design_columns(view)
+    results = results_of(study)
+    columns, lists = design_columns(results)
     found = {c.name: c.values for c in columns}
     assert set(found) == {"design", "design_worst", "condition"} and lists["design"]["factors"] == ("material_pair",)
-    pair = view.table["material_pair"].to_numpy()
-    lives = view.table["roller_life_hours"].where(view.valid).groupby(pair).min()
+    pair = results.table["material_pair"].to_numpy()
+    lives = results.table["roller_life_hours"].where(results.valid).groupby(pair).min()
     assert np.array_equal(found["design_worst"], lives[pair].to_numpy(), equal_nan=True)
     assert [len(np.unique(pair[found["design"] == i])) for i in (0, 1)] == [1, 1]
-    valid = np.bincount(found["condition"], view.valid)
+    valid = np.bincount(found["condition"], results.valid)
     assert (np.diff(valid) >= 0).all() and lists["condition"]["of"] == len(valid) == 12
     hard = [row[-3] for row in lists["condition"]["rows"]]
     assert hard == [f"{int(n)} of 2" for n in valid]
-    assert design_columns(view_of(sampled_study(40))) == ([], {})
+    assert design_columns(results_of(sampled_study(40))) == ([], {})
 
 
 def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(tmp_path):
     ds = grid_study({**FACTORS, "material_pair": ["POM / POM", "PA6 / 1.7225-normalised"]})
     ds = ds.assign_coords(material_pair=FACTORS["material_pair"])
     ds.attrs["study"] = ds.attrs["study"].replace("friction-and-fit", "'<b>x</b>'")
-    text = write_explorer(view_of(ds), tmp_path / "explorer.html").read_text(encoding="utf-8")
+    text = write_explorer(results_of(ds), tmp_path / "explorer.html").read_text(encoding="utf-8")
     assert "<img" not in text and "<b>x" not in text and text.count("</script>") == 3
     (policy,) = re.findall(r'Content-Security-Policy" content="([^"]+)"', text)
     assert policy.startswith("default-src 'none'") and "unsafe" not in policy and "http" not in policy
@@ -220,7 +220,7 @@ def test_names_of_users_cannot_end_the_data_and_the_policy_allows_nothing_else(t
 
 
 def test_a_page_of_5400_cases_stays_below_its_size():
-    content = explorer(view_of(grid_study()))
+    content = explorer(results_of(grid_study()))
     assert json.loads(content["header"])["rows"] == 5400
     assert sum(len(str(part).encode()) for part in content.values()) < 1_200_000
 
@@ -245,9 +245,9 @@ def test_the_commands_of_a_case_are_those_of_repeat(tmp_path, monkeypatch):
     assert done.exit_code == 0 and done.output.strip() == "results/two-rollers/explorer.html"
     with xr.open_dataset("results/two-rollers/study.nc") as opened:
         ds = opened.load()
-    view = view_of(ds)
-    columns = {c.name: c for c in collect(view)}
-    settings, more = solve_inputs(view, columns)
+    results = results_of(ds)
+    columns = {c.name: c for c in collect(results)}
+    settings, more = solve_inputs(results, columns)
     columns |= {c.name: c for c in more}
     for row in range(4):
         told = {}

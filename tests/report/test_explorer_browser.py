@@ -12,13 +12,12 @@ import numpy as np
 import pytest
 import yaml
 from browser import CHROMIUM, Browser
-from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view_of
+from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 
-from trackroller.analysis.pareto import pareto
-from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.sensitivity import analyse
 from trackroller.report.explorer.page import write_explorer
 from trackroller.report.pages.study import write_report
+from trackroller.results.pareto import pareto, study_pareto
+from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
 pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")]
@@ -70,7 +69,7 @@ def place(tmp_path_factory):
 
 
 def written(ds, folder, name):
-    return write_explorer(view_of(ds), folder / f"{name}.html")
+    return write_explorer(results_of(ds), folder / f"{name}.html")
 
 
 def with_known_lives(ds):
@@ -127,30 +126,30 @@ SELECTIONS = {
 }
 
 
-def expected(view, wanted):
+def expected(results, wanted):
     """Mark the cases that a selection holds, by pandas."""
     from trackroller.parameters import REGIMES
 
-    mask = np.ones(len(view.table), bool)
+    mask = np.ones(len(results.table), bool)
     for name, told in wanted.items():
         if name == "regime":
-            mask &= np.isin(np.array(REGIMES)[view.regime.astype(int)], told)
+            mask &= np.isin(np.array(REGIMES)[results.regime.astype(int)], told)
         elif isinstance(told[0], str):
-            mask &= view.table[name].isin(told).to_numpy()
+            mask &= results.table[name].isin(told).to_numpy()
         else:
             low, high = (-np.inf if told[0] is None else told[0]), (np.inf if told[1] is None else told[1])
-            mask &= ((view.table[name] >= low) & (view.table[name] <= high)).to_numpy()
+            mask &= ((results.table[name] >= low) & (results.table[name] <= high)).to_numpy()
     return mask
 
 
 def test_counts_and_rows_of_ten_selections_are_those_of_the_data_set(browser, pages, grid, sample):
     for name, ds in (("grid", grid), ("sample", sample)):
-        view, page = view_of(ds), browser.open(pages[name])
+        results, page = results_of(ds), browser.open(pages[name])
         for wanted in SELECTIONS[name]:
-            mask = expected(view, wanted)
+            mask = expected(results, wanted)
             page.run(f"trackroller.select({json.dumps(wanted)})")
             assert page.run("trackroller.selected()") == np.flatnonzero(mask).tolist()
-            valid = int((mask & view.valid).sum())
+            valid = int((mask & results.valid).sum())
             assert shown(page) == [mask.sum(), valid, mask.sum() - valid]
         page.close()
 
@@ -223,10 +222,10 @@ def test_goals_that_are_statistics_compare_design_points(browser, place):
     assert "statistics over its scatter" in said and "it stands in the report" in said and page.complaints == []
     page.close()
     sens = analyse(results_of(ds))
-    front = study_pareto(view_of(ds, sens))
+    front = study_pareto(results_of(ds, sens))
     best = np.flatnonzero(front["optimal"].values == 1)
     assert 1 < len(best) < front.sizes["row"] == 6
-    page = browser.open(write_explorer(view_of(ds, sens), place / "robust.html"))
+    page = browser.open(write_explorer(results_of(ds, sens), place / "robust.html"))
     marks = page.run("[...document.querySelectorAll('[data-list=design] tbody tr')].map(e => e.lastChild.textContent)")
     assert marks.count("yes") == len(best) and marks.count("no") == 6 - len(best)
     found = []
@@ -255,13 +254,13 @@ def test_the_constraints_of_the_study_stand_among_the_limits(browser, place, gri
     wanted = out["row"].values[out["optimal"].values == 1].tolist()
     assert page.run(f"trackroller.pareto({asked})") == wanted != page.run(f"trackroller.pareto({asked[:48]})")
     assert constraints[0] in page.run("document.querySelector('#explorer').textContent")
-    view = view_of(ds)
-    lost = int((view.inside & ~view.valid).sum())
+    results = results_of(ds)
+    lost = int((results.inside & ~results.valid).sum())
     assert lost and f"{lost} constraints not met" in page.run("document.querySelector('.counts').textContent")
-    assert shown(page)[1] == view.valid.sum()
+    assert shown(page)[1] == results.valid.sum()
     page.run("trackroller.select({constraints: ['not met']})")
-    met = (view.table["peak_stress_roller"] < 200) | (view.table["axial_force"] == 0)
-    assert shown(page)[0] == int((~met | (view.regime == 1)).sum()) > 0
+    met = (results.table["peak_stress_roller"] < 200) | (results.table["axial_force"] == 0)
+    assert shown(page)[0] == int((~met | (results.regime == 1)).sum()) > 0
     page.close()
 
 
@@ -459,42 +458,42 @@ def test_pinned_cases_tell_how_far_they_are_from_lift_off(page, grid):
 
 
 def test_one_click_hides_what_skids_lifts_or_lies_outside_the_model(page, grid):
-    view = view_of(grid)
+    results = results_of(grid)
     left, top, width, height = page.box("[data-hide]")
     click = [(left + width / 2, top + height / 2)] * 2
     page.drag(*click)
-    assert page.run("trackroller.selected()") == np.flatnonzero(view.inside).tolist()
-    assert shown(page) == [view.inside.sum(), view.inside.sum(), 0] and view.inside.sum() < view.inside.size
+    assert page.run("trackroller.selected()") == np.flatnonzero(results.inside).tolist()
+    assert shown(page) == [results.inside.sum(), results.inside.sum(), 0] and results.inside.sum() < results.inside.size
     assert page.run("document.querySelector('[data-hide]').getAttribute('aria-pressed')") == "true"
     page.drag(*click)
-    assert shown(page)[0] == view.inside.size
+    assert shown(page)[0] == results.inside.size
     page.run("document.querySelector('[data-hide]').focus()")
     page.key(" ")
-    assert shown(page)[0] == view.inside.sum()
+    assert shown(page)[0] == results.inside.sum()
 
 
-def designs_of(view):
+def designs_of(results):
     """Return for each case its roller radius and material pair, and for each design its worst valid life, by pandas."""
     keys = ["roller_profile_radius", "material_pair"]
-    lives = view.table["roller_life_hours"].where(view.valid)
-    return keys, lives.groupby([view.table[k] for k in keys]).min()
+    lives = results.table["roller_life_hours"].where(results.valid)
+    return keys, lives.groupby([results.table[k] for k in keys]).min()
 
 
 def test_designs_and_conditions_are_chosen_in_their_lists(page, grid):
-    view = view_of(grid)
-    keys, worst = designs_of(view)
+    results = results_of(grid)
+    keys, worst = designs_of(results)
     assert "guide's hours are unknown" in page.run("document.querySelector('[data-list=design]').textContent")
     cells = "[...document.querySelectorAll('[data-list=%s] tbody tr')].map(e => [...e.cells].map(c => c.textContent))"
     designs, conditions = page.run(cells % "design"), page.run(cells % "condition")
-    assert len(designs) == len(worst) == 15 and len(conditions) == view.valid.size // 15
+    assert len(designs) == len(worst) == 15 and len(conditions) == results.valid.size // 15
     page.run("document.querySelectorAll('[data-list=design] input')[2].focus()")
     page.key(" ")
     rows = page.run("trackroller.selected()")
-    (design,) = {tuple(key) for key in view.table.loc[rows, keys].to_numpy()}
-    own = (view.table[keys] == design).all(axis=1)
+    (design,) = {tuple(key) for key in results.table.loc[rows, keys].to_numpy()}
+    own = (results.table[keys] == design).all(axis=1)
     assert rows == np.flatnonzero(own).tolist() and len(rows) == len(conditions)
     radius, _, life, valid = designs[2][2:]
-    assert float(radius.replace("−", "-")) == design[0] and valid == f"{view.valid[own].sum()} of {len(rows)}"
+    assert float(radius.replace("−", "-")) == design[0] and valid == f"{results.valid[own].sum()} of {len(rows)}"
     assert float(life.split(" (")[0].replace(",", "")) == pytest.approx(worst[design], rel=5e-3)
     page.run("document.querySelector('[data-list=condition] summary').click()")
     left, top, width, height = page.box("[data-list=condition] tbody tr:last-child input")
@@ -505,19 +504,19 @@ def test_designs_and_conditions_are_chosen_in_their_lists(page, grid):
     assert page.run("trackroller.selected()") == rows
     assert page.run("trackroller.select({design: [1, 3]})") == 3 * len(conditions)
     hardest = page.run("trackroller.select({condition: [1, 1]}), trackroller.selected()")
-    names = [n for n in view.factors if n not in keys]
-    held = view.table.assign(valid=view.valid).groupby(names)["valid"].sum()
-    assert view.valid[hardest].sum() == held.min() and len(hardest) == 15
+    names = [n for n in results.factors if n not in keys]
+    held = results.table.assign(valid=results.valid).groupby(names)["valid"].sum()
+    assert results.valid[hardest].sum() == held.min() and len(hardest) == 15
 
 
 def test_the_worst_case_of_each_design_is_an_axis(page, grid):
-    view = view_of(grid)
-    keys, worst = designs_of(view)
+    results = results_of(grid)
+    keys, worst = designs_of(results)
     _, x, (top, bottom) = head_of(page, "design_worst")
     page.drag((x, top - 4), (x, (top + bottom) / 2))
     rows = page.run("trackroller.selected()")
-    found = {tuple(key) for key in view.table.loc[rows, keys].to_numpy()}
-    assert 0 < len(found) < len(worst) and len(rows) == len(found) * view.valid.size // len(worst)
+    found = {tuple(key) for key in results.table.loc[rows, keys].to_numpy()}
+    assert 0 < len(found) < len(worst) and len(rows) == len(found) * results.valid.size // len(worst)
     assert min(worst[key] for key in found) > max(worst[key] for key in worst.index if key not in found)
 
 
@@ -598,7 +597,7 @@ def test_slices_of_a_grid_follow_the_slider(page, grid):
 def test_medians_of_a_sample_lie_within_their_band(browser, pages, sample):
     page = browser.open(pages["sample"])
     (life, *_), _ = page.run("trackroller.slice()")
-    valid = sample["roller_life_hours"].values[view_of(sample).valid]
+    valid = sample["roller_life_hours"].values[results_of(sample).valid]
     assert len(life) > 5 and all(s["low"] <= s["median"] <= s["high"] for s in life)
     assert {s["median"] for s in life} <= set(valid.tolist())
     page.close()
@@ -738,10 +737,10 @@ STUDIES = {
 def test_studies_of_every_form_open_without_a_complaint(browser, place, name):
     ds = STUDIES[name]()
     page = browser.open(written(ds, place, name))
-    view = view_of(ds)
-    assert shown(page) == [len(view.table), view.valid.sum(), len(view.table) - view.valid.sum()]
+    results = results_of(ds)
+    assert shown(page) == [len(results.table), results.valid.sum(), len(results.table) - results.valid.sum()]
     page.run("trackroller.pin(0); trackroller.select({regime: ['rolling', 'failed']})")
-    assert shown(page)[0] == np.isin(view.regime, [0, 3]).sum()
+    assert shown(page)[0] == np.isin(results.regime, [0, 3]).sum()
     if name == "failed":
         assert "failed" in page.run("document.querySelector('.counts').textContent")
     assert page.complaints == []
@@ -780,13 +779,13 @@ def test_a_larger_study_shows_a_stated_sample_with_its_own_pareto_set(browser, p
     ds = ds.assign_attrs(study=yaml.safe_dump(told))
     page = browser.open(written(ds, place, "sampled"))
     said = page.run("document.querySelector('#explore p').textContent")
-    view, rows = view_of(ds), page.run("trackroller.selected()")
+    results, rows = results_of(ds), page.run("trackroller.selected()")
     assert said.startswith(f"{len(rows):,} of 60,000 cases are shown: a sample by regime and validity")
     assert 49_900 < len(rows) <= 50_000 and len(rows) == shown(page)[0] == len(set(rows)) and max(rows) < 60_000
-    assert shown(page)[1] == view.valid[rows].sum()
-    for regime in np.unique(view.regime):
-        share = (view.regime == regime).mean()
-        assert (view.regime[rows] == regime).mean() == pytest.approx(share, rel=0.02)
+    assert shown(page)[1] == results.valid[rows].sum()
+    for regime in np.unique(results.regime):
+        share = (results.regime == regime).mean()
+        assert (results.regime[rows] == regime).mean() == pytest.approx(share, rel=0.02)
     out = pareto(results_of(ds), goals)
     wanted = out["row"].values[out["optimal"].values == 1].tolist()
     assert page.run(f"trackroller.pareto({json.dumps(goals)})") == wanted
@@ -804,7 +803,7 @@ def test_a_closed_figure_returns_to_its_place_and_keeps_the_focus(browser, place
     for name in names:
         (folder / f"{name}.svg").write_text(SVG)
     (folder / "index.json").write_text(json.dumps([{"name": n, "caption": n, "sentence": ""} for n in names]))
-    page = browser.open(write_report(view_of(grid), folder, place / "report.html"))
+    page = browser.open(write_report(results_of(grid), folder, place / "report.html"))
     for close in ("document.querySelector('figure:target .close').click()", "escape"):
         page.box("#regime_map a")
         page.run("document.querySelector('#regime_map a').click()")

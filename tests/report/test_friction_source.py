@@ -41,7 +41,7 @@ def test_the_report_lists_every_coefficient_with_source_and_placeholder(tmp_path
     for found in (solved(), solved(tmp_path)):
         records = friction_records(found.data.attrs)
         assert [tuple(r.values()) for r in records] == expected()
-        page = contents(found.view)
+        page = contents(found)
         table = next(t for t in page["materials"] if t.name == "friction")
         assert [row[2] for row in table.rows] == [value for _, _, value, _, _ in expected()]
         for row, (_, level, _, source, guess) in zip(table.rows, expected(), strict=True):
@@ -59,7 +59,7 @@ def test_levels_as_a_factor_are_recorded_each():
 def test_a_study_with_its_own_friction_records_none():
     found = solved(base={"friction_coefficient": 0.2})
     assert "friction" not in found.data.attrs
-    page = contents(found.view)
+    page = contents(found)
     assert [t.name for t in page["materials"]] == ["materials"]
     assert not [s for head, said in page["summary"] for s in said if s.kind == "friction_guess"]
 
@@ -68,21 +68,21 @@ def test_a_study_with_its_own_friction_records_none():
 def test_pairs_of_materials_say_that_their_friction_differs(free):
     """Two pairs of materials that the database gives two frictions differ in more than the material."""
     found = solved(base={"friction_coefficient": None if free else 0.2})
-    view = found.view
-    values = 1.0 + view.table["material_pair"].astype(str).str.len().to_numpy()
-    view.table["roller_life_hours"] = values  # the words count here, not the number
-    rows = np.ones(len(view.table), dtype=bool)
-    text = effect_of(view, "roller_life_hours", "life of the roller", "material_pair", rows).text
+    results = found
+    values = 1.0 + results.table["material_pair"].astype(str).str.len().to_numpy()
+    results.table["roller_life_hours"] = values  # the words count here, not the number
+    rows = np.ones(len(results.table), dtype=bool)
+    text = effect_of(results, "roller_life_hours", "life of the roller", "material_pair", rows).text
     assert ("differ in nothing else than the friction coefficient that follows from it" in text) == free
     assert "differ in nothing else" in text
 
 
 def test_levels_of_friction_do_not_follow_from_themselves():
     found = solved(base={}, factors=FACTORS | {"friction_coefficient": {"values": ["lower", "upper"]}})
-    view = found.view
-    view.table["roller_life_hours"] = np.where(view.table["friction_coefficient"] == "upper", 10.0, 1.0)
-    rows = np.ones(len(view.table), dtype=bool)
-    text = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", rows).text
+    results = found
+    results.table["roller_life_hours"] = np.where(results.table["friction_coefficient"] == "upper", 10.0, 1.0)
+    rows = np.ones(len(results.table), dtype=bool)
+    text = effect_of(results, "roller_life_hours", "life of the roller", "friction_coefficient", rows).text
     assert "that follows from it" not in text
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 import yaml
-from synthetic_results import view_of
+from synthetic_results import results_of
 
 from trackroller.report.words.cases import occurrence
 from trackroller.report.words.factors import effect_of
@@ -45,7 +45,7 @@ def test_a_range_of_both_directions_is_neither_heavier_nor_lighter():
 def sample(name, values, **results):
     ds = xr.Dataset({k: ("case", v) for k, v in results.items()}, {name: ("case", values)})
     ds.attrs["study"] = yaml.safe_dump({"design": "lhs", "factors": {name: {"uniform": [-1.0, 1.0]}}})
-    return view_of(ds.assign_coords(case=np.arange(len(values))))
+    return results_of(ds.assign_coords(case=np.arange(len(values))))
 
 
 @pytest.mark.parametrize("name", ["radial_force", "axial_force", "motor_force"])
@@ -55,13 +55,13 @@ def test_sentences_on_a_load_name_its_weight(name, sign):
     if name == "radial_force" and sign > 0:
         return
     size = np.random.default_rng(4).uniform(1, 90, 300)
-    view = sample(name, sign * size, roller_life_hours=1e6 / size**3)
-    said = effect_of(view, "roller_life_hours", "life of the roller", name, view.valid).text
+    results = sample(name, sign * size, roller_life_hours=1e6 / size**3)
+    said = effect_of(results, "roller_life_hours", "life of the roller", name, results.valid).text
     first, rest = said.split(" instead of ")
     lengthens = "lengthens" in rest
     assert ("lighter" in first) == lengthens and ("heavier" in rest) == lengthens
     assert " up " not in said and "up to" not in said and "raises" not in said.lower()
-    lifted = occurrence(view, size > 60, "Lift-off").text
+    lifted = occurrence(results, size > 60, "Lift-off").text
     assert f"{name.replace('_', ' ')} of {'−' if sign < 0 else ''}60" in lifted and "or heavier" in lifted
 
 
@@ -79,6 +79,6 @@ def test_what_lasts_says_in_how_many_conditions_it_rolls():
         {k: ("case", v) for k, v in columns.items()} | {"case": np.arange(8)},
     )
     ds.attrs["study"] = yaml.safe_dump({"design": "table", "factors": {k: {} for k in columns}})
-    said = {s.kind: s.text for s in best_design(view_of(ds))}
+    said = {s.kind: s.text for s in best_design(results_of(ds))}
     assert "it is valid in all 4 conditions" in said["best"]
     assert "999 h at its worst condition" in said["next"] and "valid in 2 of 4 conditions" in said["next"]

@@ -12,14 +12,9 @@ import pytest
 import xarray as xr
 from matplotlib.text import Text
 from reference_cases import solve_sliding
-from synthetic_results import PAIRS, grid_study, results_of, sampled_study, view_of
+from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 
 import trackroller as tr
-from trackroller.analysis.columns import at_surface
-from trackroller.analysis.effects import paired_effect
-from trackroller.analysis.groups import spaced_by_ratio
-from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.sensitivity import analyse
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
 from trackroller.report.figures import designs, style
@@ -33,6 +28,11 @@ from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
 from trackroller.report.words.levels import held_words
+from trackroller.results.columns import at_surface
+from trackroller.results.effects import paired_effect
+from trackroller.results.groups import spaced_by_ratio
+from trackroller.results.ranking import ranked_factors
+from trackroller.results.sensitivity import analyse
 
 ALL = {
     "designs",
@@ -53,7 +53,7 @@ SMALL = {
 
 def drawn(ds: xr.Dataset, folder) -> set[str]:
     ds.to_netcdf(folder / "study.nc")
-    return {info.name for info in draw_all(view_of(folder / "study.nc"), folder / "figures")}
+    return {info.name for info in draw_all(results_of(folder / "study.nc"), folder / "figures")}
 
 
 @pytest.fixture
@@ -94,10 +94,10 @@ def test_figures_are_the_wide_column_and_nothing_is_cut_off(grid):
 
 @pytest.mark.parametrize("make", [lambda: grid_study(SMALL), lambda: sampled_study(200)])
 def test_every_text_has_at_least_seven_points(make):
-    view = view_of(make())
+    results = results_of(make())
     with style.look():
         for draw in OF_CASES:
-            figure = (draw(view) or [None])[0]
+            figure = (draw(results) or [None])[0]
             texts = figure.findobj(Text) if figure else []
             small = {t.get_text(): t.get_fontsize() for t in texts if t.get_text().strip() and t.get_fontsize() < 7}
             assert not small, draw.__name__
@@ -107,14 +107,14 @@ def test_a_sample_shows_medians_and_bands_and_is_not_coloured_by_its_own_fit():
     ds = sampled_study(300)
     names = ["friction_coefficient", "roller_profile_radius", "axial_force", "motor_force", "material_pair"]
     share = xr.DataArray([[0.1, 0.3, 0.1, 0.0, 0.2]], {"output": ["peak_stress_roller"], "factor": names})
-    view = view_of(ds, xr.Dataset({"first": share}, attrs={"method": "lhs"}))
+    results = results_of(ds, xr.Dataset({"first": share}, attrs={"method": "lhs"}))
     with style.look():
-        figure, info = stress_against_fit(view)
-        forces, _ = forces_against_axial(view)
+        figure, info = stress_against_fit(results)
+        forces, _ = forces_against_axial(results)
     assert "medians" in info.caption and "5 to 95 %" in info.caption
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert sorted(names) == sorted(level_text("material_pair", pair) for pair in PAIRS[:3])
-    one = ds.isel(case=view.column("regime") != 2)
+    one = ds.isel(case=results.column("regime") != 2)
     for axes in forces.axes[:1]:
         median = np.median(axes.lines[0].get_ydata())
         own = one["normal_force"].sel(contact=1, case=one["motor_force"] == -30)
@@ -126,7 +126,7 @@ def test_materials_of_the_same_stresses_share_a_line():
     factors = SMALL | {"material_pair": [PAIRS[0], PAIRS[1], PAIRS[3]]}
     ds = grid_study(factors)
     with style.look():
-        figure, _ = stress_against_fit(view_of(ds, analyse(results_of(ds))))
+        figure, _ = stress_against_fit(results_of(ds, analyse(results_of(ds))))
     names = [text.get_text() for text in figure.legends[0].get_texts()]
     assert any(" and " in name for name in names) and len(names) == 4  # two lines, two kinds of marks
 
@@ -135,7 +135,7 @@ def test_the_same_study_gives_the_same_svg(grid, tmp_path):
     folder, _ = grid
     for draw in (regime_map, forces_against_axial):
         with style.look():
-            figure, info = draw(view_of(grid_study(SMALL)))
+            figure, info = draw(results_of(grid_study(SMALL)))
             again, _ = style.save(figure, tmp_path, info.name)
         assert again.read_bytes() == (folder / "figures" / f"{info.name}.svg").read_bytes()
 
@@ -182,19 +182,19 @@ def test_one_case_alone_draws_nothing_and_raises_nothing(tmp_path):
 
 
 def test_held_factors_take_the_base_level_else_the_middle():
-    view = view_of(grid_study(SMALL))
-    assert view.grid and set(view.factors) == set(SMALL)
-    assert view.held_level("roller_profile_radius") == -7.0
-    assert view.held_level("axial_force") == 30.0
-    rows, held = view.hold(("friction_coefficient",))
+    results = results_of(grid_study(SMALL))
+    assert results.grid and set(results.factors) == set(SMALL)
+    assert results.held_level("roller_profile_radius") == -7.0
+    assert results.held_level("axial_force") == 30.0
+    rows, held = results.hold(("friction_coefficient",))
     said = held_words(held)
     assert len(rows) == 2 and "roller profile radius −7 mm" in said and "driven −30 N" in said
 
 
 def test_an_effect_is_the_median_of_pairs():
-    view = view_of(grid_study(SMALL))
-    effect = paired_effect(view, "roller_life_hours", "motor_force", view.valid)
-    table = view.table[view.valid].set_index([f for f in SMALL if f != "motor_force"])
+    results = results_of(grid_study(SMALL))
+    effect = paired_effect(results, "roller_life_hours", "motor_force", results.valid)
+    table = results.table[results.valid].set_index([f for f in SMALL if f != "motor_force"])
     driven, free = (table[table["motor_force"] == level]["roller_life_hours"] for level in (-30.0, 0.0))
     ratios = (driven / free).dropna()
     assert {effect.low, effect.high} == {-30.0, 0.0} and effect.size == len(ratios) > 5
@@ -206,8 +206,8 @@ def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():
     study = "factors: {ratio: {uniform: [1, 2]}, roller_profile_radius: {expression: -6 * ratio}}"
     ds = ds.assign_coords(ratio=("case", -ds["roller_profile_radius"].values / 6))
     ds.attrs["study"] = study
-    view = view_of(ds)
-    assert view.factors == ("ratio",) and view.behind("roller_profile_radius") == ("case",)
+    results = results_of(ds)
+    assert results.factors == ("ratio",) and results.behind("roller_profile_radius") == ("case",)
 
 
 @pytest.mark.parametrize(
@@ -249,7 +249,7 @@ def test_a_material_has_the_same_colour_in_every_list():
 def test_long_names_of_designs_are_numbered_with_a_key(monkeypatch, longest):
     monkeypatch.setattr(designs, "LONGEST", longest)
     with style.look():
-        figure, info = designs.lives_by_design(view_of(grid_study(SMALL)))
+        figure, info = designs.lives_by_design(results_of(grid_study(SMALL)))
     labels = [text.get_text() for text in figure.axes[0].get_yticklabels()]
     assert (labels[:2] == ["1", "2"]) == (longest == 5)
     assert (f"1: {info.sentence.partition(' lasts longest')[0]}" in info.caption) == (longest == 5)
@@ -267,7 +267,7 @@ def test_no_design_lasts_longest_in_nine_of_ten_conditions_if_none_has_a_life_th
     base = {"motor_force": force, "radial_force": -80}
     named = {"name": "s", "base": base, "factors": factors, "design": "lhs", "samples": 40, "outputs": ["life"]}
     with style.look():
-        _, info = designs.lives_by_design(tr.run(named | {"contact_model": "sliding"}, progress=False).view)
+        _, info = designs.lives_by_design(tr.run(named | {"contact_model": "sliding"}, progress=False))
     assert info.sentence.startswith(said)
 
 
@@ -380,7 +380,7 @@ def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_fil
     assert next(iter(ranked_factors(sens, "roller_life_hours", names[:2]))) == "friction_coefficient"
     sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.05, 0.25, 0.7]
     with style.look():
-        plain, coloured = (by_factor(view_of(ds, s))[1].caption for s in (sens, None))
+        plain, coloured = (by_factor(results_of(ds, s))[1].caption for s in (sens, None))
     assert "each level of axial force" in plain and "each level of material pair" in coloured
 
 

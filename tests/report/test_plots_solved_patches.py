@@ -10,11 +10,11 @@ from matplotlib.patches import PathPatch
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.analysis.columns import at_surface
 from trackroller.report.figures import style
 from trackroller.report.figures.contact import friction_energy, shear_arrows
 from trackroller.report.figures.contact_outline import Patch, outline, widths
 from trackroller.report.figures.contact_sections import sections, surface_stress
+from trackroller.results.columns import at_surface
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "tractions", "subsurface")
 EDGED = {"motor_force": -15, "roller_profile": {"arc": -7, "edge": {"outer": 0.1}}}

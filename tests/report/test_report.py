@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from browser import CHROMIUM, Browser
-from synthetic_results import PAIRS, grid_study, sampled_study, view_of
+from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 
 import trackroller as tr
 from trackroller.parameters.validity import VALIDITY
@@ -55,8 +55,8 @@ class _Balanced(HTMLParser):
 def report(tmp_path_factory):
     folder = tmp_path_factory.mktemp("report")
     grid_study(FACTORS).to_netcdf(folder / "study.nc")
-    draw_all(view_of(folder / "study.nc"), folder / "figures")
-    return write_report(view_of(folder / "study.nc"), folder / "figures", folder / "report.html")
+    draw_all(results_of(folder / "study.nc"), folder / "figures")
+    return write_report(results_of(folder / "study.nc"), folder / "figures", folder / "report.html")
 
 
 def test_a_long_cell_that_equals_the_one_above_says_so(tmp_path):
@@ -110,25 +110,25 @@ def test_names_from_the_study_are_escaped_and_tags_balance(report):
 
 
 def test_regimes_name_the_levels_at_which_they_occur():
-    view = view_of(grid_study(FACTORS))
-    rows = {row[0]: row for row in regime_table(view).rows}
-    assert sum(row[1] for row in rows.values()) == len(view.table)
-    slip, lift = (s.text for s in dict(contents(view)["summary"])["What limits"])
+    results = results_of(grid_study(FACTORS))
+    rows = {row[0]: row for row in regime_table(results).rows}
+    assert sum(row[1] for row in rows.values()) == len(results.table)
+    slip, lift = (s.text for s in dict(contents(results)["summary"])["What limits"])
     assert lift.endswith("only at axial force 130 N: in all cases there.")
     assert "only at" in slip and "friction coefficient 0.05" in slip and "failed" not in rows
 
 
 def test_events_of_all_designs_and_of_none():
-    view = view_of(grid_study(FACTORS))
-    everywhere = occurrence(view, np.ones(len(view.table), bool), "Slip")
+    results = results_of(grid_study(FACTORS))
+    everywhere = occurrence(results, np.ones(len(results.table), bool), "Slip")
     assert everywhere.text == "Slip occurs in all 540 cases."
-    assert occurrence(view, np.zeros(len(view.table), bool), "Slip") is None
+    assert occurrence(results, np.zeros(len(results.table), bool), "Slip") is None
 
 
 def test_validity_bits_are_counted_by_mask():
     ds = grid_study(FACTORS)
-    view = view_of(ds)
-    rows = {row[0]: row for row in validity_table(view).rows}
+    results = results_of(ds)
+    rows = {row[0]: row for row in validity_table(results).rows}
     assert rows["conformal"][3] == int((((ds["validity"] & 8) > 0) & (ds["regime"] == 0)).sum()) > 0
     assert rows["static"][2] == VALIDITY["static"].criterion
     assert "half space" not in rows  # no case carries it
@@ -136,7 +136,7 @@ def test_validity_bits_are_counted_by_mask():
 
 def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_life():
     ds = grid_study(FACTORS)
-    best = {row[0]: row[1:] for row in contents(view_of(ds))["tables"]["decide"][0].rows}
+    best = {row[0]: row[1:] for row in contents(results_of(ds))["tables"]["decide"][0].rows}
     valid = (ds["regime"] == 0) & ((ds["validity"] & 15) == 0)
     frame = ds["roller_life_hours"].where(valid).to_dataframe(name="life").reset_index()
     groups = frame.groupby(["roller_profile_radius", "material_pair"]).life
@@ -150,7 +150,7 @@ def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_lif
 
 def test_a_loads_only_study_and_a_missing_figure_folder_still_give_a_report(tmp_path):
     ds = grid_study({"axial_force": [0.0, 130.0], "radial_force": [-200.0, -100.0]}, only=("normal_force",))
-    text = write_report(view_of(ds), tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
+    text = write_report(results_of(ds), tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
     assert "<figure" not in text and "Best 1" not in text and "lift-off" in text
 
 
@@ -162,12 +162,12 @@ def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
             ds[name] = variable * np.nan
     ds["reason"] = xr.full_like(ds["regime"], "no convergence <x>", dtype=object)
     ds.to_netcdf(tmp_path / "study.nc")
-    text = write_report(view_of(tmp_path / "study.nc"), tmp_path, tmp_path / "report.html").read_text()
+    text = write_report(results_of(tmp_path / "study.nc"), tmp_path, tmp_path / "report.html").read_text()
     assert "no convergence &lt;x&gt;" in text and "Best 1" not in text
 
 
 def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
-    found = contents(view_of(sampled_study(60)))
+    found = contents(results_of(sampled_study(60)))
     values, spec = next(row[2:4] for row in found["factors"].rows if row[0].startswith("Friction coefficient"))
     assert spec == "uniform 0.02, 0.4" and "…" in values
     assert "design of experiments lhs" in found["facts"] and "60 cases" in found["facts"]
@@ -219,17 +219,17 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     asked["contact_model_used"][:] = 3
     assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]
     assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
-    told = contents(view_of(ds))
+    told = contents(results_of(ds))
     valid = dict(told["summary"])["Valid cases"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)
     assert models_used(sampled_study(40)) == []
 
 
 def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
-    view = view_of(sampled_study(400))
+    results = results_of(sampled_study(400))
     hit = np.zeros(400, dtype=bool)
     hit[:3] = True
-    said = occurrence(view, hit, "Jamming")
+    said = occurrence(results, hit, "Jamming")
     assert said.kind == "cases" and said.text == "Jamming occurs in 3 of 400 cases (0, 1 and 2)."
 
 
@@ -260,7 +260,7 @@ def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatc
     put(place.gathered, grid_study(levels).to_netcdf)
     put_text(place.root / "report.html", "the report of before")
     if part.startswith("pages."):  # the figures come first, and take a second
-        monkeypatch.setattr("trackroller.report.figures.study.draw_all", lambda view, folder: [])
+        monkeypatch.setattr("trackroller.report.figures.study.draw_all", lambda results, folder: [])
     monkeypatch.setattr(f"trackroller.report.{part}", broken)
     with pytest.raises(RuntimeError, match="cannot be made"):
         build_report(place)

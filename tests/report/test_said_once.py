@@ -9,7 +9,6 @@ from functools import cache
 import pytest
 
 import trackroller as tr
-from trackroller.report.build import _analysis
 from trackroller.report.figures.study import _jobs
 from trackroller.report.numbers import Life
 from trackroller.report.pages.study import contents
@@ -86,10 +85,9 @@ def page(name):
     """Return the solved study, the contents of its page, and every passage of prose with its place."""
     study = {"name": name.replace(" ", "-"), "contact_model": "sliding", "accuracy": "preview"} | STUDIES[name]
     solved = tr.run(study, progress=False)
-    view = solved.view.analysed(_analysis(solved.indices))
-    found = contents(view)
+    found = contents(solved)
     prose = [(head, s.text) for head, said in found["summary"] for s in said]
-    infos = [drawn[1] for draw in _jobs(view) if (drawn := draw()) is not None]
+    infos = [drawn[1] for draw in _jobs(solved) if (drawn := draw()) is not None]
     prose += [(info.name, text) for info in infos for text in (info.sentence, info.caption)]
     for table in (t for part in ("decide", "why", "ends", "models") for t in found["tables"][part]):
         prose.append((table.name, table.note))
@@ -129,7 +127,7 @@ def test_cases_are_rows_and_designs_are_combinations_of_choices(name):
     choices = [n for n in ("roller_profile_radius", "material_pair", "contact_angle") if n in STUDIES[name]["factors"]]
     designs = len(solved.design.columns["friction_coefficient"]) if name in SAMPLES else 1
     if name not in SAMPLES:
-        table = solved.view.table
+        table = solved.table
         designs = table.groupby(choices).ngroups
     for _, text in prose:
         assert not re.search(r"(?<![\d.,·])1 (?:cases|designs|conditions|lives|rows|pairs|more designs)\b", text), text

@@ -12,7 +12,7 @@ import openpyxl
 import pytest
 import xarray as xr
 import yaml
-from synthetic_results import grid_study, view_of
+from synthetic_results import grid_study, results_of
 
 from trackroller.report.numbers import percent, plus_minus, share
 from trackroller.report.pages.study import contents
@@ -43,14 +43,14 @@ def test_a_trend_that_pooling_turns_is_told_by_category():
     life = 10 ** (2 - 3 * friction + 3 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
     low, high = np.median(life[friction < 0.2]), np.median(life[friction > 0.3])
     assert high > low  # all rows together suggest that friction lengthens the life
-    view = view_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
-    said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
+    results = results_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
+    said = effect_of(results, "roller_life_hours", "life of the roller", "friction_coefficient", results.valid)
     assert said is None  # the materials share too little of the range to be compared
     # where both materials were tried over the whole range, the common trend is found
     friction = rng.uniform(0, 0.5, 400)
     life = 10 ** (2 - 3 * friction + 0.2 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
-    view = view_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
-    said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
+    results = results_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
+    said = effect_of(results, "roller_life_hours", "life of the roller", "friction_coefficient", results.valid)
     assert said.kind == "classes" and "shortens the median life of the roller" in said.text
 
 
@@ -58,8 +58,8 @@ def test_no_effect_is_stated_where_the_interval_holds_zero():
     rng = np.random.default_rng(1)
     axial = rng.uniform(0, 50, 300)
     life = 10 ** (3 + 3.0 * (rng.random(300) < 0.5))  # bimodal, whatever the axial force
-    view = view_of(study({"axial_force": axial}, roller_life_hours=life))
-    said = effect_of(view, "roller_life_hours", "life of the roller", "axial_force", view.valid)
+    results = results_of(study({"axial_force": axial}, roller_life_hours=life))
+    said = effect_of(results, "roller_life_hours", "life of the roller", "axial_force", results.valid)
     assert said.kind == "classes_none" and said.text.startswith("No effect of axial force")
 
 
@@ -67,16 +67,16 @@ def test_sentences_use_all_rows_and_not_those_of_a_figure():
     rng = np.random.default_rng(2)
     axial = rng.uniform(0, 50, 5000)
     life = 10 ** (3 - axial / 50 + rng.normal(0, 0.3, 5000))
-    view = view_of(study({"axial_force": axial}, roller_life_hours=life))
-    said = effect_of(view, "roller_life_hours", "life of the roller", "axial_force", view.valid)
+    results = results_of(study({"axial_force": axial}, roller_life_hours=life))
+    said = effect_of(results, "roller_life_hours", "life of the roller", "axial_force", results.valid)
     assert said.values["size"] == pytest.approx(5000 / 3, abs=2)
 
 
 def test_a_single_event_is_named_and_attributed_to_nothing():
-    view = view_of(grid_study())
-    hit = np.zeros(len(view.table), bool)
+    results = results_of(grid_study())
+    hit = np.zeros(len(results.table), bool)
     hit[77] = True
-    text = occurrence(view, hit, "Lift-off").text
+    text = occurrence(results, hit, "Lift-off").text
     assert text == f"Lift-off occurs in 1 of {len(hit):,} cases (77)."
 
 
@@ -85,13 +85,13 @@ def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
     roller, guide = (ds["validity"] & 4) > 0, (ds["validity"] & 8) > 0
     bits = xr.concat([roller * 4 + guide * 8, guide * 8 + 0 * roller], "body").astype("int32")
     ds["validity_body"] = bits.transpose(..., "body")
-    view = view_of(ds)
-    said = valid_cases(view)
+    results = results_of(ds)
+    said = valid_cases(results)
     rolls = ds["regime"] == 0
     exceeds = int((roller & rolls).sum())
     assert f"the peak stress exceeds the tensile strength of the roller ({exceeds:,})" in said.text
     assert "strength of the guide" not in said.text  # the guide never exceeds its strength here
-    rows = {(row[0], row[1]): row[3] for row in validity_table(view).rows}
+    rows = {(row[0], row[1]): row[3] for row in validity_table(results).rows}
     assert rows[("static", "roller")] == exceeds and ("static", "guide") not in rows
 
 
@@ -124,10 +124,10 @@ def with_error(middle):
 def test_full_sliding_is_told_where_no_friction_work_tells_its_error():
     whole = with_error(1.27).assign(contact_model_used=("case", np.repeat([0, 2], 30)))
     forces = whole.drop_vars(["energy_residual", "friction_power"])
-    found = full_sliding(view_of(forces))
+    found = full_sliding(results_of(forces))
     assert found is not None and found.values["count"] == 30 and "kalker" in found.text
     exact = forces.assign(contact_model_used=("case", np.full(60, 2)))
-    assert full_sliding(view_of(whole)) is None and full_sliding(view_of(exact)) is None
+    assert full_sliding(results_of(whole)) is None and full_sliding(results_of(exact)) is None
 
 
 def test_error_of_full_sliding_that_is_told_is_the_measured_one():
@@ -139,8 +139,8 @@ def test_error_of_full_sliding_that_is_told_is_the_measured_one():
 @pytest.mark.parametrize(("middle", "told"), [(1.27, True), (0.03, False)])
 def test_a_known_model_error_above_5_percent_is_told_with_its_size(middle, told):
     ds = with_error(middle)
-    assert (friction_error(view_of(ds)) is not None) == told
-    found = contents(view_of(ds))
+    assert (friction_error(results_of(ds)) is not None) == told
+    found = contents(results_of(ds))
     sure = " ".join(s.text for s in dict(found["summary"]).get("How sure", []))
     table = next(t for t in found["tables"]["decide"] if t.name == "pareto")
     for text in (sure, table.note):
@@ -158,7 +158,7 @@ def test_a_set_with_designs_outside_the_model_says_how_many():
         attrs={"objectives": "a max, b min", "excluded": "nothing"},
     )
     ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
-    assert "1 of the set lies outside the model" in pareto_sentence(front, view_of(ds)).text
+    assert "1 of the set lies outside the model" in pareto_sentence(front, results_of(ds)).text
 
 
 def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
@@ -195,7 +195,7 @@ def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
 def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_path):
     import csv
 
-    tables = [t for t in contents(view_of(grid_study()))["tables"]["decide"] if t]
+    tables = [t for t in contents(results_of(grid_study()))["tables"]["decide"] if t]
     paths = export(tables, tmp_path)
     assert paths[-1].name == "tables.xlsx" and len(paths) == len(tables) + 1
     with paths[0].open(encoding="utf-8") as file:
@@ -223,8 +223,8 @@ def test_pairs_agree_with_a_closed_form():
     """Life 10^(3 - friction) exactly: every pair of friction 0 and 0.4 differs by 10^0.4."""
     friction, axial = np.array(list(itertools.product([0.0, 0.2, 0.4], [0.0, 10.0, 20.0, 30.0, 40.0, 50.0]))).T
     ds = study({"friction_coefficient": friction, "axial_force": axial}, roller_life_hours=10 ** (3 - friction))
-    view = view_of(ds)
-    said = effect_of(view, "roller_life_hours", "life of the roller", "friction_coefficient", view.valid)
+    results = results_of(ds)
+    said = effect_of(results, "roller_life_hours", "life of the roller", "friction_coefficient", results.valid)
     assert said.text == (
         "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold, the median of 6 pairs of valid "
         "cases that differ in nothing else; the life of the roller falls in all pairs."

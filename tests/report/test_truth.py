@@ -11,7 +11,7 @@ import pandas as pd
 import pytest
 import yaml
 from random_studies import FLAGS, random_study
-from synthetic_results import view_of
+from synthetic_results import results_of
 
 from trackroller.report.words.accuracy import accuracy, friction_error
 from trackroller.report.words.cases import extremes, lift_off, occurrence, strength, surface, valid_cases
@@ -314,12 +314,12 @@ def check_best(raw, said, method):
         assert f"valid in {v['valid']:,} of {v['cases']:,} conditions" in said.text
 
 
-def check_others(raw, view):
+def check_others(raw, results):
     """Check sentences on extremes, surfaces, known errors and accuracies."""
     said = []
-    if view.life:
+    if results.life:
         life = raw.get("roller_life_hours")
-        shown = extremes(view, *view.life, list(view.factors)[:2], view.valid)
+        shown = extremes(results, *results.life, list(results.factors)[:2], results.valid)
         finite = life[raw.valid & np.isfinite(life)]
         if shown.kind == "extremes":
             only = first(rf"One .*: {NUMBER} h", shown.text) * 2 if finite.size == 1 else ()
@@ -330,7 +330,7 @@ def check_others(raw, view):
             assert not finite.size
         said.append(shown)
     for i, body in enumerate(("roller", "guide")):
-        place = surface(view, body, view.valid)
+        place = surface(results, body, results.valid)
         peak, depth = raw.get("peak_stress")[:, :, i], raw.get("peak_z")[:, :, i]
         at = depth[np.arange(raw.n), peak.argmax(axis=1)] <= 1e-3
         if place is None:
@@ -340,19 +340,19 @@ def check_others(raw, view):
         assert ("in all" in place.text) == (place.values["count"] in (0, place.values["of"]))
         said.append(place)
         stress, limit = peak.max(axis=1), np.full(raw.n, 120.0)
-        strong = strength(body, view.column(f"peak_stress_{body}"), limit, 2 * limit, view.rolling)
+        strong = strength(body, results.column(f"peak_stress_{body}"), limit, 2 * limit, results.rolling)
         if strong is not None:
             assert strong.values["below"] == (raw.rolling & (stress < 120)).sum()
             assert strong.values["above"] == (raw.rolling & (stress > 240)).sum()
             said.append(strong)
-    residual, error = raw.get("energy_residual"), friction_error(view)
+    residual, error = raw.get("energy_residual"), friction_error(results)
     known = None if residual is None else residual[raw.rolling & np.isfinite(residual)]
     assert (error is not None) == (known is not None and known.size > 0 and np.median(known) > 0.05)
     if error:
         middle, most = first(rf"by {NUMBER} % in the median and {NUMBER} % at most", error.text)
         assert close(middle, 100 * np.median(known)) and close(most, 100 * known.max())
         said.append(error)
-    for sentence in accuracy(view):
+    for sentence in accuracy(results):
         if sentence.kind == "singular":
             assert sentence.values["count"] == (raw.flags["split_pole"] & raw.rolling).sum()
         else:
@@ -361,7 +361,7 @@ def check_others(raw, view):
             assert sentence.values["median"] == pytest.approx(np.median(own))
             assert sentence.values["largest"] == own.max()
         said.append(sentence)
-    lifted = lift_off(view)
+    lifted = lift_off(results)
     if lifted is not None:
         axial = raw.columns.get("axial_force")
         assert lifted.values["count"] == (raw.regime == 2).sum() > 0
@@ -374,30 +374,30 @@ def check_others(raw, view):
 def sentences_of(seed):
     """Check every sentence on one random study; return the kinds of the sentences."""
     ds = random_study(seed)
-    raw, view = Raw(ds), view_of(ds)
-    assert set(view.factors) == set(raw.factors)
-    said = [valid_cases(view)]
+    raw, results = Raw(ds), results_of(ds)
+    assert set(results.factors) == set(raw.factors)
+    said = [valid_cases(results)]
     check_valid(raw, said[0])
     for code, words in ((1, "Full slip"), (2, "Lift-off"), (3, "Failure")):
-        found = occurrence(view, view.regime == code, words)
+        found = occurrence(results, results.regime == code, words)
         check_occurrence(raw, found, raw.regime == code, np.ones(raw.n, bool))
         said.append(found)
-    for flag in view.flags:
-        found = occurrence(view, view.flagged(flag), flag, view.rolling)
+    for flag in results.flags:
+        found = occurrence(results, results.flagged(flag), flag, results.rolling)
         check_occurrence(raw, found, raw.flags[flag], raw.rolling)
         said.append(found)
-    best = best_design(view) if view.life else []
+    best = best_design(results) if results.life else []
     if best:
-        check_best(raw, best[0], view.study["design"])
+        check_best(raw, best[0], results.config.design)
         said += best
     outputs = [("peak_stress_roller", "peak stress of the roller")]
-    outputs += [("roller_life_hours", "life of the roller")] if view.life else []
-    for (column, words), factor in itertools.product(outputs, view.factors):
-        found = effect_of(view, column, words, factor, view.valid)
+    outputs += [("roller_life_hours", "life of the roller")] if results.life else []
+    for (column, words), factor in itertools.product(outputs, results.factors):
+        found = effect_of(results, column, words, factor, results.valid)
         if found is not None:
             (check_pairs if found.kind.startswith("pairs") else check_classes)(raw, found)
             said.append(found)
-    said += check_others(raw, view)
+    said += check_others(raw, results)
     return Counter(s.kind for s in said if s is not None)
 
 

@@ -8,10 +8,8 @@ import numpy as np
 import pytest
 import xarray as xr
 from scipy.stats import spearmanr
-from synthetic_results import results_of, view_of
+from synthetic_results import results_of
 
-from trackroller.analysis.pareto import pareto_mask
-from trackroller.analysis.sensitivity import analyse
 from trackroller.report.numbers import level_text
 from trackroller.report.words import indices
 from trackroller.report.words.factors import effect_of
@@ -19,6 +17,8 @@ from trackroller.report.words.indices import part_sentences
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.samples import samples
 from trackroller.report.words.targets import robust_tables
+from trackroller.results.pareto import pareto_mask
+from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
 NAMES = ("friction", "groove radius", "axial force", "travel speed", "contact angle")
@@ -334,11 +334,11 @@ def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
     ds = study.design()
     ds["roller_life_hours"] = ("case", 1e5 / -ds["radial_force"].values, {"units": "h"})
     ds.attrs["study"] = study.merged()
-    view = view_of(ds)
+    results = results_of(ds)
     for factor in ("axial_force", "radial_force", "velocity"):
-        said = effect_of(view, "roller_life_hours", "life of the roller", factor, np.ones(300, bool))
-        named = [n for n in view.factors if n in said.values.get("correlated", ())]
-        tied = [n for n in view.factors if n != factor and abs(spearmanr(ds[factor], ds[n]).statistic) > 0.3]
+        said = effect_of(results, "roller_life_hours", "life of the roller", factor, np.ones(300, bool))
+        named = [n for n in results.factors if n in said.values.get("correlated", ())]
+        tied = [n for n in results.factors if n != factor and abs(spearmanr(ds[factor], ds[n]).statistic) > 0.3]
         assert named == tied and ("correlated" in said.text) == bool(tied)
     sens = analyse(results_of(ds))
     assert sens["correlated"].values.tolist() == [1, 1, 0]

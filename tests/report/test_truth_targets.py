@@ -6,11 +6,11 @@ import re
 
 import numpy as np
 import pytest
-from synthetic_results import results_of, view_of
+from synthetic_results import results_of
 
-from trackroller.analysis.sensitivity import analyse
 from trackroller.report.pages.study import contents
 from trackroller.report.words.targets import target, target_tables
+from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
 SHARE = r"([\d.]+) %"
@@ -116,14 +116,14 @@ def test_every_sentence_on_targets_is_true(design):
                 agrees(re.search(rf"(?:probability|met by) {SHARE}", said.text)[1], met.mean())
                 assert ("95 % interval" in said.text) == (design == "lhs")
             levels += check_levels(ds, met, said.text)
-        cells = [cell for table in target_tables(sens, view_of(ds)) for row in table.rows for cell in row[1:]]
+        cells = [cell for table in target_tables(sens, results_of(ds)) for row in table.rows for cell in row[1:]]
         assert all(re.fullmatch(rf"{CHANCE}|\d+ of \d+|–", cell) for cell in cells)
     assert levels >= 3
 
 
 def test_targets_stand_in_the_head_and_in_decide_of_the_report():
     ds, data = random_aims(3, "inner_outer")
-    found = contents(view_of(ds, analyse(results_of(ds))))
+    found = contents(results_of(ds, analyse(results_of(ds))))
     head = dict(found["summary"])["Best"]
     assert head[-1].kind == "target" and "Best design point" not in dict(found["summary"])
     table = next(t for t in found["tables"]["decide"] if t.name == "targets")

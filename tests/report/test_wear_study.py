@@ -4,7 +4,6 @@ import pytest
 import yaml
 
 import trackroller as tr
-from trackroller.analysis.designs import Designs
 from trackroller.report.explorer.rows import collect
 from trackroller.report.words.accuracy import wear_of_sliding
 from trackroller.report.words.designs import condition_words
@@ -40,29 +39,29 @@ def study(tmp_path_factory):
 
 
 def test_sentences_on_wear(study):
-    view = study.view
-    told = guesses(view)
+    results = study
+    told = guesses(results)
     names = {name.split(" on ")[0] for name in told.values["placed"]["wear"]}
     assert names == {"POM", "PA6", "1.7225-quenched-tempered"}
     assert all(name in told.text for name in ("decide wear (", "POM", "PA6"))  # of both chunks
     km = study.data.run_in_distance.values
-    beyond = worn(view)
+    beyond = worn(results)
     first = study.data.life_to_first_limit_hours.min("body").values
     outlives = 0.06 * float(study.data.velocity) * first > km
     assert beyond.values["count"] == outlives.sum() and 0 < outlives.sum() < 16
     assert beyond.values["least"] == pytest.approx(km[outlives].min())
-    assert "41 % in the median" in wear_of_sliding(view).text
-    best = best_whatever(view)
-    life = view.table.assign(life=view.column("pair_life_to_first_limit_hours"))
+    assert "41 % in the median" in wear_of_sliding(results).text
+    best = best_whatever(results)
+    life = results.table.assign(life=results.column("pair_life_to_first_limit_hours"))
     by_design = life.groupby(["material_pair", "roller_profile_radius"])["life"].min()
     assert set(best.values["designs"]) and best.values["of"] == len(by_design) == 4
     assert by_design.idxmax()[0].split(" /")[0] in best.text
-    said = [sentence.text for _, own in in_short(view, []) for sentence in own]
-    assert {told.text, beyond.text, wear_of_sliding(view).text, best.text} <= set(said)
+    said = [sentence.text for _, own in in_short(results, []) for sentence in own]
+    assert {told.text, beyond.text, wear_of_sliding(results).text, best.text} <= set(said)
 
 
 def test_run_in_and_wear_life_are_axes_goals_and_analysed(study):
-    columns = {column.name: column for column in collect(study.view)}
+    columns = {column.name: column for column in collect(study)}
     for name in ("run_in_distance", "wear_life_hours_roller", "wear_life_hours_guide"):
         assert columns[name].role == "output" and columns[name].log
         assert name in study.indices().output.values
@@ -74,13 +73,13 @@ def test_a_study_without_wear_says_nothing_of_it(tmp_path):
     plain = yaml.safe_load(STUDY) | {"outputs": ["forces", "contact", "peak_stress", "life"], "name": "plain"}
     plain = {key: value for key, value in plain.items() if key not in ("analysis", "pareto")}
     plain["factors"] = plain["factors"] | {"wear_coefficient_factor": {"values": [1]}}
-    view = tr.run(plain, progress=False, results=tmp_path).view
-    assert guesses(view) is worn(view) is wear_of_sliding(view) is best_whatever(view) is None
+    results = tr.run(plain, progress=False, results=tmp_path)
+    assert guesses(results) is worn(results) is wear_of_sliding(results) is best_whatever(results) is None
 
 
 def test_the_worst_condition_leaves_out_what_does_not_change_the_life(study):
-    designs = Designs.of(study.view)
-    table = study.view.table.assign(life=study.view.column(designs.goal[0]))
+    designs = study.candidates()
+    table = study.table.assign(life=study.column(designs.goal[0]))
     told = []
     for case in designs.table["worst_case"]:
         own = table[designs.place == designs.place[case]]

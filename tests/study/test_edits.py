@@ -41,9 +41,9 @@ COMMANDS = {
 }
 
 
-def draw_one(view, out_dir: Path) -> list[str]:
+def draw_one(results, out_dir: Path) -> list[str]:
     """Write one file in place of the figures, which would take seconds; it holds the results that were read."""
-    (out_dir / "one.svg").write_text(f"<svg>{float(view.data['normal_force'].sum())!r}</svg>")
+    (out_dir / "one.svg").write_text(f"<svg>{float(results.data['normal_force'].sum())!r}</svg>")
     return ["one"]
 
 

@@ -14,8 +14,8 @@ import fake_solver
 import pytest
 import xarray as xr
 
-from trackroller.analysis.table import StudyView
 from trackroller.report.build import build_report
+from trackroller.results.results import Results
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.store.crate import damaged_files, read_crate
@@ -122,10 +122,10 @@ def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tm
     assert point >= 20
 
 
-def _draw(view: StudyView, out_dir: Path) -> None:
+def _draw(results: Results, out_dir: Path) -> None:
     """Write two files in place of figures, which would take seconds."""
     for name in ("one.svg", "two.svg"):
-        (out_dir / name).write_text(f"<svg>{len(view.table)}</svg>")
+        (out_dir / name).write_text(f"<svg>{len(results.table)}</svg>")
 
 
 @pytest.mark.slow

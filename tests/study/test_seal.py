@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 import xarray as xr
 
-from trackroller.analysis.stored_study import read_results, stored_analysis
 from trackroller.errors import WorkError
 from trackroller.report.build import build_report
+from trackroller.results.stored_study import open_as_reported
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import chunks
@@ -130,7 +130,7 @@ def test_a_grown_sample_keeps_its_cases_when_a_file_of_the_study_is_damaged(
     assert set(solved().values()) == {1} and sum(solved().values()) == 7, "the 13 cases of before are kept"
 
 
-def _draw(view, out_dir: Path) -> list[str]:
+def _draw(results, out_dir: Path) -> list[str]:
     for number in range(9):
         (out_dir / f"{number}.svg").write_text("<svg/>")
     return ["one"]
@@ -224,11 +224,11 @@ def test_a_report_of_earlier_results_leaves_the_crate_and_the_figures(tmp_path, 
     assert folder.gathered.read_bytes() == sealed, "equal results are equal files"
     write_crate(folder.root)
     assert "report.html" in read_crate(folder.root)
-    assert stored_analysis(read_results(folder.root), folder.root) is not None
+    assert open_as_reported(folder.root).analysis is not None
     _grow(13)
     write_crate(folder.root)
     assert {"study.nc"} == {name for name in read_crate(folder.root) if not name.startswith(("inputs", "design"))}
-    assert stored_analysis(read_results(folder.root), folder.root) is None
+    assert open_as_reported(folder.root).analysis is None
     build_report(folder)
     assert "report.html" in read_crate(folder.root) and damaged_files(folder.root) == {}
 

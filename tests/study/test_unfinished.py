@@ -169,9 +169,8 @@ def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monke
 def test_an_unfinished_study_asks_for_no_more_samples_than_its_file(tmp_path):
     basis = {"name": "part", "design": "lhs", "samples": 100, "contact_model": "sliding", "accuracy": "preview"}
     solved = tr.run(basis | {"outputs": ["forces", "life"], "factors": NUMBERS}, progress=False, results=tmp_path)
-    whole = solved.view.analysed(solved.indices())
-    part = dataclasses.replace(whole, attrs={**whole.attrs, "missing_cases": 900})
-    assert "Enough samples?" in dict(in_short(whole, []))
+    part = dataclasses.replace(solved, data=solved.data.assign_attrs(missing_cases=900))
+    assert "Enough samples?" in dict(in_short(solved, []))
     assert "Enough samples?" not in dict(in_short(part, []))
 
 

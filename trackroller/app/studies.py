@@ -17,8 +17,6 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from trackroller.analysis.stored_study import read_results, stored_analysis
-from trackroller.analysis.table import StudyView
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
@@ -26,6 +24,8 @@ from trackroller.files import files_beside, find_beside, open_here, read_text, r
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
+from trackroller.results.results import Results
+from trackroller.results.stored_study import open_as_reported
 from trackroller.roller.aliases import ALIASES
 from trackroller.study.file.config import check_name
 from trackroller.study.file.load import parse_study
@@ -282,23 +282,23 @@ def page_of(name: str, page: str) -> Path:
 
 def headlines(name: str) -> dict[str, Any]:
     """Return factors, headline numbers and the sentences of *In short* of a study."""
-    folder = folder_of(name)
-    results = read_results(folder.root)
-    view = results.view.analysed(stored_analysis(results, folder.root))
-    table = factor_table(view)
+    results = open_as_reported(folder_of(name).root)
+    table = factor_table(results)
     return {
         "name": name,
-        "cases": len(view.table),
+        "cases": len(results.table),
         "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows} if table else {},
-        "numbers": _numbers(view),
-        "short": [(head, " ".join(s.text for s in said)) for head, said in in_short(view, [])],
+        "numbers": _numbers(results),
+        "short": [(head, " ".join(s.text for s in said)) for head, said in in_short(results, [])],
     }
 
 
-def _numbers(view: StudyView) -> dict[str, list[str]]:
+def _numbers(results: Results) -> dict[str, list[str]]:
     """Return lowest, middle and highest value of each output over the cases that roll."""
     out = {}
-    for one in outputs(view.data, view.dims, default_names(view.data, view.dims, view.dims), scale="natural"):
+    for one in outputs(
+        results.data, results.dims, default_names(results.data, results.dims, results.dims), scale="natural"
+    ):
         values = sorted(v for v in one.values.tolist() if math.isfinite(v))
         if values:
             label = f"{one.long_name} [{unit_text(one.units)}]".removesuffix(" [–]")

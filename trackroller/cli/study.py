@@ -41,7 +41,7 @@ def run_with_progress(
     study: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
-    from trackroller.analysis.deciding import run_any  # heavy: analysis
+    from trackroller.results.deciding import run_any  # heavy: analysis
 
     checked = load_study(study)
     _print_not_given({**checked.config.base, **checked.factors}, checked.not_given, sys.stderr)
@@ -69,7 +69,7 @@ def make_report(study: str, results: Path, out: Path | None) -> None:
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
     target = out if out is None else writable(out) if table else writable_page(out)
     if target is not None and table:
-        from trackroller.solved import open_study  # heavy: SALib
+        from trackroller.results.stored_study import open_study  # heavy: SALib
 
         print(open_study(folder.root).export(target))
         return
@@ -91,7 +91,7 @@ def _report(folder: StudyFolder) -> Path:
 def print_explorer(study: str, results: Path, out: Path | None) -> None:
     """Write the explorer of a study from its folder or its `study.nc`, and print where it is."""
     from trackroller.report.build import place_of_pages  # heavy: SALib
-    from trackroller.solved import open_study
+    from trackroller.results.stored_study import open_study
 
     found = find_folder(study, results)
     path = Path(study) if found is None and Path(study).exists() else results / study if found is None else found.root
@@ -109,19 +109,19 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
 def print_best(study: str, results: Path, out: Path | None) -> None:
     """Print which designs of a study are best, in words and in a table; write both as a page to `out`."""
     from trackroller.report.pages.best import best_of, write_best  # heavy: SALib
-    from trackroller.solved import open_study
+    from trackroller.results.stored_study import open_study
 
     target = out if out is None else writable_page(out)
     found = find_folder(study, results)
     folder = Path(study) if found is None and Path(study).is_dir() else find_study(study, results)[1].root
-    view = open_study(folder).view
-    said, table = best_of(view)
+    solved = open_study(folder)
+    said, table = best_of(solved)
     for text in said:
         print_text(text)
     if table is not None:
         print_table(table.heads, [[cell(v) for v in row] for row in table.rows], title=table.title)
     if target is not None:
-        print(write_best(view, target))
+        print(write_best(solved, target))
 
 
 def print_status(study: str, results: Path, figures: bool) -> int:

@@ -12,11 +12,11 @@ from pathlib import Path
 from types import TracebackType
 from typing import Any, TextIO
 
-from trackroller.analysis.deciding import decides
 from trackroller.cli import tell_stopped
 from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.files import check_utf_8, interrupts_wait_for_files
 from trackroller.materials.file import find_user_file
+from trackroller.results.deciding import decides
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study

@@ -53,11 +53,11 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
         return write_spectrum(ds, path)
     if "study" not in ds.attrs:
         return write_sheet(ds, path)
-    from trackroller.analysis.stored_study import read_results  # heavy: pandas, SciPy and SALib, for studies only
     from trackroller.report import html
     from trackroller.report.build import report_text
+    from trackroller.results.stored_study import open_study  # heavy: pandas, SciPy and SALib, for studies only
 
-    return html.write_page(Path(path), report_text(read_results(ds)))
+    return html.write_page(Path(path), report_text(open_study(ds)))
 
 
 class _CallableModule(ModuleType):

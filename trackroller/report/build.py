@@ -5,18 +5,16 @@ from __future__ import annotations
 import logging
 import tempfile
 from collections.abc import Callable
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import xarray as xr
 
-from trackroller.analysis.sensitivity import analyse
-from trackroller.analysis.stored_study import read_results, stored_analysis
-from trackroller.analysis.table import StudyResults, StudyView
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files
 from trackroller.report.pages.study import contents, page_text, write_report
+from trackroller.results.results import Results
+from trackroller.results.stored_study import open_as_reported, open_study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, reporting
 from trackroller.study.store.ownership import PAGES, UNFINISHED, files_below, remove, remove_empty, standing
@@ -52,17 +50,17 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         If a result was altered after it was written, or the folder cannot be written.
     """
     with reporting(folder, tell):
-        results = read_results(folder.root)
+        results = open_study(folder.root)
         place = place_of_pages(results, folder)
         for page in (place / name for name in PAGES):
             if not page.is_dir():
                 standing(page, folder.root)  # a file of somebody else is refused before the work
         tell("analyse the results")
-        view = results.view.analysed(write_analysis(results, place / "sensitivity.nc"))
+        write_analysis(results, place / "sensitivity.nc")
         tell("draw the figures")
-        draw_figures(view, place / "figures")
+        draw_figures(results, place / "figures")
         tell("write the report")
-        report = write_pages(view, place / "figures", place / "report.html")
+        report = write_report(results, place / "figures", place / "report.html")
         if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
             write_crate(folder.root)
             for path in files_below(folder.root / UNFINISHED):
@@ -71,7 +69,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
     return report
 
 
-def place_of_pages(results: StudyResults, folder: StudyFolder) -> Path:
+def place_of_pages(results: Results, folder: StudyFolder) -> Path:
     """Return the folder for figures and pages of a study: its own, or `unfinished/` in it."""
     return folder.root / UNFINISHED if results.unfinished else folder.root
 
@@ -79,49 +77,33 @@ def place_of_pages(results: StudyResults, folder: StudyFolder) -> Path:
 def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path, list[Any]]:
     """Draw the figures of a study, of its solved cases if it is unfinished; return their folder and the figures."""
     with reporting(folder):
-        results = read_results(folder.root)
+        results = open_as_reported(folder.root)
         out = out_dir or place_of_pages(results, folder) / "figures"
-        return out, draw_figures(results.view.analysed(stored_analysis(results, folder.root)), out)
+        return out, draw_figures(results, out)
 
 
-def report_text(results: StudyResults, indices: Callable[[], xr.Dataset] | None = None) -> str:
-    """Return the report of a solved study as HTML, with its analysis and figures; no file is left behind.
-
-    `indices` returns the analysis, if the caller has it.
-    """
+def report_text(results: Results) -> str:
+    """Return the report of a study as HTML, with its analysis and figures; no file is left behind."""
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
-    view = results.view.analysed(_analysis(indices or partial(analyse, results)))
     with tempfile.TemporaryDirectory() as place:
-        draw_all(view, Path(place))
-        return page_text(view, contents(view), Path(place))
+        draw_all(results, Path(place))
+        return page_text(results, contents(results), Path(place))
 
 
-def _analysis(indices: Callable[[], xr.Dataset]) -> xr.Dataset:
-    """Return the sensitivity analysis of a study, or a data set without variables that says why there is none."""
+def write_analysis(results: Results, out: Path) -> None:
+    """Write the sensitivity analysis of a study, or a file that says why there is none."""
     try:
-        return indices()
+        analysis = results.indices()
     except InputError as exc:
-        log.info("no sensitivity analysis: %s", exc)
-        return xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
-
-
-def write_analysis(results: StudyResults, out: Path) -> xr.Dataset:
-    """Write the sensitivity analysis of a study, or a file that says why there is none, and return it."""
-    analysis = _analysis(partial(analyse, results))
+        analysis = xr.Dataset(attrs={"comment": f"no sensitivity analysis: {exc}"})
     put(out, lambda beside: analysis.to_netcdf(beside))
-    return analysis
 
 
-def draw_figures(view: StudyView, out: Path) -> list[Any]:
+def draw_figures(results: Results, out: Path) -> list[Any]:
     """Draw all figures of a study and return them; they are put in place when all of them are drawn."""
     from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
 
     with sealing(out) as beside:
         beside.mkdir()
-        return draw_all(view, beside)
-
-
-def write_pages(view: StudyView, figures: Path, out: Path) -> Path:
-    """Write the report and its tables, with the figures in a folder, and return the report's path."""
-    return write_report(view, figures, out)
+        return draw_all(results, beside)

@@ -89,11 +89,11 @@ def on_duty(duty: Mapping[str, float] | None) -> Iterator[None]:
 
 
 def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
-    """Let a function of a `StudyView` or of the result of one case write lives with their years, if a duty is known."""
+    """Let a function of `Results` or of the result of one case write lives with their years, if a duty is known."""
 
     @functools.wraps(function)
     def on_its_duty(result: Any, *args: Any, **settings: Any) -> Any:
-        with on_duty(duty_of(result) if hasattr(result, "data_vars") else result.study.get("duty")):
+        with on_duty(duty_of(result) if hasattr(result, "data_vars") else result.config.duty):
             return function(result, *args, **settings)
 
     return on_its_duty

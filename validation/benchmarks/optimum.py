@@ -15,8 +15,8 @@ from typing import Any
 import numpy as np
 
 import trackroller as tr
-from trackroller.analysis.pareto import pareto_mask
 from trackroller.methods.optimise import Gene, first_generation, next_generation
+from trackroller.results.pareto import pareto_mask
 from trackroller.study.file.search import Budget
 from validation.benchmarks.command import run
 
@@ -75,12 +75,12 @@ def hypervolume(costs: np.ndarray, reference: Sequence[float] | np.ndarray) -> f
 
 def dense() -> tuple[np.ndarray, np.ndarray, tuple[int, ...]]:
     """Return costs (n, goals) and violations (n,) of all designs of the grid, and its shape."""
-    view = tr.run(STUDY, progress=False).view
-    power = view.column("friction_power_1") + view.column("friction_power_2")
-    pressure = np.fmax(view.column("max_pressure_1"), view.column("max_pressure_2"))
-    costs = np.stack([-np.log10(view.column("pair_life_hours")), np.log10(power), pressure], axis=1)
-    usable = view.valid & np.isfinite(costs).all(axis=1)
-    return costs, 1.0 - usable, view.solved.design.meta["shape"]
+    results = tr.run(STUDY, progress=False)
+    power = results.column("friction_power_1") + results.column("friction_power_2")
+    pressure = np.fmax(results.column("max_pressure_1"), results.column("max_pressure_2"))
+    costs = np.stack([-np.log10(results.column("pair_life_hours")), np.log10(power), pressure], axis=1)
+    usable = results.valid & np.isfinite(costs).all(axis=1)
+    return costs, 1.0 - usable, results.design.meta["shape"]
 
 
 def searched(costs: np.ndarray, violation: np.ndarray, shape: tuple[int, ...], designs: int, seed: int) -> np.ndarray:

@@ -10,9 +10,9 @@ import numpy as np
 import xarray as xr
 
 import trackroller as tr
-from trackroller.analysis.contact_models import GOOD, errors, pairs
-from trackroller.analysis.table import StudyResults
 from trackroller.report.build import build_report
+from trackroller.results.contact_models import GOOD, errors, pairs
+from trackroller.results.results import Results
 from trackroller.study.store.folder import StudyFolder
 
 
@@ -28,9 +28,9 @@ def compare(study: Mapping[str, Any], out: Path) -> dict[str, Any]:
     return {"designs": found.sizes["design"], "models": models}
 
 
-def model_errors(solved: StudyResults) -> xr.Dataset:
+def model_errors(solved: Results) -> xr.Dataset:
     """Return the errors of each cheaper model, with the inputs of the designs that vary."""
-    paired = pairs(solved.view)
+    paired = pairs(solved)
     if paired is None:
         raise ValueError("the study must compare contact models")
     return errors(paired).assign_coords(paired.drop_dims("contact_model").coords)

@@ -3,7 +3,7 @@
 rule search:
     input:
         study=study_inputs(PLAN.study),
-        code=digest_file(f"{RESULTS}/code", "analysis"),
+        code=digest_file(f"{RESULTS}/code", "results"),
     output:
         design=f"{RESULTS}/design.nc",
         study=f"{RESULTS}/study.nc",

@@ -4,7 +4,7 @@
 rule sensitivity:
     input:
         study=f"{RESULTS}/study.nc",
-        code=digest_file(f"{RESULTS}/code", "analysis"),
+        code=digest_file(f"{RESULTS}/code", "results"),
     output:
         f"{RESULTS}/sensitivity.nc",
     log:

@@ -30,7 +30,7 @@ checkpoint look:
     input:
         lambda wildcards: chunks_of(int(wildcards.number) - 1),
         study=study_inputs(PLAN.study),
-        code=digest_file(f"{RESULTS}/code", "analysis"),
+        code=digest_file(f"{RESULTS}/code", "results"),
     output:
         f"{RESULTS}/looks/{{number}}.json",
     log:
@@ -62,7 +62,7 @@ rule gather:
     input:
         looks,
         study=study_inputs(PLAN.study),
-        code=digest_file(f"{RESULTS}/code", "analysis"),
+        code=digest_file(f"{RESULTS}/code", "results"),
     output:
         design=f"{RESULTS}/design.nc",
         study=f"{RESULTS}/study.nc",

@@ -4,9 +4,9 @@ import json
 import logging
 from pathlib import Path
 
-from trackroller.analysis.growing import next_step
 from trackroller.cli.workflow import log_to
 from trackroller.files import write_text
+from trackroller.results.growing import next_step
 from trackroller.study.file.load import load_study
 
 log_to(snakemake.log[0], "look at the intervals")

@@ -2,8 +2,8 @@
 
 import logging
 
-from trackroller.analysis.deciding import run_any
 from trackroller.cli.workflow import log_to
+from trackroller.results.deciding import run_any
 from trackroller.study.file.load import load_study
 
 log_to(snakemake.log[0], "search for the best designs" if snakemake.rule == "search" else "")

@@ -8,11 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 import xarray as xr
-from synthetic_results import results_of, view_of
+from synthetic_results import results_of
 
-from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.robustness import material_deviations
-from trackroller.analysis.sensitivity import analyse
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.errors import InputError
 from trackroller.materials import load_database
@@ -25,6 +22,9 @@ from trackroller.report.numbers import share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.inputs import as_material
 from trackroller.report.words import indices
+from trackroller.results.pareto import study_pareto
+from trackroller.results.robustness import material_deviations
+from trackroller.results.sensitivity import analyse
 from trackroller.study.file.goals import Analysis
 from trackroller.study.file.load import parse_study
 
@@ -166,11 +166,11 @@ def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_pat
         roller_life_hours=lambda x, v: 100 * v,
         friction_power=lambda x, v: 10 * v,
     )
-    front = study_pareto(view_of(ds))
+    front = study_pareto(results_of(ds))
     kept = ds.isel(case=front["row"].values)
     assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
     assert set(kept["roller_material"].values) == {"PA6"}
-    told = next(t for t in contents(view_of(ds))["tables"]["decide"] if t.name == "pareto")
+    told = next(t for t in contents(results_of(ds))["tables"]["decide"] if t.name == "pareto")
     assert told.heads[1] == "Life of the roller [h] ↑" and told.rows
     lives = [float(ds["roller_life_hours"][row[0]]) for row in told.rows]
     assert lives == sorted(lives, reverse=True)
@@ -185,7 +185,7 @@ def test_analysis_keys_decide_outputs_and_scale(tmp_path):
     ds.to_netcdf(tmp_path / "study.nc")
     sens = analyse(results_of(tmp_path / "study.nc"))
     assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
-    told = contents(view_of(ds, sens))["tables"]["why"][1]
+    told = contents(results_of(ds, sens))["tables"]["why"][1]
     assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
     # an inert factor's delta is within chance
     column = told.heads.index("Delta")
@@ -229,9 +229,9 @@ def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set(
             assert f"{kept.sum()} of 400 rows used" in sens["note"].values[0]
             assert f"{360 - kept.sum()} outside the constraints" in sens["note"].values[0]
     assert index["limited"] > 0.9 > 0.3 > index["free"]
-    view = view_of(ds)
-    np.testing.assert_array_equal(view.valid, kept)
-    told = dict(contents(view_of(ds))["summary"])
+    results = results_of(ds)
+    np.testing.assert_array_equal(results.valid, kept)
+    told = dict(contents(results_of(ds))["summary"])
     assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Valid cases"][0].text
     lives = ds["roller_life_hours"].values[kept]
     best = told["Best"][0].values
@@ -299,7 +299,7 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
         "base": {"roller_material": "steel", "guide_material": "steel"},
     }
     ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
-    _, info = sn_diagram(view_of(ds))
+    _, info = sn_diagram(results_of(ds))
     below, above = (
         int(((np.arange(40) % 4 > 0) & hit).sum()) for hit in (stress[:, 0, 0] < 360, stress[:, 0, 0] > 720)
     )
@@ -359,7 +359,9 @@ def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
         ds.to_netcdf(tmp_path / "study.nc")
         sens = analyse(results_of(tmp_path / "study.nc"))
         lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
-        told = [t for t in contents(view_of(ds, sens))["tables"]["decide"] if t.name.startswith(("b10", "percentiles"))]
+        told = [
+            t for t in contents(results_of(ds, sens))["tables"]["decide"] if t.name.startswith(("b10", "percentiles"))
+        ]
         assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
         assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # the table of percentiles stands apart
     spread = np.hypot(0.1, np.log10(9) / 2.5631)

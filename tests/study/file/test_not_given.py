@@ -111,8 +111,8 @@ def test_the_report_says_that_a_silent_drive_makes_rollers_skid():
     factors = {"friction_coefficient": {"values": [0.04, 0.3]}, "radial_force": {"values": [-90, -180]}}
     named = {"name": "hall", "factors": factors, "contact_model": "sliding", "outputs": ["forces"]}
     for base, said in (({}, True), ({"motor_force": -30}, False), ({"motor_force": 0}, False)):
-        view = tr.run(named | {"base": base}, progress=False).view
-        texts = [s.text for s in dict(in_short(view, [])).get("What limits", [])]
+        results = tr.run(named | {"base": base}, progress=False)
+        texts = [s.text for s in dict(in_short(results, [])).get("What limits", [])]
         silent = "The study gives no motor force: −30 N of the paper's example drive the roller"
         assert any(text.startswith(silent) for text in texts) == said
         assert any(text.startswith("Full slip") for text in texts) == (base != {"motor_force": 0})

@@ -6,25 +6,25 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.designs import Designs, hardest_first
-from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
 from trackroller.report.tables.table import cell, factor_cell, heading
 from trackroller.report.words.designs import alone, first_words
 from trackroller.report.words.pareto import goal_heading
+from trackroller.results.candidates import Candidates, hardest_first
+from trackroller.results.pareto import study_pareto
+from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
 
 MOST_LISTED = 200  # designs or conditions in a list; the axis holds all of them
 
 
-def design_columns(view: StudyView) -> tuple[list[Column], dict[str, Any]]:
+def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
     """Return what the explorer needs to compare designs over their conditions.
 
     Parameters
     ----------
-    view : the study as a table
+    results : the solved study
 
     Returns
     -------
@@ -34,23 +34,23 @@ def design_columns(view: StudyView) -> tuple[list[Column], dict[str, Any]]:
     lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list, `of`, the number of all
         its entries, and a `note` for the reader; empty if no design repeats
     """
-    designs = Designs.of(view)
-    if designs is None or len(designs.size) < 2 or designs.size.max() < 2:
+    candidates = results.candidates()
+    if candidates is None or len(candidates.size) < 2 or candidates.size.max() < 2:
         return [], {}
-    own = designs.place >= 0
-    number = np.argsort(designs.table.index.to_numpy())[designs.place]
-    worst = np.where(own, designs.table["worst"].to_numpy()[number], np.nan)
-    words, unit = designs.goal[1:]
+    own = candidates.place >= 0
+    number = np.argsort(candidates.table.index.to_numpy())[candidates.place]
+    worst = np.where(own, candidates.table["worst"].to_numpy()[number], np.nan)
+    words, unit = candidates.goal[1:]
     columns = [
         _numbered("design", "Design, the best first", np.where(own, number, -1)),
-        Column("design_worst", f"Worst {words} of the design", unit, "design", worst, log=designs.rising),
+        Column("design_worst", f"Worst {words} of the design", unit, "design", worst, log=candidates.rising),
     ]
     head = with_unit(f"Worst {words}", unit)
-    lists = {"design": _designs(designs, head)}
-    if designs.possible > 1:
-        place = hardest_first(designs)
+    lists = {"design": _designs(candidates, head)}
+    if candidates.possible > 1:
+        place = hardest_first(candidates)
         columns.append(_numbered("condition", "Condition, the hardest first", place))
-        lists["condition"] = _conditions(designs, place, number, head)
+        lists["condition"] = _conditions(candidates, place, number, head)
     return columns, lists
 
 
@@ -59,61 +59,67 @@ def _numbered(name: str, label: str, codes: np.ndarray) -> Column:
     return Column(name, label, "", "design", codes, levels, tuple(count(int(level)) for level in levels))
 
 
-def _designs(designs: Designs, worst: str) -> dict[str, Any]:
+def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
     """List the designs by rank, with their lives, the conditions in which they are valid, and what fails first."""
-    heads, cells, note = _goals(designs)
-    nine = [f"Nine of ten reach [{designs.goal[2]}]"] if "b10" in designs.table else []
+    heads, cells, note = _goals(candidates)
+    nine = [f"Nine of ten reach [{candidates.goal[2]}]"] if "b10" in candidates.table else []
     rows = []
-    for _, row in designs.table.head(MOST_LISTED).iterrows():
-        key = tuple(row[n] for n in designs.choices)
+    for _, row in candidates.table.head(MOST_LISTED).iterrows():
+        key = tuple(row[n] for n in candidates.choices)
         lives = [Life(row[name], row[f"{name}_beyond"]) for name in (["b10", "worst"] if nine else ["worst"])]
         valid = part_of(row["valid"], row["cases"])
-        further = [*map(cell, lives if designs.rising else map(float, lives)), valid]
-        further += [] if alone(designs) else [first_words(row) or "–"]
+        further = [*map(cell, lives if candidates.rising else map(float, lives)), valid]
+        further += [] if alone(candidates) else [first_words(row) or "–"]
         further += cells.get(key, ["–"] * len(heads))
-        rows.append([*(cell(factor_cell(n, row[n])) for n in designs.choices), *further])
-    first = [] if alone(designs) else ["Fails first"]
-    note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(designs) else ""
-    heads = [*map(heading, designs.choices), *nine, worst, "Valid in", *first, *heads]
-    return {"factors": designs.choices, "heads": heads, "rows": rows, "of": len(designs.table), "note": note.strip()}
+        rows.append([*(cell(factor_cell(n, row[n])) for n in candidates.choices), *further])
+    first = [] if alone(candidates) else ["Fails first"]
+    note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(candidates) else ""
+    heads = [*map(heading, candidates.choices), *nine, worst, "Valid in", *first, *heads]
+    return {
+        "factors": candidates.choices,
+        "heads": heads,
+        "rows": rows,
+        "of": len(candidates.table),
+        "note": note.strip(),
+    }
 
 
-def _goals(designs: Designs) -> tuple[list[str], dict[tuple[Any, ...], list[str]], str]:
+def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], list[str]], str]:
     """Return the goals of the study that are statistics over the conditions of a design, with its Pareto set.
 
     Returns
     -------
     Heads, cells by design, and what a reader has to know; empty if the goals of the study are those of single cases.
     """
-    goals = designs.view.study["pareto"]
+    goals = candidates.results.config.pareto
     if not any(statistic(name)[0] for name in goals):
         return [], {}, ""
     note = "The goals of this study are statistics over its scatter: they compare designs. Goals below compares cases."
-    front = study_pareto(designs.view)
+    front = study_pareto(candidates.results)
     if front is None:
         return [], {}, f"{note} Their Pareto set needs sensitivity.nc beside the study; it stands in the report."
-    names = [name for name in goals if name not in designs.choices]
+    names = [name for name in goals if name not in candidates.choices]
     best = np.where(front["optimal"].values == 1, "yes", "no")
     values = zip(*(front[name].values.tolist() for name in names), strict=True)
     lines = [[*map(cell, line), str(mark)] for line, mark in zip(values, best, strict=True)]
-    keys = zip(*(front[name].values.tolist() for name in designs.choices), strict=True)
+    keys = zip(*(front[name].values.tolist() for name in candidates.choices), strict=True)
     heads = [*(goal_heading(front, name) for name in names), "In the Pareto set"]
     return heads, dict(zip(keys, lines, strict=True)), note
 
 
-def _conditions(designs: Designs, place: np.ndarray, number: np.ndarray, worst: str) -> dict[str, Any]:
+def _conditions(candidates: Candidates, place: np.ndarray, number: np.ndarray, worst: str) -> dict[str, Any]:
     """List the conditions with the designs that are valid there, the worst life, and the design that does best."""
-    view, rows = designs.view, []
-    values, sign = view.column(designs.goal[0]), 1.0 if designs.rising else -1.0
-    beyond = view.beyond_data(designs.goal[0])
+    results, rows = candidates.results, []
+    values, sign = results.column(candidates.goal[0]), 1.0 if candidates.rising else -1.0
+    beyond = results.beyond_data(candidates.goal[0])
     for there in (place == i for i in range(min(place.max() + 1, MOST_LISTED))):
-        cases = np.flatnonzero(there & designs.usable)
+        cases = np.flatnonzero(there & candidates.usable)
         ranked = cases[np.argsort(sign * values[cases], kind="stable")]
         cells = [part_of(len(cases), there.sum()), "–", "–"]
         if cases.size:
             least, most = ranked[0], ranked[-1]
             cells[1:] = [cell(Life(values[least], beyond[least])), count(int(number[most]) + 1)]
-        first = view.table.iloc[int(np.argmax(there))]
-        rows.append([*(cell(factor_cell(n, first[n])) for n in designs.conditions), *cells])
-    heads = [*map(heading, designs.conditions), "Valid designs", worst, "Best design"]
-    return {"factors": designs.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1, "note": ""}
+        first = results.table.iloc[int(np.argmax(there))]
+        rows.append([*(cell(factor_cell(n, first[n])) for n in candidates.conditions), *cells])
+    heads = [*map(heading, candidates.conditions), "Valid designs", worst, "Best design"]
+    return {"factors": candidates.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1, "note": ""}

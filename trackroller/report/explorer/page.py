@@ -14,13 +14,13 @@ from typing import Any
 import markupsafe
 import numpy as np
 
-from trackroller.analysis.pareto import default_objectives, pareto
-from trackroller.analysis.table import StudyView
 from trackroller.report.explorer.designs import design_columns
 from trackroller.report.explorer.pack import affordable_rows, extreme_rows, pack, sample_rows
 from trackroller.report.explorer.rows import STATES, Column, collect, solve_inputs, strengths
 from trackroller.report.html import render
 from trackroller.report.numbers import count, lives_in_years
+from trackroller.results.pareto import pareto
+from trackroller.results.results import Results
 from trackroller.study.outputs import flat
 from trackroller.study.store.seal import put_text
 
@@ -29,43 +29,43 @@ POLICY = "@content-security-policy@"  # stands in the templates where the policy
 
 
 @lives_in_years
-def explorer(view: StudyView) -> dict[str, Any]:
+def explorer(results: Results) -> dict[str, Any]:
     """Return what the template of the explorer needs.
 
     Parameters
     ----------
-    view : the study as a table, with its analysis for the design points of an inner/outer design
+    results : the solved study
 
     Returns
     -------
     `header` (JSON), `rows` (base64), `script` and `style` (text), `sampled` (a sentence, '' if all cases are shown)
     """
-    ds, columns = view.data, collect(view)
-    settings, more = solve_inputs(view, {c.name: c for c in columns})
+    ds, columns = results.data, collect(results)
+    settings, more = solve_inputs(results, {c.name: c for c in columns})
     columns += more
-    of_designs, lists = design_columns(view)
+    of_designs, lists = design_columns(results)
     columns += of_designs
     state = next(c for c in columns if c.name == "state").values
     cases = len(state)
-    kept = pareto_rows(view, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
+    kept = pareto_rows(results, cases) | extreme_rows(state, (c.values for c in columns if c.levels is None))
     rows = sample_rows(state, kept, affordable_rows(columns))
     if len(rows) < cases:
         columns = [dataclasses.replace(c, values=c.values[rows]) for c in columns]
         columns.append(Column("row", "Row", "", "row", rows.astype(float)))
-    if (numbers := _numbers(view)) is not None:
+    if (numbers := _numbers(results)) is not None:
         columns.append(Column("case", "Case", "", "row", numbers[rows].astype(float)))
     packed, block = pack(columns)
     header = {
-        "name": view.study["name"],
+        "name": results.config.name,
         "rows": len(rows),
         "cases": cases,
-        "grid": view.grid and len(rows) == cases,
+        "grid": results.grid and len(rows) == cases,
         "settings": settings,
         "strengths": strengths(ds),
         "states": list(STATES),
-        "goals": view.study["pareto"] or default_objectives(ds),
-        "constraints": view.study["constraints"],
-        "compared": view.held_level(MODEL) if MODEL in view.factors else "",
+        "goals": results.goals,
+        "constraints": results.config.constraints,
+        "compared": results.held_level(MODEL) if MODEL in results.factors else "",
         "lists": lists,
         "columns": packed,
     }
@@ -83,22 +83,22 @@ def explorer(view: StudyView) -> dict[str, Any]:
     }
 
 
-def _numbers(view: StudyView) -> np.ndarray | None:
+def _numbers(results: Results) -> np.ndarray | None:
     """Return the case numbers of `trackroller repeat` if they are not the row numbers."""
-    ds = view.data
-    if "case" not in ds.variables or ds["case"].size != len(view.table) or ds["case"].dtype.kind not in "fiu":
+    ds = results.data
+    if "case" not in ds.variables or ds["case"].size != len(results.table) or ds["case"].dtype.kind not in "fiu":
         return None
-    numbers = flat(ds, "case", view.dims)
+    numbers = flat(ds, "case", results.dims)
     return None if (numbers == np.arange(len(numbers))).all() else numbers
 
 
-def pareto_rows(view: StudyView, cases: int) -> np.ndarray:
+def pareto_rows(results: Results, cases: int) -> np.ndarray:
     """Mark the cases that no other case beats in the study's goals, shape (n,) bool; all False without goals."""
     marked = np.zeros(cases, dtype=bool)
-    goals = view.study["pareto"] or default_objectives(view.data)
-    if not goals or view.solved.design.method.points:
+    goals = results.goals
+    if not goals or results.design.method.points:
         return marked
-    front = pareto(view.solved, goals, view.solved.config.constraints)
+    front = pareto(results, goals, results.config.constraints)
     marked[front["row"].values[front["optimal"].values == 1]] = True
     return marked
 
@@ -124,13 +124,13 @@ def secured(page: str) -> str:
     return page.replace(POLICY, "; ".join(policy), 1)
 
 
-def write_explorer(view: StudyView, out: Path) -> Path:
+def write_explorer(results: Results, out: Path) -> Path:
     """Write the explorer of a solved study as one HTML file.
 
     Parameters
     ----------
-    view : StudyView
-        The study as a table, with its analysis for the design points of an inner/outer design.
+    results : Results
+        The solved study.
     out : pathlib.Path
         File to write.
 
@@ -140,9 +140,9 @@ def write_explorer(view: StudyView, out: Path) -> Path:
         The path of the page.
     """
     content = {
-        "name": view.study["name"],
-        "description": view.study["description"],
-        "notice": view.attrs.get("notice", ""),
-        "explorer": explorer(view),
+        "name": results.config.name,
+        "description": results.config.description,
+        "notice": results.data.attrs.get("notice", ""),
+        "explorer": explorer(results),
     }
     return put_text(out, secured(render("explorer.html.j2", content)))

@@ -10,15 +10,15 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.analysis.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
-from trackroller.analysis.first_limits import first_limit
-from trackroller.analysis.groups import spaced_by_ratio
-from trackroller.analysis.table import StudyView
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
+from trackroller.results.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
+from trackroller.results.first_limits import first_limit
+from trackroller.results.groups import spaced_by_ratio
+from trackroller.results.results import Results
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import parts_of
@@ -58,40 +58,42 @@ class Column:
     log: bool = False
 
 
-def collect(view: StudyView) -> list[Column]:
+def collect(results: Results) -> list[Column]:
     """Return the columns of a gathered study.
 
     Parameters
     ----------
-    view : the study as a table
+    results : the solved study
 
     Returns
     -------
     Columns of equal length. Outputs hold the numbers that `pareto` and the analyses use, in double precision; figures
     of single contacts hold single precision.
     """
-    ds, dims = view.data, view.dims
-    columns = [_setting(view, name, "factor") for name in view.factors]
-    columns += [_setting(view, name, "input") for name in view.derived]
-    columns += _results(ds, dims, view)
-    columns += _beyond(view, columns)
-    columns += _in_years(view, columns)
-    columns += _states(ds, dims, view)
-    if len(view.table) <= MOST_DETAILED:
-        columns += _details(ds, dims, {column.name for column in columns}, view)
+    ds, dims = results.data, results.dims
+    columns = [_setting(results, name, "factor") for name in results.factors]
+    columns += [_setting(results, name, "input") for name in results.derived]
+    columns += _results(ds, dims, results)
+    columns += _beyond(results, columns)
+    columns += _in_years(results, columns)
+    columns += _states(ds, dims, results)
+    if len(results.table) <= MOST_DETAILED:
+        columns += _details(ds, dims, {column.name for column in columns}, results)
     return columns
 
 
-def _setting(view: StudyView, name: str, role: str) -> Column:
+def _setting(results: Results, name: str, role: str) -> Column:
     """Return the column of a factor or of an input that follows from factors."""
-    values = view.table[name].to_numpy()
+    values = results.table[name].to_numpy()
     parameter = PARAMETERS.get(name)
     unit = unit_text(parameter.unit) if parameter and name not in NAMED else ""
     label = capital(long_name(name))
-    few = not view.numeric(name) or view.grid or len(view.levels(name)) <= 12
-    if not few or (role == "input" and view.numeric(name)):
+    few = not results.numeric(name) or results.grid or len(results.levels(name)) <= 12
+    if not few or (role == "input" and results.numeric(name)):
         return Column(name, label, unit, role, values.astype(float), log=spaced_by_ratio(values.astype(float), 100.0))
-    return coded(name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in view.levels(name)], unit)
+    return coded(
+        name, label, role, values, [level_text(name, v, unit=name in NAMED) for v in results.levels(name)], unit
+    )
 
 
 def coded(
@@ -108,32 +110,32 @@ def coded(
     return Column(name, label, unit, role, codes, tuple(levels), tuple(texts) or tuple(map(str, levels)))
 
 
-def _results(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
+def _results(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Column]:
     """Return the usual outputs and those that the study file names as goals."""
-    named = [n for text in view.study["constraints"] for n in goals.names_in(text) if n != "regime"]
-    named += [n for n in view.study["pareto"] if not goals.statistic(n)[0]]
-    inputs = {*view.table, *PARAMETERS, *MATERIAL_FIELDS}
+    named = [n for text in results.config.constraints for n in goals.names_in(text) if n != "regime"]
+    named += [n for n in results.config.pareto if not goals.statistic(n)[0]]
+    inputs = {*results.table, *PARAMETERS, *MATERIAL_FIELDS}
     names = dict.fromkeys([*default_names(ds, dims, dims), *(n for n in named if n not in inputs)])
-    return [_output(one, "output", view) for one in _outputs(ds, dims, list(names))]
+    return [_output(one, "output", results) for one in _outputs(ds, dims, list(names))]
 
 
-def _beyond(view: StudyView, columns: Sequence[Column]) -> list[Column]:
+def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
     """Mark the lives that lie beyond the S-N data: for each column with a life in it a column `NAME:beyond` of 0 and 1.
 
     A column that marks no life is left out.
     """
     remarks = []
     for column in (c for c in columns if c.role == "output" and "life" in c.name):
-        marks = view.beyond_data(column.name) & ~np.isnan(column.values)
+        marks = results.beyond_data(column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
             remarks.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
     return remarks
 
 
-def _in_years(view: StudyView, columns: Sequence[Column]) -> list[Column]:
+def _in_years(results: Results, columns: Sequence[Column]) -> list[Column]:
     """Return the lives in years, for the card of a chosen case; none if the duty of the roller is not known."""
-    duty = view.study.get("duty")
+    duty = results.config.duty
     if duty is None:
         return []
     lives = [c for c in columns if c.unit == "h" and "life" in c.name]
@@ -144,43 +146,43 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
     return outputs(ds, dims, names, REGIMES[:3], scale="natural", unlimited=True)
 
 
-def _output(one: Output, role: str, view: StudyView) -> Column:
+def _output(one: Output, role: str, results: Results) -> Column:
     if "life" in one.name:  # a roller that skids, and a body above its tensile strength, have no fatigue life
-        body = next((b for b in BODIES if b in one.name and view.by_body), "")
-        one = replace(one, values=np.where(view.rolling & ~view.flagged("static", body), one.values, np.nan))
+        body = next((b for b in BODIES if b in one.name and results.by_body), "")
+        one = replace(one, values=np.where(results.rolling & ~results.flagged("static", body), one.values, np.nan))
     values = one.values.astype(np.float32) if role == "detail" else one.values
     log = "life" in one.name or one.name == "run_in_distance"
     return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
 
 
-def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], view: StudyView) -> list[Column]:
+def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], results: Results) -> list[Column]:
     """Return figures of each contact and body, under names such as `peak_stress_roller_1`."""
     there = [VARIABLES[n] for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)]
     parts = [part for variable in there for part in parts_of(variable)]
     names = [p.name for p in parts if p.name not in known and ("contact" in p.at or "contact" not in p.variable.dims)]
-    return [_output(one, "detail", view) for one in _outputs(ds, dims, names)]
+    return [_output(one, "detail", results) for one in _outputs(ds, dims, names)]
 
 
-def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Column]:
+def _states(ds: xr.Dataset, dims: tuple[str, ...], results: Results) -> list[Column]:
     """Return regime, state, validity flags (of each body where they are known), and reason of failure."""
-    regime = np.clip(np.nan_to_num(view.regime, nan=3), 0, 3).astype(int)
-    rolls = np.where(view.inside, 6, np.where(view.rolling, 1, 5))
-    state = np.where(view.valid, 0, np.where(regime > 0, regime + 1, rolls))
+    regime = np.clip(np.nan_to_num(results.regime, nan=3), 0, 3).astype(int)
+    rolls = np.where(results.inside, 6, np.where(results.rolling, 1, 5))
+    state = np.where(results.valid, 0, np.where(regime > 0, regime + 1, rolls))
     columns = [
         Column("regime", "Regime", "", "state", regime, REGIMES, REGIME_LABELS),
         Column("state", "State", "", "state", state, STATES, STATES),
     ]
     for name in ("validity", *(f"validity_{body}" for body in BODIES)):
-        if name in view.table and view.flags:
-            masks = np.nan_to_num(view.column(name, 0.0)).astype(int)
-            texts_of_masks = [flag_text(int(mask), view.flags) for mask in np.unique(masks)]
+        if name in results.table and results.flags:
+            masks = np.nan_to_num(results.column(name, 0.0)).astype(int)
+            texts_of_masks = [flag_text(int(mask), results.flags) for mask in np.unique(masks)]
             body = name.partition("_")[2]
             columns.append(coded(name, f"Flags{f' of the {body}' if body else ''}", "state", masks, texts_of_masks))
-    columns += _first_limits(view)
-    if view.met is not None:
+    columns += _first_limits(results)
+    if results.allowed is not None:
         met = ("met", "not met")
         columns.append(
-            Column("constraints", "Constraints of the study", "", "state", 1 - view.met.astype(int), met, met)
+            Column("constraints", "Constraints of the study", "", "state", 1 - results.allowed.astype(int), met, met)
         )
     if "reason" in ds:
         reason = ds["reason"].broadcast_like(ds["regime"]).transpose(*dims) if "regime" in ds else ds["reason"]
@@ -190,15 +192,15 @@ def _states(ds: xr.Dataset, dims: tuple[str, ...], view: StudyView) -> list[Colu
     return columns
 
 
-def _first_limits(view: StudyView) -> list[Column]:
+def _first_limits(results: Results) -> list[Column]:
     """Return the limit that ends the pair first, and the first one of each body; nothing without limits."""
-    if not view.limits:
+    if not results.limits:
         return []
-    words = np.array([LIMITS[name].title if name in LIMITS else "not known" for name in view.limits])
+    words = np.array([LIMITS[name].title if name in LIMITS else "not known" for name in results.limits])
     last = len(words) - 1
-    columns = {"limiting_mechanism": [LIMITS[name].title if name else words[last] for name in first_limit(view)]}
+    columns = {"limiting_mechanism": [LIMITS[name].title if name else words[last] for name in first_limit(results)]}
     for body in BODIES:
-        numbers = np.nan_to_num(view.column(f"limiting_mechanism_{body}", np.nan), nan=last).astype(int)
+        numbers = np.nan_to_num(results.column(f"limiting_mechanism_{body}", np.nan), nan=last).astype(int)
         columns[f"limiting_mechanism_{body}"] = words[numbers].tolist()
     labels = ("First limit of the pair", *(f"First limit of the {body}" for body in BODIES))
     pairs = zip(columns.items(), labels, strict=True)
@@ -211,12 +213,12 @@ def flag_text(mask: int, flags: Sequence[str]) -> str:
     return "; ".join(said) or "none"
 
 
-def solve_inputs(view: StudyView, known: dict[str, Column]) -> tuple[list[list[Any]], list[Column]]:
+def solve_inputs(results: Results, known: dict[str, Column]) -> tuple[list[list[Any]], list[Column]]:
     """Return what `trackroller solve --set` needs to repeat a case.
 
     Parameters
     ----------
-    view : the study as a table
+    results : the solved study
     known : columns that the explorer has already, by name
 
     Returns
@@ -224,7 +226,7 @@ def solve_inputs(view: StudyView, known: dict[str, Column]) -> tuple[list[list[A
     settings : pairs of a key and its text, or of a key and a list with the name of its column if the text varies
     columns : further columns that the settings name
     """
-    ds, dims = view.data, view.dims
+    ds, dims = results.data, results.dims
     settings, more = [], []
     for key in (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS, *OPTIONS):
         name = f"{key}_value" if f"{key}_value" in ds.variables else key
@@ -232,7 +234,7 @@ def solve_inputs(view: StudyView, known: dict[str, Column]) -> tuple[list[list[A
             if name not in known:
                 more.append(_input(name, flat(ds, name, dims)))
             settings.append([key, [name]])
-        elif (text := setting_text(_fixed(ds, view, name))) is not None and key != "shortcuts":
+        elif (text := setting_text(_fixed(ds, results, name))) is not None and key != "shortcuts":
             settings.append([key, text])
     return settings, more
 
@@ -243,13 +245,14 @@ def _input(name: str, values: np.ndarray) -> Column:
     return coded(name, plain(name), "input", values.astype(str))
 
 
-def _fixed(ds: xr.Dataset, view: StudyView, name: str) -> Any:
+def _fixed(ds: xr.Dataset, results: Results, name: str) -> Any:
     """Return a setting that is the same in all cases, None if it is not given."""
     if name in ds.variables and not ds[name].ndim:
         return ds[name].item()
     if name in OPTIONS:
-        return view.study.get(name, ds.attrs.get(name))
-    return view.study["base"].get(name, getattr(PARAMETERS.get(name), "default", None))
+        stated = getattr(results.config, name, None)
+        return ds.attrs.get(name) if stated is None else stated
+    return results.config.base.get(name, getattr(PARAMETERS.get(name), "default", None))
 
 
 def strengths(ds: xr.Dataset) -> dict[str, list[float]]:

@@ -6,13 +6,13 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.contact_models import GOOD, designs, errors, measured, pairs
-from trackroller.analysis.groups import DRIVE, groups, spaced_by_ratio
-from trackroller.analysis.table import StudyView
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, legend, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, percent
 from trackroller.report.words.comparison import FRICTION, by_drive, short
+from trackroller.results.contact_models import GOOD, designs, errors, measured, pairs
+from trackroller.results.groups import DRIVE, groups, ordered, spaced_by_ratio
+from trackroller.results.results import Results
 
 # distinguished by dash and mark as well as by colour
 LOOKS: dict[str, dict[str, Any]] = {
@@ -24,21 +24,22 @@ LETTERS = 100  # letters of 7 pt across the figure
 NOT_DRAWN = ("friction_energy_balance", "stick")  # quantities of the table alone
 
 
-def model_errors(view: StudyView) -> style.Drawn:
+def model_errors(results: Results) -> style.Drawn:
     """Draw the error of the cheaper models against the reference over friction or another factor, by drive.
 
     It answers: where is a cheaper model good enough? None for a study without pairs of cases to compare.
     """
-    paired = pairs(view)
+    paired = pairs(results)
     if paired is None or not paired.sizes["design"]:
         return None
     deviations, own = errors(paired), designs(paired)
     wanted = [q for q in measured(deviations) if q.name not in NOT_DRAWN]
     # friction, the first factor with an order, or the first factor
-    x = next(iter(sorted(own.factors, key=lambda n: (n != FRICTION, not own.ordered(n)))), None)
+    in_order = {str(name): ordered(values) for name, values in own.items()}
+    x = next(iter(sorted(in_order, key=lambda n: (n != FRICTION, not in_order[n]))), None)
     if x is None or not wanted:
         return None
-    along, columns = groups(own, x), by_drive(own) if x != DRIVE else [("", np.ones(len(own.table), dtype=bool))]
+    along, columns = groups(own, x), by_drive(own) if x != DRIVE else [("", np.ones(len(own), dtype=bool))]
     figure = style.new_figure(30.0 + 27.0 * len(wanted))
     axes = figure.subplots(len(wanted), len(columns), sharex=True, sharey="row", squeeze=False)
     handles: dict[str, Any] = {}

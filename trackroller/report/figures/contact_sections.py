@@ -13,11 +13,11 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.patches import PathPatch
 
-from trackroller.analysis.columns import at_surface
 from trackroller.halfspace.stress import FRICTION_SIGNS, stress_on_grid, von_mises
 from trackroller.report.figures import style
 from trackroller.report.figures.contact_outline import Patch, case_text, outline, widths
 from trackroller.report.numbers import near, rounded
+from trackroller.results.columns import at_surface
 from trackroller.roller.record import MATERIALS, materials_of
 
 PLANES = (("von_mises_xz", "xz_x", "xz_z", "x", "lateral"), ("von_mises_yz", "yz_y", "yz_z", "y", "rolling"))

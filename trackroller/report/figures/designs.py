@@ -8,10 +8,6 @@ import numpy as np
 import pandas as pd
 import xarray as xr
 
-from trackroller.analysis.designs import Designs
-from trackroller.analysis.pareto import goals_of
-from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
@@ -19,6 +15,10 @@ from trackroller.report.numbers import capital, count, listing, long_name, plain
 from trackroller.report.words.designs import alone, design_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading, pareto_sentence
+from trackroller.results.candidates import Candidates
+from trackroller.results.pareto import goals_of
+from trackroller.results.ranking import ranked_factors
+from trackroller.results.results import Results
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import OF_MATERIALS
 
@@ -26,53 +26,57 @@ MOST = 20  # designs shown
 LONGEST = 48  # letters of a name beside the axis; longer names are numbered
 
 
-def lives_by_design(view: StudyView) -> style.Drawn:
+def lives_by_design(results: Results) -> style.Drawn:
     """Draw the worst life of roller and guide of each design, and the median and best life of the pair.
 
     It answers: which design keeps its life at its worst condition, and which of its two bodies ends it? For random
     conditions the life that nine of ten reach stands beside the worst one.
     """
-    designs = Designs.of(view)
-    if designs is None or not (designs.comparable and designs.rising and designs.conditions) or len(designs.size) < 2:
+    candidates = results.candidates()
+    if (
+        candidates is None
+        or not (candidates.comparable and candidates.rising and candidates.conditions)
+        or len(candidates.size) < 2
+    ):
         return None
-    table = designs.table[designs.table["valid"] > 0]
+    table = candidates.table[candidates.table["valid"] > 0]
     table = table[np.isfinite(table["worst"])].head(MOST)
     if len(table) < 2:
         return None
-    names = [capital(design_words(designs, row)) for _, row in table.iterrows()]
+    names = [capital(design_words(candidates, row)) for _, row in table.iterrows()]
     numbered = max(map(len, names)) > LONGEST
     figure, (axes,) = style.panels("Life of the designs over their conditions", 30 + 5.0 * len(table))
     place = np.arange(len(table))[::-1]
-    _draw(axes, designs, table, place)
+    _draw(axes, candidates, table, place)
     style.name_rows(axes, place, list(map(str, range(1, len(names) + 1))) if numbered else names)
     # whole marks in the first and the last line
-    axes.set(ylim=(-0.6, len(table) - 0.4), xlabel=f"life [{designs.goal[2]}]", xscale="log")
+    axes.set(ylim=(-0.6, len(table) - 0.4), xlabel=f"life [{candidates.goal[2]}]", xscale="log")
     style.log_ticks(axes.xaxis, *axes.get_xlim())
     figure.legend(loc="outside lower center", ncols=5, columnspacing=1.0, handletextpad=0.4)
     caption = (
         "Designs in the order of the table of the best designs, over "
-        f"{listing([long_name(n) for n in designs.conditions])}; {len(table)} of "
-        f"{count(len(designs.size))} designs. Lives of the valid conditions. Hollow marks lie beyond the S-N data."
+        f"{listing([long_name(n) for n in candidates.conditions])}; {len(table)} of "
+        f"{count(len(candidates.size))} designs. Lives of the valid conditions. Hollow marks lie beyond the S-N data."
     )
     caption += f" {'; '.join(f'{i}: {name}' for i, name in enumerate(names, 1))}." if numbered else ""
     what = "its worst condition, among designs that are valid in as many"
-    what = "nine of ten sampled conditions" if designs.drawn else what
+    what = "nine of ten sampled conditions" if candidates.drawn else what
     finding = f"{names[0]} lasts longest in {what}."
-    if designs.drawn and not table["b10"].max() > 0:
+    if candidates.drawn and not table["b10"].max() > 0:
         finding = "For each design one in ten or more of the sampled conditions are not valid."
     return figure, style.FigureInfo("designs", caption, finding)
 
 
-def _draw(axes: Any, designs: Designs, table: pd.DataFrame, place: np.ndarray) -> None:
+def _draw(axes: Any, candidates: Candidates, table: pd.DataFrame, place: np.ndarray) -> None:
     """Draw a line from the worst to the best life of each design, with marks; hollow marks lie beyond the S-N data."""
     best = table["best"].replace(np.inf, np.nan).fillna(table["worst"])
     axes.hlines(place, table["worst"], best, color="0.75", linewidth=3, zorder=1, label="worst to best condition")
     axes.plot(table["median"], place, color="0.1", marker="|", markersize=7, linestyle="none", label="median")
-    if designs.drawn:
+    if candidates.drawn:
         look: dict[str, Any] = {"color": "0.1", "marker": "D", "markersize": 3.5, "linestyle": "none"}
         axes.plot(table["b10"].where(table["b10"] > 0), place, label="nine of ten reach", **look)
     for body, marker, colour in (("roller", "o", style.PAIR[0]), ("guide", "s", style.PAIR[1])):
-        if alone(designs) and body == "guide":
+        if alone(candidates) and body == "guide":
             continue
         lives, beyond = table[f"worst_{body}"].to_numpy(), table[f"worst_{body}_beyond"].to_numpy(dtype=bool)
         faces = np.where(beyond, "white", colour).tolist()
@@ -94,7 +98,7 @@ def _given(front: xr.Dataset) -> str:
     return warning + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")
 
 
-def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Drawn:
+def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Drawn:
     """Draw all allowed designs, coloured by the factor that decides the first goal, and the Pareto set.
 
     It answers: what does more of one goal cost in another, and which choice leads to which end of the set? The panels
@@ -102,8 +106,8 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
 
     Parameters
     ----------
-    front : dataset of `trackroller.analysis.pareto.pareto`
-    view : the study, for the validity and the deciding factor of the designs
+    front : dataset of `trackroller.results.pareto.pareto`
+    results : the study, for the validity and the deciding factor of the designs
 
     Returns
     -------
@@ -114,26 +118,26 @@ def pareto_front(front: xr.Dataset, view: StudyView | None = None) -> style.Draw
         return None
     others, kind = goals[1:4], str(front.attrs.get("kind", "design"))
     figure, panels = style.panels(f"Pareto-optimal {kind}s", 78, len(others))
-    colour, entries = _colours(front, view, goals[0][0])
+    colour, entries = _colours(front, results, goals[0][0])
     for axes, goal in zip(panels, others, strict=True):
         _trade(axes, front, goal, goals[0], colour, joined=len(goals) == 2)
     entries.append(("Pareto set", {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"}))
     legend(figure, entries)
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
     caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front)}"
-    return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, view).text)
+    return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, results).text)
 
 
-def _colours(front: xr.Dataset, view: StudyView | None, goal: str) -> tuple[np.ndarray, Entries]:
+def _colours(front: xr.Dataset, results: Results | None, goal: str) -> tuple[np.ndarray, Entries]:
     """Return the colour of each row by the factor that decides the goal, and the entries of the legend."""
     rows = front["row"].values
     colour = np.full(len(rows), OTHER, dtype=object)
     entries: Entries = []
-    if view is not None and view.factors and front.attrs.get("kind", "design") != "design point":
-        allowed = np.isin(np.arange(len(view.table)), rows)
-        lead = next(iter(ranked_factors(view.analysis, goal, view.factors)))
+    if results is not None and results.factors and front.attrs.get("kind", "design") != "design point":
+        allowed = np.isin(np.arange(len(results.table)), rows)
+        lead = next(iter(ranked_factors(results.analysis, goal, results.factors)))
         place = np.searchsorted(np.flatnonzero(allowed), rows)
-        groups = coloured(view, lead, allowed)
+        groups = coloured(results, lead, allowed)
         for (text, mask), own in zip(groups, style.colours([t for t, _ in groups], lead in OF_MATERIALS), strict=True):
             colour[mask[place]] = own
             entries.append((text, {"marker": "o", "color": own, "linestyle": "none"}))

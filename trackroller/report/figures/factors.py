@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.analysis.groups import Groups, classes, groups
-from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured
+from trackroller.results.groups import Groups, classes, groups
+from trackroller.results.ranking import ranked_factors
+from trackroller.results.results import Results
 from trackroller.study.design.levels import OF_MATERIALS
 
 MAX_PANELS = 9
@@ -24,7 +24,7 @@ MATTERS = 0.1  # of the largest index: a category with a larger one is never poo
 FEWEST = 3  # a median is drawn from at least this number of rows
 
 
-def by_factor(view: StudyView) -> style.Drawn:
+def by_factor(results: Results) -> style.Drawn:
     """Draw the median and quartiles of an output along each factor, a colour a level of the deciding factor.
 
     It answers: which way and how far does each factor move the life, and is that so for every material?
@@ -33,28 +33,28 @@ def by_factor(view: StudyView) -> style.Drawn:
     -------
     Figure and what it shows; None for a study without factors, valid cases, or life and peak stress.
     """
-    shown = shown_output(view)
-    if shown is None or not view.factors:
+    shown = shown_output(results)
+    if shown is None or not results.factors:
         return None
     column, words, unit = shown
-    rows = view.valid & ~np.isnan(view.column(column))
+    rows = results.valid & ~np.isnan(results.column(column))
     if rows.sum() < 2:
         return None
-    lead = _lead(view, column)
-    values, top = capped(view.column(column)[rows]) if "life" in words else (view.column(column)[rows], None)
-    names = [name for name in view.factors if _drawable(view, name, rows, np.ones(rows.sum(), bool))][:MAX_PANELS]
+    lead = _lead(results, column)
+    values, top = capped(results.column(column)[rows]) if "life" in words else (results.column(column)[rows], None)
+    names = [name for name in results.factors if _drawable(results, name, rows, np.ones(rows.sum(), bool))][:MAX_PANELS]
     if not names:
         return None
     columns = min(3, len(names))
     lines = -(-len(names) // columns)
-    figure, levels = style.new_figure(26 + 50 * lines), coloured(view, lead, rows)
+    figure, levels = style.new_figure(26 + 50 * lines), coloured(results, lead, rows)
     colours = style.colours([text for text, _ in levels], lead in OF_MATERIALS)
-    series = {name: _series(view, name, rows, levels, lead) for name in names}
+    series = {name: _series(results, name, rows, levels, lead) for name in names}
     panels = figure.subplots(lines, columns, sharey=True, squeeze=False).ravel()
     for axes in panels[len(names) :]:
         axes.remove()
     for axes, name in zip(panels, names, strict=False):
-        _panel(axes, groups(view, name, rows, BINS), values, series[name], colours)
+        _panel(axes, groups(results.table, name, rows, BINS), values, series[name], colours)
         mark_unlimited(axes, top)
     if "life" in words:
         panels[0].set_yscale("log")
@@ -70,36 +70,36 @@ def by_factor(view: StudyView) -> style.Drawn:
         f"{capital(words)} of the {rows.sum():,} valid cases along each factor, all other factors as they vary. "
         f"Lines: medians{each}; bands: the middle half of the valid cases."
     )
-    return figure, style.FigureInfo(f"bands-{column}", caption, _sentence(view, column, words, rows))
+    return figure, style.FigureInfo(f"bands-{column}", caption, _sentence(results, column, words, rows))
 
 
-def shown_output(view: StudyView) -> tuple[str, str, str] | None:
+def shown_output(results: Results) -> tuple[str, str, str] | None:
     """Return column, words and unit of the life of a study, or of its peak stress where it has no life."""
-    if view.life:
-        return view.life
+    if results.life:
+        return results.life
     stresses = [(f"peak_stress_{b}", f"peak stress of the {b}", "MPa") for b in BODIES]
-    return next((s for s in stresses if view.has(s[0])), None)
+    return next((s for s in stresses if results.has(s[0])), None)
 
 
-def _lead(view: StudyView, column: str) -> str:
+def _lead(results: Results, column: str) -> str:
     """Return the factor to colour by: the deciding factor, or a category whose levels must not be pooled."""
-    size = ranked_factors(view.analysis, column, view.factors)
+    size = ranked_factors(results.analysis, column, results.factors)
     lead = next(iter(size))
-    category = next((name for name in size if name in view.categories), lead)
-    return category if view.ordered(lead) and size[category] >= MATTERS * size[lead] else lead
+    category = next((name for name in size if name in results.categories), lead)
+    return category if results.ordered(lead) and size[category] >= MATTERS * size[lead] else lead
 
 
-def _series(view: StudyView, name: str, rows: np.ndarray, levels: Series, lead: str) -> Series:
+def _series(results: Results, name: str, rows: np.ndarray, levels: Series, lead: str) -> Series:
     """Return the groups that get a line each; a deciding number and a factor with too few rows have one line."""
     whole = [("", np.ones(rows.sum(), bool))]
     if name == lead:
-        return whole if view.ordered(name) or len(levels) < len(view.levels(name)) else levels
-    return levels if any(_drawable(view, name, rows, chosen) for _, chosen in levels) else whole
+        return whole if results.ordered(name) or len(levels) < len(results.levels(name)) else levels
+    return levels if any(_drawable(results, name, rows, chosen) for _, chosen in levels) else whole
 
 
-def _drawable(view: StudyView, name: str, rows: np.ndarray, chosen: np.ndarray) -> bool:
+def _drawable(results: Results, name: str, rows: np.ndarray, chosen: np.ndarray) -> bool:
     """Say whether at least two classes of a factor have enough rows for a median."""
-    counts = np.bincount(classes(view, name, rows, BINS)[0][chosen])
+    counts = np.bincount(classes(results.table, name, rows, BINS)[0][chosen])
     return bool((counts >= FEWEST).sum() > 1)
 
 
@@ -114,9 +114,9 @@ def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series, colour
     set_axis(axes, along, PANEL_LETTERS, named=not apart)
 
 
-def _sentence(view: StudyView, column: str, words: str, rows: np.ndarray) -> str:
+def _sentence(results: Results, column: str, words: str, rows: np.ndarray) -> str:
     """State the two largest effects that have one direction."""
-    effects = [s for f in view.factors if (s := effect_of(view, column, words, f, rows)) is not None]
+    effects = [s for f in results.factors if (s := effect_of(results, column, words, f, rows)) is not None]
     clear = [s for s in effects if s.kind in ("pairs", "classes")] or effects
     clear.sort(key=lambda s: -abs(np.log(s.values["ratio"])))
     return " ".join(s.text for s in clear[:2])

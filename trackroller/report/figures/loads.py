@@ -7,8 +7,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
@@ -17,6 +15,8 @@ from trackroller.report.words.cases import lift_off, surface
 from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured, held_words
 from trackroller.report.words.sentence import phrase
+from trackroller.results.ranking import ranked_factors
+from trackroller.results.results import Results
 from trackroller.study.design.levels import OF_MATERIALS
 
 SAME = 0.9  # rank correlation above which a factor carries the same information as the fit
@@ -29,27 +29,27 @@ FORCES = (
 )
 
 
-def stress_against_fit(view: StudyView) -> style.Drawn:
+def stress_against_fit(results: Results) -> style.Drawn:
     """Draw peak stress over the fit, coloured by what decides it beside the fit.
 
     It answers: how much stress does a closer groove save, and does it move the peak from below to the surface? Where
     the cases of a line all have different fits, marks are filled if the peak lies at the surface; otherwise the
     lines are medians with bands.
     """
-    fits = next((f for f in map(view.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
-    bodies = [b for b in BODIES if view.has(f"peak_stress_{b}")]
+    fits = next((f for f in map(results.behind, ("roller_profile_radius", "guide_profile_radius")) if f), ())
+    bodies = [b for b in BODIES if results.has(f"peak_stress_{b}")]
     if not fits or not bodies:
         return None
-    hue = _hue(view, f"peak_stress_{bodies[0]}", fits)
-    rows, held = view.hold((*fits, hue) if hue else fits)
-    rows, label = add_fit(view, rows[view.rolling[rows.index]])
+    hue = _hue(results, f"peak_stress_{bodies[0]}", fits)
+    rows, held = results.hold((*fits, hue) if hue else fits)
+    rows, label = add_fit(results, rows[results.rolling[rows.index]])
     if rows["_fit"].nunique() < 2:
         return None
     columns = [f"peak_stress_{body}" for body in bodies]
-    inside = np.isin(np.arange(len(view.table)), rows.index)
-    levels = coloured(view, hue, inside) if hue else [("", np.ones(len(rows), bool))]
+    inside = np.isin(np.arange(len(results.table)), rows.index)
+    levels = coloured(results, hue, inside) if hue else [("", np.ones(len(rows), bool))]
     groups = [([text], rows[mask]) for text, mask in levels]
-    single = view.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
+    single = results.grid and not any(part["_fit"].duplicated().any() for _, part in groups)
     groups = _merged(groups, columns) if single else groups
     figure, panels = style.panels(
         "Peak stress against fit", 64 + 3.6 * (len(groups) + 2), len(bodies), sharex=True, sharey=True
@@ -75,30 +75,32 @@ def stress_against_fit(view: StudyView) -> style.Drawn:
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
         f"guide; rolling cases. {marks} {held_words(held)}"
     )
-    return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(view, bodies[0], fits))
+    return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(results, bodies[0], fits))
 
 
-def _stress_sentence(view: StudyView, body: str, fits: tuple[str, ...]) -> str:
+def _stress_sentence(results: Results, body: str, fits: tuple[str, ...]) -> str:
     """State the effect of the fit on the peak and where the peak lies, from all valid cases."""
-    said = [surface(view, body, view.valid)]
-    if fits[0] in view.factors:
+    said = [surface(results, body, results.valid)]
+    if fits[0] in results.factors:
         column = f"peak_stress_{body}"
-        said.insert(0, effect_of(view, column, f"peak stress of the {body}", fits[0], view.valid))
+        said.insert(0, effect_of(results, column, f"peak stress of the {body}", fits[0], results.valid))
     return " ".join(s.text for s in said if s)
 
 
-def _hue(view: StudyView, column: str, fits: tuple[str, ...]) -> str:
+def _hue(results: Results, column: str, fits: tuple[str, ...]) -> str:
     """Return the factor besides the fit that decides the peak stress, '' if there is none.
 
     In a sample a factor that decides the fit does not count beside it.
     """
-    fit = add_fit(view, view.table)[0]["_fit"]
-    same = [f for f in view.factors if view.numeric(f) and abs(fit.corr(view.table[f], method="spearman")) > SAME]
-    others = tuple(f for f in view.factors if f not in fits and f not in same)
-    return next(iter(ranked_factors(view.analysis, column, others)), "")
+    fit = add_fit(results, results.table)[0]["_fit"]
+    same = [
+        f for f in results.factors if results.numeric(f) and abs(fit.corr(results.table[f], method="spearman")) > SAME
+    ]
+    others = tuple(f for f in results.factors if f not in fits and f not in same)
+    return next(iter(ranked_factors(results.analysis, column, others)), "")
 
 
-def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
+def add_fit(results: Results, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     """Return rows with a column `_fit`, and its axis label.
 
     Fit is groove over guide radius; where a roller is straight or convex the ratio is inverted, so that it passes
@@ -106,7 +108,7 @@ def add_fit(view: StudyView, rows: pd.DataFrame) -> tuple[pd.DataFrame, str]:
     """
     rows = rows.copy()
     names = ("roller_profile_radius", "guide_profile_radius")
-    radii = (np.asarray(rows.get(name, view.base.get(name)), dtype=float) for name in names)
+    radii = (np.asarray(rows.get(name, results.base.get(name)), dtype=float) for name in names)
     roller, guide = (np.broadcast_to(radius, len(rows)) for radius in radii)
     r_t, r_g = symbol("r_C,TR"), symbol("r_C,G")
     if np.all((roller < 0) & np.isfinite(roller)):
@@ -137,24 +139,26 @@ def _stress_series(axes: Any, part: pd.DataFrame, body: str, look: dict[str, Any
     return axes.scatter(part["_fit"], part[y], color=faces, edgecolor=look["color"], **shown)
 
 
-def forces_against_axial(view: StudyView) -> style.Drawn:
+def forces_against_axial(results: Results) -> style.Drawn:
     """Draw normal, lateral and driving force of both contacts over the axial force, by drive.
 
     It answers: how do the contacts share the load, and from which axial force on does one lift off?
     """
     x = "axial_force"
-    if not view.behind(x) or not view.numeric(x):
+    if not results.behind(x) or not results.numeric(x):
         return None
-    kinds = [k for k in FORCES if f"{k[0]}_1" in view.table and (view.has(f"{k[0]}_1") or view.has(f"{k[0]}_2"))]
+    kinds = [
+        k for k in FORCES if f"{k[0]}_1" in results.table and (results.has(f"{k[0]}_1") or results.has(f"{k[0]}_2"))
+    ]
     if not kinds:
         return None
-    levels = view.levels("motor_force") if "motor_force" in view.factors else []
+    levels = results.levels("motor_force") if "motor_force" in results.factors else []
     drives: list[Any] = levels if 0 < len(levels) <= 5 else [None]  # otherwise one line for all drives
-    shown = (*view.behind(x), *(["motor_force"] if drives != [None] else []))
-    rows, held = view.hold(shown)
+    shown = (*results.behind(x), *(["motor_force"] if drives != [None] else []))
+    rows, held = results.hold(shown)
     figure, panels = style.panels("Forces of both contacts against axial force", 74, len(kinds), sharex=True)
     marks: list[dict[str, Any]] = [{"marker": "o"}, {"marker": "s"}]
-    if view.grid:
+    if results.grid:
         marks = [{"marker": "o", "markersize": 3}, {"marker": "s", "markersize": 4.5, "markerfacecolor": "white"}]
     looks = [{"color": colour} | mark for colour, mark in zip(style.PAIR, marks, strict=True)]
     for axes, (name, words, letter) in zip(panels, kinds, strict=True):
@@ -162,13 +166,13 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
             part = (rows if level is None else rows[rows["motor_force"] == level]).sort_values(x)
             at, force = (part[n].to_numpy(dtype=float) for n in (x, f"{name}_{contact}"))
             look = looks[contact - 1] | {"linestyle": style.LINES[j % 6]}
-            if view.grid:
+            if results.grid:
                 axes.plot(at, force, **look)
             else:
                 running(axes, at, force, look)
         axes.set(xlabel=factor_label(x), ylabel=with_unit(f"{words} {letter}", "N"))
         axes.margins(y=0.1)
-    if view.grid:
+    if results.grid:
         _shade_lift_off(panels, rows, x)
     entries: Entries = [(f"contact {c + 1}", looks[c] | {"linestyle": "none"}) for c in (0, 1)]
     dashes = [{"color": "0.2", "linestyle": style.LINES[j % 6]} for j in range(len(drives))]
@@ -177,9 +181,9 @@ def forces_against_axial(view: StudyView) -> style.Drawn:
     each = f", for {len(drives)} motor forces" if len(drives) > 1 else ""
     caption = (
         f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}. "
-        f"{held_words(held) if view.grid else MEDIANS}"
+        f"{held_words(held) if results.grid else MEDIANS}"
     )
-    return figure, style.FigureInfo("forces_against_axial_force", caption.strip(), _force_sentence(view))
+    return figure, style.FigureInfo("forces_against_axial_force", caption.strip(), _force_sentence(results))
 
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
@@ -197,16 +201,16 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
         panels[0].annotate("lift-off", (halves[-1], 0.3), **place)
 
 
-def _force_sentence(view: StudyView) -> str:
+def _force_sentence(results: Results) -> str:
     """State from which axial force on cases lift off, otherwise the normal forces at the largest axial force."""
-    lifted = lift_off(view)
+    lifted = lift_off(results)
     if lifted is not None:
         return lifted.text
-    both = np.stack([view.column("normal_force_1"), view.column("normal_force_2")])
-    axial = np.abs(view.column("axial_force"))
+    both = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
+    axial = np.abs(results.column("axial_force"))
     good = np.flatnonzero(np.isfinite(both).all(axis=0) & np.isfinite(axial))
     if not good.size:
         return ""
     last = good[np.argmax(axial[good])]
-    at, loads = view.column("axial_force")[last], both[:, last].tolist()
+    at, loads = results.column("axial_force")[last], both[:, last].tolist()
     return phrase("cases", "no_lift_off", axial=at, case=last, loads=loads)

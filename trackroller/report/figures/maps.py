@@ -13,14 +13,14 @@ from matplotlib.axis import Axis, XAxis
 from matplotlib.colors import LogNorm
 from matplotlib.patches import Patch, Rectangle
 
-from trackroller.analysis.groups import BINS, classes
-from trackroller.analysis.ranking import ranked_factors
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, factor_label, level_text, long_name, rounded, with_unit
 from trackroller.report.words.cases import extremes, occurrence
 from trackroller.report.words.levels import held_words
+from trackroller.results.groups import BINS, classes
+from trackroller.results.ranking import ranked_factors
+from trackroller.results.results import Results
 
 FEWEST = 5  # a sample with fewer cases outside the most frequent regime has no map
 MAX_TICKS = 9
@@ -29,59 +29,59 @@ MOST_WRITTEN = 72  # cells of a map with its values written in
 Pair = tuple[str, str]
 
 
-def life_map(view: StudyView) -> style.Drawn:
+def life_map(results: Results) -> style.Drawn:
     """Draw life over the two numeric factors with most effect.
 
     It answers: how long does the roller live, and where on the map has it no life? A small map has its lives written
     in. The map of regimes says why a cell has no life.
     """
-    if view.life is None or not view.has(view.life[0]):
+    if results.life is None or not results.has(results.life[0]):
         return None
-    pair = _life_pair(view)
+    pair = _life_pair(results)
     if pair is None:
         return None
-    column, words, unit = view.life
-    rows, held = view.hold(pair)
-    if not np.isfinite(rows[column][view.rolling[rows.index]]).any():
+    column, words, unit = results.life
+    rows, held = results.hold(pair)
+    if not np.isfinite(rows[column][results.rolling[rows.index]]).any():
         return None
     over = capital(f"{words} over {long_name(pair[0])} and {long_name(pair[1])}")
     figure, (axes,) = style.panels(over, 84)
-    image = _life_cells(axes, view, rows, pair, column)
+    image = _life_cells(axes, results, rows, pair, column)
     extend = "max" if np.isposinf(rows[column]).any() else "neither"
     bar = figure.colorbar(image, ax=axes, aspect=25, pad=0.02, extend=extend, label=with_unit(capital(words), unit))
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    how = "Grey cells have no life" if view.grid else "Each cell is the median of its cases; grey cells have no life"
-    drawn = view.rolling[rows.index]
-    beyond = int((view.beyond_data(column)[rows.index] & drawn).sum())
+    how = "Grey cells have no life" if results.grid else "Each cell is the median of its cases; grey cells have no life"
+    drawn = results.rolling[rows.index]
+    beyond = int((results.beyond_data(column)[rows.index] & drawn).sum())
     if beyond:
         how += f"; {count(beyond)} of the {count(int(drawn.sum()))} lives drawn lie beyond the S-N data (in brackets)"
-    inside = view.valid & np.isin(np.arange(len(view.table)), rows.index)
-    said = extremes(view, column, words, unit, pair, inside)
+    inside = results.valid & np.isin(np.arange(len(results.table)), rows.index)
+    said = extremes(results, column, words, unit, pair, inside)
     return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip(), said.text)
 
 
-def _life_pair(view: StudyView) -> Pair | None:
+def _life_pair(results: Results) -> Pair | None:
     """Return the pair of numeric factors with several levels and the largest effect on life.
 
     None for a sample in which other factors have more effect than the pair: its map would show their scatter.
     """
-    names = [f for f in view.factors if view.numeric(f) and len(view.levels(f)) > 1]
-    column = view.life[0] if view.life else ""
-    size = ranked_factors(view.analysis, column, view.factors)
+    names = [f for f in results.factors if results.numeric(f) and len(results.levels(f)) > 1]
+    column = results.life[0] if results.life else ""
+    size = ranked_factors(results.analysis, column, results.factors)
 
     def worth(pair: Pair) -> tuple[float, ...]:
-        rows, _ = view.hold(pair)
-        several = float(sum(len(view.levels(f)) > 2 for f in pair))
+        rows, _ = results.hold(pair)
+        several = float(sum(len(results.levels(f)) > 2 for f in pair))
         return float(np.isfinite(rows[column]).any()), several, sum(size[f] for f in pair)
 
     pairs = list(itertools.combinations(names, 2))
     if not pairs:
         return None
     x, y = max(pairs, key=worth)
-    if not view.grid and size[x] + size[y] < 0.5 * sum(size.values()):
+    if not results.grid and size[x] + size[y] < 0.5 * sum(size.values()):
         return None
-    return (x, y) if len(view.levels(x)) >= len(view.levels(y)) else (y, x)
+    return (x, y) if len(results.levels(x)) >= len(results.levels(y)) else (y, x)
 
 
 def cell_name(name: str, end: Any) -> str:
@@ -99,11 +99,11 @@ def _table(values: pd.Series, keys: list[np.ndarray], shape: tuple[int, int]) ->
     return cells
 
 
-def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
-    inside = np.isin(np.arange(len(view.table)), rows.index)
-    sides = [classes(view, name, inside, None if view.grid else BINS) for name in pair]
+def _life_cells(axes: Axes, results: Results, rows: pd.DataFrame, pair: Pair, column: str) -> Any:
+    inside = np.isin(np.arange(len(results.table)), rows.index)
+    sides = [classes(results.table, name, inside, None if results.grid else BINS) for name in pair]
     keys, shape = [index for index, _ in sides], (len(sides[1][1]), len(sides[0][1]))
-    life = _table(rows[column].where(view.rolling[rows.index]), keys, shape)
+    life = _table(rows[column].where(results.rolling[rows.index]), keys, shape)
     axes.set_facecolor("0.75")  # cells without a life
     cells = np.ma.masked_invalid(np.where(np.isposinf(life), 1e300, life))
     finite = life[np.isfinite(life) & (life > 0)]
@@ -112,8 +112,8 @@ def _life_cells(axes: Axes, view: StudyView, rows: pd.DataFrame, pair: Pair, col
     for axis, name, (_, ends) in zip((axes.xaxis, axes.yaxis), pair, sides, strict=True):
         set_ticks(axis, [cell_name(name, end) for end in ends])
     axes.grid(False)
-    beyond = pd.Series(view.beyond_data(column)[rows.index], rows.index, dtype=float)
-    _written(axes, life, _table(beyond.where(view.rolling[rows.index]), keys, shape) >= 0.5, image)
+    beyond = pd.Series(results.beyond_data(column)[rows.index], rows.index, dtype=float)
+    _written(axes, life, _table(beyond.where(results.rolling[rows.index]), keys, shape) >= 0.5, image)
     return image
 
 
@@ -136,46 +136,46 @@ def set_ticks(axis: Axis, texts: list[str]) -> None:
         axis.set_tick_params(rotation=35)
 
 
-def regime_map(view: StudyView) -> style.Drawn:
+def regime_map(results: Results) -> style.Drawn:
     """Draw which combinations roll, slip or lift off, over the two factors that separate the regimes most.
 
     It answers: where may the roller not be used? Return None if all cases roll, or nearly all cases of a sample.
     """
-    if len(view.factors) < 2:
+    if len(results.factors) < 2:
         return None
-    most = np.unique(view.regime, return_counts=True)[1].max()
-    if len(view.table) - most < (1 if view.grid else FEWEST):
+    most = np.unique(results.regime, return_counts=True)[1].max()
+    if len(results.table) - most < (1 if results.grid else FEWEST):
         return None
-    ranked = sorted(view.factors, key=lambda f: -_regime_spread(view, f))
+    ranked = sorted(results.factors, key=lambda f: -_regime_spread(results, f))
     # long names go on the vertical axis, where they have room; of two numbers the one with fewer levels goes there
-    x, y = sorted(ranked[:2], key=lambda f: (not view.numeric(f), -len(view.levels(f))))
+    x, y = sorted(ranked[:2], key=lambda f: (not results.numeric(f), -len(results.levels(f))))
     pair = (x, y)
     figure, (axes,) = style.panels("Regimes: rolling, full slip, lift-off", 76)
-    note = _regime_shares(axes, view, pair)
+    note = _regime_shares(axes, results, pair)
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    said = [occurrence(view, view.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
+    said = [occurrence(results, results.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
     caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
     return figure, style.FigureInfo("regime_map", caption.strip(), " ".join(s.text for s in said if s))
 
 
-def _regime_spread(view: StudyView, name: str) -> float:
+def _regime_spread(results: Results, name: str) -> float:
     """Return how much the share of a regime changes over the levels of a factor; it decides which factor is drawn."""
-    index, _ = classes(view, name, np.ones(len(view.table), dtype=bool), BINS)
-    shares = pd.crosstab(index, view.regime, normalize="index").reindex(columns=[1, 2, 3], fill_value=0.0)
+    index, _ = classes(results.table, name, np.ones(len(results.table), dtype=bool), BINS)
+    shares = pd.crosstab(index, results.regime, normalize="index").reindex(columns=[1, 2, 3], fill_value=0.0)
     return float(np.ptp(shares.to_numpy(), axis=0).max())
 
 
-def _regime_shares(axes: Axes, view: StudyView, pair: Pair) -> str:
+def _regime_shares(axes: Axes, results: Results, pair: Pair) -> str:
     """Draw cells over both factors, each divided from left to right by the share of the regimes."""
-    every = np.ones(len(view.table), dtype=bool)
-    keys, ends = zip(*(classes(view, f, every, BINS) for f in pair), strict=True)
+    every = np.ones(len(results.table), dtype=bool)
+    keys, ends = zip(*(classes(results.table, f, every, BINS) for f in pair), strict=True)
     texts = [[cell_name(f, end) for end in part] for f, part in zip(pair, ends, strict=True)]
     both = zip(style.REGIME_COLOURS, style.REGIME_HATCHES, strict=True)
     looks: list[dict[str, Any]] = [{"facecolor": colour, "hatch": hatch, "edgecolor": "0.25"} for colour, hatch in both]
     gaps = [0.04 if len(t) <= 12 else 0.0 for t in texts]
     width, thin = 1 - 2 * gaps[0], 0.3 if all(gaps) else 0.0
     for i, j in np.ndindex(len(texts[0]), len(texts[1])):
-        here, left = view.regime[(keys[0] == i) & (keys[1] == j)], i + gaps[0]
+        here, left = results.regime[(keys[0] == i) & (keys[1] == j)], i + gaps[0]
         for code in range(4) if here.size else ():
             part = width * float((here == code).mean())
             if part > 0:
@@ -185,7 +185,7 @@ def _regime_shares(axes: Axes, view: StudyView, pair: Pair) -> str:
     for axis, labels in ((axes.xaxis, texts[0]), (axes.yaxis, texts[1])):
         set_ticks(axis, labels)
     axes.grid(False)
-    handles = [Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (view.regime == c).any()]
+    handles = [Patch(label=REGIME_LABELS[c], **looks[c]) for c in range(4) if (results.regime == c).any()]
     axes.figure.legend(handles=handles, loc="outside lower left", ncols=4, handletextpad=0.5)
-    others = len(view.factors) > 2
+    others = len(results.factors) > 2
     return "Each cell is divided by the share of its cases in each regime, over all other factors." if others else ""

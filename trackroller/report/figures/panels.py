@@ -14,8 +14,8 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.analysis.groups import Groups
 from trackroller.report.words.levels import group_texts
+from trackroller.results.groups import Groups
 
 CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class
 Entries = list[tuple[str, dict[str, Any]]]

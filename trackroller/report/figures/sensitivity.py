@@ -1,6 +1,6 @@
 """Figures of sensitivities: ranked indices, convergence, growth of a sample, Morris plane, interactions.
 
-Those of an analysis take the dataset of `trackroller.analysis.sensitivity.analyse`. Every function returns a figure
+Those of an analysis take the dataset of `trackroller.results.sensitivity.analyse`. Every function returns a figure
 with its caption and sentence, or None where the design does not support it.
 """
 
@@ -15,14 +15,14 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trackroller.analysis.looks import looks_of
-from trackroller.analysis.ranking import SIGNED, SIZED, headline, order
-from trackroller.analysis.table import StudyView
 from trackroller.methods import METHODS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, with_unit
 from trackroller.report.words import indices
 from trackroller.report.words.samples import grown, quantity_words
+from trackroller.results.looks import looks_of
+from trackroller.results.ranking import SIGNED, SIZED, headline, order
+from trackroller.results.results import Results
 from trackroller.study.outputs import USUAL
 
 Look = dict[str, Any]
@@ -193,12 +193,12 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     return figure, style.FigureInfo(f"interactions-{output}", caption, said.text)
 
 
-def intervals(view: StudyView) -> style.Drawn:
+def intervals(results: Results) -> style.Drawn:
     """Draw the half width of the widest interval of each output of `until` against the number of cases.
 
     It answers: was growing worth its cases? None for a study with fewer than two looks.
     """
-    growth, said = looks_of(view.solved), grown(view)
+    growth, said = looks_of(results), grown(results)
     if growth is None or said is None or len(growth["looks"]) < 2:
         return None
     cases = [one["cases"] for one in growth["looks"]]
@@ -207,7 +207,7 @@ def intervals(view: StudyView) -> style.Drawn:
     for i, (name, colour) in enumerate(zip(names, style.palette(len(names)), strict=True)):
         width = np.array([one["half_width"][name] for one in growth["looks"]], dtype=float)
         look = {"marker": style.MARKERS[i % len(style.MARKERS)], "linestyle": style.LINES[i % len(style.LINES)]}
-        axes.plot(cases, width, color=colour, label=capital(quantity_words(name, view.solved.design.method)), **look)
+        axes.plot(cases, width, color=colour, label=capital(quantity_words(name, results.design.method)), **look)
     axes.axhline(growth["half_width"], color="0.3", linewidth=0.8, linestyle=":", label="wanted")
     _doubled(axes, cases, "cases")
     axes.set(ylim=(0.0, None), ylabel="half width of the\nwidest interval [–]")

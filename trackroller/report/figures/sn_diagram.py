@@ -8,7 +8,6 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.analysis.table import StudyView
 from trackroller.damage.sn_curve import CONVENTIONS, PROBABILITIES, SNCurve
 from trackroller.materials import Material
 from trackroller.materials.properties import REQUIRED
@@ -18,6 +17,7 @@ from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import capital, count, listing, rounded, with_unit
 from trackroller.report.tables.inputs import as_material, stored_materials
 from trackroller.report.words.cases import strength
+from trackroller.results.results import Results
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
 MAX_MATERIALS = 6
@@ -26,14 +26,14 @@ _WORDS = {"peak_stress": "peak von Mises stress", "fatigue_stress": "stress of t
 Points = dict[str, tuple[np.ndarray, np.ndarray]]
 
 
-def sn_diagram(view: StudyView) -> style.Drawn:
+def sn_diagram(results: Results) -> style.Drawn:
     """Draw the S-N curve of every material with peak stress and life of the rolling cases, one panel a body.
 
     It answers: where on its curve does each material work, above its strength, below it, or below its fatigue limit?
     A body without a life on the axis gets no panel, because marks piled up at the edge would not be readable.
     """
-    known, rule = _known(view), view.study["life_rule"]
-    bodies = [(body, points) for body in BODIES if (points := _points(view, body, known, rule))]
+    known, rule = _known(results), results.config.life_rule
+    bodies = [(body, points) for body in BODIES if (points := _points(results, body, known, rule))]
     if not bodies:
         return None
     ends = _ends([points[n] for _, points in bodies for n in points], [known[n] for _, p in bodies for n in p])
@@ -54,29 +54,29 @@ def sn_diagram(view: StudyView) -> style.Drawn:
         axes.set(xscale="log", yscale="log", xlim=ends, xlabel="Overrollings to failure $N$ [–]")
         axes.set_title(body.capitalize())
         style.log_ticks(axes.yaxis, *axes.get_ylim())
-    panels[0].set_ylabel(with_unit(capital(_WORDS[_amplitude(view)]), "MPa"))
+    panels[0].set_ylabel(with_unit(capital(_WORDS[_amplitude(results)]), "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
-    return figure, _info(view, shown, known, rule, ends[1])
+    return figure, _info(results, shown, known, rule, ends[1])
 
 
-def _known(view: StudyView) -> dict[str, Material]:
-    stored = stored_materials(view.attrs)
+def _known(results: Results) -> dict[str, Material]:
+    stored = stored_materials(results.data.attrs)
     return {n: as_material({"name": n} | values) for n, values in stored.items() if set(REQUIRED) <= set(values)}
 
 
-def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str) -> Points:
+def _points(results: Results, body: str, known: Mapping[str, Material], rule: str) -> Points:
     """Return stress [MPa] and life [1] of the rolling cases of each material.
 
     If no rolling case has a life, return those of all cases with a life.
     """
-    life = view.column(f"life_cycles_{body}")
-    rows = (life > 0) & view.rolling if ((life > 0) & view.rolling).any() else life > 0
-    given, points = view.material(body), {}
+    life = results.column(f"life_cycles_{body}")
+    rows = (life > 0) & results.rolling if ((life > 0) & results.rolling).any() else life > 0
+    given, points = results.material(body), {}
     for material in dict.fromkeys(given):
         mine = (given == material) & rows
         if material not in known or not mine.any():
             continue
-        stress = view.column(f"{_amplitude(view)}_{body}")[mine]
+        stress = results.column(f"{_amplitude(results)}_{body}")[mine]
         if np.isnan(stress).all():  # the study has lives but no stresses
             with np.errstate(invalid="ignore"):
                 stress = SNCurve.of(known[material], rule).allowable_stress(life[mine])
@@ -84,9 +84,9 @@ def _points(view: StudyView, body: str, known: Mapping[str, Material], rule: str
     return points
 
 
-def _amplitude(view: StudyView) -> str:
+def _amplitude(results: Results) -> str:
     """Name the result that entered the S-N curve: the peak stress, or that of another life criterion."""
-    return "fatigue_stress" if view.has("fatigue_stress_roller") else "peak_stress"
+    return "fatigue_stress" if results.has("fatigue_stress_roller") else "peak_stress"
 
 
 def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
@@ -140,23 +140,23 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
     return entries
 
 
-def _info(view: StudyView, shown: list, known: Mapping[str, Material], rule: str, top: float) -> style.FigureInfo:
+def _info(results: Results, shown: list, known: Mapping[str, Material], rule: str, top: float) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
-        f"with the {_WORDS[_amplitude(view)]} (MPa) and the life in overrollings of the rolling cases at the worse "
+        f"with the {_WORDS[_amplitude(results)]} (MPa) and the life in overrollings of the rolling cases at the worse "
         "contact. "
         f"{CONVENTIONS[rule]}."
     )
-    left = int((~view.rolling).sum())
-    caption += f" {count(left)} cases that do not roll are not drawn." if left and view.rolling.any() else ""
+    left = int((~results.rolling).sum())
+    caption += f" {count(left)} cases that do not roll are not drawn." if left and results.rolling.any() else ""
     beyond = sum(int((life > top).sum()) for _, points in shown for _, life in points.values())
     caption += f" {count(beyond)} lives lie beyond the axis." if beyond else ""
     said = []
     for body, _ in shown:
-        names = view.material(body)
+        names = results.material(body)
         ends = ("tensile_strength", "fatigue_limit")
         most, limit = (np.array([getattr(known[n], end) if n in known else np.nan for n in names]) for end in ends)
-        said.append(strength(body, view.column(f"{_amplitude(view)}_{body}"), limit, most, view.rolling))
+        said.append(strength(body, results.column(f"{_amplitude(results)}_{body}"), limit, most, results.rolling))
     texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
     return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
 

@@ -7,9 +7,6 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.ranking import robust_design
-from trackroller.analysis.table import StudyView
 from trackroller.report.figures import sensitivity, style
 from trackroller.report.figures.comparison import model_errors
 from trackroller.report.figures.designs import lives_by_design, pareto_front
@@ -19,6 +16,9 @@ from trackroller.report.figures.maps import life_map, regime_map
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
+from trackroller.results.pareto import study_pareto
+from trackroller.results.ranking import robust_design
+from trackroller.results.results import Results
 
 OF_CASES = (
     *(model_errors, lives_by_design, by_factor, life_map, stress_against_fit),
@@ -28,13 +28,13 @@ FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 
 
 @lives_in_years
-def draw_all(view: StudyView, out_dir: Path) -> list[style.FigureInfo]:
+def draw_all(results: Results, out_dir: Path) -> list[style.FigureInfo]:
     """Draw the figures of a study as SVG and PNG and write their captions to `index.json`.
 
     Parameters
     ----------
-    view : StudyView
-        The study as a table, with its analysis if there is one.
+    results : Results
+        The solved study.
     out_dir : pathlib.Path
         Folder for the figures; it is created if it does not exist.
 
@@ -43,8 +43,8 @@ def draw_all(view: StudyView, out_dir: Path) -> list[style.FigureInfo]:
     list of FigureInfo
         The figures drawn, in the order of the report.
     """
-    infos = style.draw_all(_jobs(view), Path(out_dir))
-    if error := friction_error(view):
+    infos = style.draw_all(_jobs(results), Path(out_dir))
+    if error := friction_error(results):
         infos = [replace(i, sentence=f"{i.sentence} {error.text}") if _is_about_friction(i) else i for i in infos]
     style.write_index(infos, Path(out_dir))
     return infos
@@ -55,19 +55,19 @@ def _is_about_friction(info: style.FigureInfo) -> bool:
     return any(name in text for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
 
 
-def _jobs(view: StudyView) -> Iterator[Callable[[], style.Drawn]]:
+def _jobs(results: Results) -> Iterator[Callable[[], style.Drawn]]:
     """Yield the drawings in the order of the report."""
-    sens = view.analysis
+    sens = results.analysis
     outputs = sensitivity.main_outputs(sens) if sens is not None and not robust_design(sens) else []
 
     def of_analysis(draw: Callable[..., style.Drawn], most: int) -> list[Callable[[], style.Drawn]]:
         return [partial(draw, sens, name) for name in outputs[:most]]
 
     yield from of_analysis(sensitivity.tornado, 1)
-    yield from (partial(draw, view) for draw in OF_CASES)
-    if (front := study_pareto(view)) is not None:
-        yield partial(pareto_front, front, view)
-    yield partial(sensitivity.intervals, view)
+    yield from (partial(draw, results) for draw in OF_CASES)
+    if (front := study_pareto(results)) is not None:
+        yield partial(pareto_front, front, results)
+    yield partial(sensitivity.intervals, results)
     yield from of_analysis(sensitivity.morris_plane, 2)
     yield from of_analysis(sensitivity.interactions, 1)
     yield from of_analysis(sensitivity.convergence, 1)

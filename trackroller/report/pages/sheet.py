@@ -13,7 +13,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.columns import at_surface
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, OPTIONS, REGIMES
 from trackroller.parameters.example import not_given_text
@@ -42,6 +41,7 @@ from trackroller.report.words.assumptions import (
 )
 from trackroller.report.words.sentence import phrase
 from trackroller.report.words.wear import run_in
+from trackroller.results.columns import at_surface
 from trackroller.roller import record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by, validity_bit
 from trackroller.roller.limits import Limits, limits

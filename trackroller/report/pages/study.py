@@ -11,11 +11,6 @@ import numpy as np
 import xarray as xr
 
 from trackroller import parameters
-from trackroller.analysis.judging import OPTIMUM
-from trackroller.analysis.looks import UNTIL
-from trackroller.analysis.pareto_designs import study_pareto
-from trackroller.analysis.ranking import headline, robust_design
-from trackroller.analysis.table import StudyView
 from trackroller.methods import METHODS
 from trackroller.parameters.example import not_given_text
 from trackroller.report.explorer.page import explorer, secured
@@ -35,6 +30,11 @@ from trackroller.report.words.pareto import pareto_sentence, pareto_table
 from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
+from trackroller.results.judging import OPTIMUM
+from trackroller.results.looks import UNTIL
+from trackroller.results.pareto import study_pareto
+from trackroller.results.ranking import headline, robust_design
+from trackroller.results.results import Results
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.record import NOT_GIVEN, names_not_given
@@ -54,13 +54,13 @@ _ELSEWHERE = (
 _NO_RECORD = {*_ELSEWHERE.split(), *OPTIONS, OPTIMUM, UNTIL, NOT_GIVEN}  # attributes that do not stand in the record
 
 
-def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
+def write_report(results: Results, figures_dir: Path, out_html: Path) -> Path:
     """Write the report of a gathered study as one self-contained HTML file, and its tables beside it.
 
     Parameters
     ----------
-    view : StudyView
-        The study as a table, with its analysis if there is one.
+    results : Results
+        The solved study.
     figures_dir : pathlib.Path
         Folder with the figures and their `index.json`; it may be empty or missing.
     out_html : pathlib.Path
@@ -71,66 +71,68 @@ def write_report(view: StudyView, figures_dir: Path, out_html: Path) -> Path:
     pathlib.Path
         The path of the report.
     """
-    content = contents(view)
-    put_text(Path(out_html), page_text(view, content, figures_dir))
+    content = contents(results)
+    put_text(Path(out_html), page_text(results, content, figures_dir))
     with sealing(Path(out_html).with_name("tables")) as beside:
         export([t for key in PLACES for t in content["tables"][key]], beside)
     return Path(out_html)
 
 
-def page_text(view: StudyView, content: dict[str, Any], figures_dir: Path) -> str:
+def page_text(results: Results, content: dict[str, Any], figures_dir: Path) -> str:
     """Return the report as HTML from its `contents`, its figures and its explorer."""
     drawn = figures(Path(figures_dir))
     beside_figures = " ".join(item["sentence"] for items in drawn.values() for item in items)
     said = {key: [s for s in texts if s not in beside_figures] for key, texts in content["said"].items()}
-    shown = content | {"figures": drawn, "said": said, "explorer": explorer(view)}
+    shown = content | {"figures": drawn, "said": said, "explorer": explorer(results)}
     return secured(render("report.html.j2", shown, cell=cell))
 
 
 @lives_in_years
-def contents(view: StudyView) -> dict[str, Any]:
+def contents(results: Results) -> dict[str, Any]:
     """Return everything the template needs from the study and its analysis, except figures and explorer."""
-    settings, attrs = view.study, dict(view.attrs)
+    settings, attrs = results.study.as_dict(), dict(results.data.attrs)
     merged = {name: settings[name] for name in OPTIONS if name in settings} | attrs
-    models = report_section(view)
+    models = report_section(results)
     options = [inputs.Row(capital(long_name(k)), text) for k in OPTIONS if (text := _option_text(merged.get(k, "")))]
     return {
         "name": settings["name"],
         "description": settings["description"] or attrs.get("comment", ""),
-        "facts": _facts(view, merged),
-        "summary": in_short(view, models.get("short", [])),
-        **sections(view, models),
-        "factors": inputs.factor_table(view),
-        "base": inputs.base_rows(view),
-        "doubts": _doubts(view),
+        "facts": _facts(results, merged),
+        "summary": in_short(results, models.get("short", [])),
+        **sections(results, models),
+        "factors": inputs.factor_table(results),
+        "base": inputs.base_rows(results),
+        "doubts": _doubts(results),
         "not_given": not_given_text({name: settings["base"][name] for name in names_not_given(attrs)}),
-        "options": options + models_used(view.data) + inputs.correlation_row(view),
+        "options": options + models_used(results.data) + inputs.correlation_row(results),
         "materials": [t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t],
-        "solution": solution_facts(view),
+        "solution": solution_facts(results),
         "used": defaultdict(str, merged),
-        "design_reference": METHODS[view.study["design"]].reference,
-        "results": set(map(str, view.data.data_vars)),
+        "design_reference": METHODS[results.config.design].reference,
+        "results": set(map(str, results.data.data_vars)),
         "record": inputs.record_rows(attrs, _NO_RECORD),
         "study_text": str(attrs.get("study", "")),
     }
 
 
-def _doubts(view: StudyView) -> list[str]:
+def _doubts(results: Results) -> list[str]:
     """Return a sentence for each unusual value of the cases."""
-    varied = {name: view.table[name].to_numpy() for name in view.table if name in parameters.PARAMETERS}
-    return doubts({**view.base, **varied}, map(inputs.as_material, inputs.stored_materials(view.attrs).values()))
+    varied = {name: results.table[name].to_numpy() for name in results.table if name in parameters.PARAMETERS}
+    return doubts(
+        {**results.base, **varied}, map(inputs.as_material, inputs.stored_materials(results.data.attrs).values())
+    )
 
 
-def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
+def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     """Return the tables and the sentences of each section; a sentence that a figure has is not repeated."""
-    sens, error = view.analysis, friction_error(view)
-    decide: list[Table | None] = [optima_table(view) or best_table(view), first_limit_table(view)]
-    front = study_pareto(view)
-    said = [s.text for s in limit_sentences(view)]
+    sens, error = results.analysis, friction_error(results)
+    decide: list[Table | None] = [optima_table(results) or best_table(results), first_limit_table(results)]
+    front = study_pareto(results)
+    said = [s.text for s in limit_sentences(results)]
     if front is not None:
-        said.append(pareto_sentence(front, view).text)
-        decide.append(pareto_table(front, view, error))
-    decide += target_tables(sens, view) if sens is not None else []
+        said.append(pareto_sentence(front, results).text)
+        decide.append(pareto_table(front, results, error))
+    decide += target_tables(sens, results) if sens is not None else []
     why: list[Table | None] = []
     if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
@@ -139,8 +141,8 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
         index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
         known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
         why += [measure_table(sens, name, error) for name in known[:1]]  # a life, if the study has one, stands first
-    why.append(looks_table(view))
-    ends = [regime_table(view), validity_table(view), reason_table(view.data)]
+    why.append(looks_table(results))
+    ends = [regime_table(results), validity_table(results), reason_table(results.data)]
     tables = {"decide": decide, "why": why, "ends": ends, "models": models.get("tables", [])}
     return {
         "tables": {key: [t for t in listed if t] for key, listed in tables.items()},
@@ -148,15 +150,15 @@ def sections(view: StudyView, models: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def _facts(view: StudyView, merged: dict[str, Any]) -> str:
+def _facts(results: Results, merged: dict[str, Any]) -> str:
     """Return the line under the title: date, design, size, model, accuracy."""
-    design, drawn = view.study["design"], view.solved.design
+    design, drawn = results.config.design, results.design
     most = "up to " if "point_samples" in drawn.meta else ""
-    samples = view.study["samples"] if view.solved.config.until is None else drawn.samples
+    samples = results.config.samples if results.config.until is None else drawn.samples
     parts = [
         str(merged.get("date_created", ""))[:10],
         f"design of experiments {plain(design)}" + f" with {most}{count(samples)} samples" * METHODS[design].sampled,
-        size_words(view),
+        size_words(results),
         f"contact model {_option_text(merged['contact_model'])}",
         f"accuracy {_option_text(merged['accuracy'])}",
     ]
@@ -180,12 +182,12 @@ def models_used(ds: xr.Dataset) -> list[inputs.Row]:
     return [inputs.Row("Contact model used", f"{said} of {used.size} cases")]
 
 
-def solution_facts(view: StudyView) -> list[inputs.Row]:
+def solution_facts(results: Results) -> list[inputs.Row]:
     """Say how well the cases are solved."""
-    ds, rows = view.data, []
-    if "converged" in view.table:
-        done = int((view.table["converged"] == 1).sum())
-        rows.append(inputs.Row("Converged cases", part_of(done, len(view.table))))
+    ds, rows = results.data, []
+    if "converged" in results.table:
+        done = int((results.table["converged"] == 1).sum())
+        rows.append(inputs.Row("Converged cases", part_of(done, len(results.table))))
     if (known := _finite(ds, "residual")).size:
         rows.append(inputs.Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
     if (known := _finite(ds, "error_estimate")).size:

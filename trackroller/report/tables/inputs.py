@@ -7,12 +7,12 @@ from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from trackroller.analysis.table import StudyView
 from trackroller.materials import Material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
 from trackroller.report.tables.table import Table
+from trackroller.results.results import Results
 from trackroller.roller.record import friction_records, is_default
 from trackroller.study.design.levels import NAMED, entries
 
@@ -74,14 +74,16 @@ def material_rows(material: Material) -> list[Row]:
     return [*rows, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
 
 
-def factor_table(view: StudyView) -> Table | None:
+def factor_table(results: Results) -> Table | None:
     """List factors and derived parameters: symbol, unit, values as found and as set, number of levels."""
-    specs = {name: _spec(spec) for name, spec in view.study["factors"].items()}
-    follows = [n for n, spec in specs.items() if n not in view.factors and spec.startswith("=") and n in view.table]
+    specs = {name: _spec(spec) for name, spec in results.config.factors.items()}
+    follows = [
+        n for n, spec in specs.items() if n not in results.factors and spec.startswith("=") and n in results.table
+    ]
     rows = []
-    for name in (*view.factors, *follows):
-        levels, parameter = view.levels(name), PARAMETERS.get(name)
-        if view.numeric(name) and (name in follows or not view.grid) and len(levels) > 12:
+    for name in (*results.factors, *follows):
+        levels, parameter = results.levels(name), PARAMETERS.get(name)
+        if results.numeric(name) and (name in follows or not results.grid) and len(levels) > 12:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
         else:
             values = ", ".join(level_text(name, v, unit=name in NAMED) for v in levels)
@@ -102,18 +104,19 @@ def _spec(spec: Any) -> str:
     return "" if kind == "values" else f"{kind} {', '.join(f'{v:g}' for v in value)}"
 
 
-def correlation_row(view: StudyView) -> list[Row]:
+def correlation_row(results: Results) -> list[Row]:
     """Return the rank correlations of the study file as one row, if there are any."""
     said = [
-        f"{long_name(one)} with {long_name(other)} {number(rho)}" for one, other, rho in view.study["rank_correlations"]
+        f"{long_name(one)} with {long_name(other)} {number(rho)}"
+        for one, other, rho in results.config.rank_correlations
     ]
     return [Row("Rank correlations", "; ".join(said))] if said else []
 
 
-def base_rows(view: StudyView) -> list[Row]:
+def base_rows(results: Results) -> list[Row]:
     """List the inputs that are the same in all cases."""
-    names = [*PARAMETERS, *(MATERIAL_FIELDS if "material_pair" not in view.factors else ()), *MAPPING_FIELDS]
-    given = {name: view.base.get(name) for name in names if name not in (*view.factors, *view.table)}
+    names = [*PARAMETERS, *(MATERIAL_FIELDS if "material_pair" not in results.factors else ()), *MAPPING_FIELDS]
+    given = {name: results.base.get(name) for name in names if name not in (*results.factors, *results.table)}
     rows = [input_row(name, value) for name, value in given.items() if value not in (None, "") and value == value]
     return [replace(row, words=capital(row.words)) for row in rows]
 

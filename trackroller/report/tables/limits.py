@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS, heat
 from trackroller.damage.limit import SN_SCATTER
 from trackroller.materials import Material
 from trackroller.report.numbers import lasting, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
+from trackroller.results.lives import past_data
 from trackroller.roller import temperature
 from trackroller.roller.dataset import NOTES
 from trackroller.roller.limits import Limits

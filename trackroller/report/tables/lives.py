@@ -9,13 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.lives import past_data
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import BEYOND, hour_unit, lasting, number, rounded
 from trackroller.report.tables.inputs import Row
+from trackroller.results.lives import past_data
 from trackroller.roller.geometry import rolling_radius
 
 UNKNOWN = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}

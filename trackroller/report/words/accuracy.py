@@ -7,11 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import capital, level_text, number, percent
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.results import Results
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
 
@@ -21,16 +21,16 @@ KNOWN_ERROR = 0.05  # a larger median error of the model is stated beside every 
 FRICTION_OUTPUTS = ("friction_power", "friction_energy_per_distance", "friction_energy_balance")
 
 
-def friction_guess(view: StudyView) -> Sentence | None:
+def friction_guess(results: Results) -> Sentence | None:
     """Name the friction coefficients from the database that are placeholders."""
-    records = [record for record in friction_records(view.attrs) if record["placeholder"]]
+    records = [record for record in friction_records(results.data.attrs) if record["placeholder"]]
     guesses = [(number(r["value"]), level_text("material_pair", r["material_pair"])) for r in records]
     return say("accuracy", "friction_guess", guesses=guesses) if guesses else None
 
 
-def friction_error(view: StudyView) -> Sentence | None:
+def friction_error(results: Results) -> Sentence | None:
     """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
-    residual = view.column("energy_residual")[view.rolling]
+    residual = results.column("energy_residual")[results.rolling]
     residual = residual[np.isfinite(residual)]
     if not residual.size or np.median(residual) <= KNOWN_ERROR:
         return None
@@ -38,41 +38,41 @@ def friction_error(view: StudyView) -> Sentence | None:
     return say("accuracy", "friction_error", **values)
 
 
-def _slid(view: StudyView) -> np.ndarray:
+def _slid(results: Results) -> np.ndarray:
     """Mark the rolling cases that were solved by full sliding, shape (n,)."""
-    return np.asarray(view.rolling & (view.column("contact_model_used") == CONTACT_MODELS.index("sliding")))
+    return np.asarray(results.rolling & (results.column("contact_model_used") == CONTACT_MODELS.index("sliding")))
 
 
-def full_sliding(view: StudyView) -> Sentence | None:
+def full_sliding(results: Results) -> Sentence | None:
     """State the known error of full sliding if cases were solved by it.
 
     Return None if the study holds the friction work: another sentence then states the error measured in this study.
     """
-    cases = int(_slid(view).sum())
-    if not cases or np.isfinite(view.column("energy_residual")).any():
+    cases = int(_slid(results).sum())
+    if not cases or np.isfinite(results.column("energy_residual")).any():
         return None
     return say("accuracy", "full_sliding", count=cases, known=SLIDING_ERROR)
 
 
-def wear_of_sliding(view: StudyView) -> Sentence | None:
+def wear_of_sliding(results: Results) -> Sentence | None:
     """State the known error of the wear that full sliding computes; None for other models and without wear."""
-    worn = (_slid(view) & np.isfinite(view.column("run_in_distance"))).any()
+    worn = (_slid(results) & np.isfinite(results.column("run_in_distance"))).any()
     return say("accuracy", "wear_of_sliding", known=SLIDING_WEAR) if worn else None
 
 
-def known_errors(view: StudyView) -> list[Sentence | None]:
+def known_errors(results: Results) -> list[Sentence | None]:
     """Return the known errors of the contact models, for friction energy, for forces and for wear."""
-    return [friction_error(view), full_sliding(view), wear_of_sliding(view)]
+    return [friction_error(results), full_sliding(results), wear_of_sliding(results)]
 
 
-def accuracy(view: StudyView) -> list[Sentence]:
+def accuracy(results: Results) -> list[Sentence]:
     """Say how well the peaks are resolved, and where the stress of the contact model is singular."""
     said = []
-    errors = {body: view.column(f"error_estimate_{body}")[view.valid] for body in BODIES}
+    errors = {body: results.column(f"error_estimate_{body}")[results.valid] for body in BODIES}
     for body, error in [(body, own[np.isfinite(own)]) for body, own in errors.items() if np.isfinite(own).any()][:1]:
         values = {"median": float(np.median(error)), "largest": float(error.max())}
         said.append(say("accuracy", "resolved", body=body, **values))
-    if cases := int((view.flagged("split_pole") & view.rolling).sum()):
+    if cases := int((results.flagged("split_pole") & results.rolling).sum()):
         said.append(say("accuracy", "singular", count=cases))
     return said
 

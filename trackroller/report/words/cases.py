@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.events import FEW, confining, meets, most_frequent
-from trackroller.analysis.table import MOST_LEVELS, OUTSIDE, StudyView
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import count, lasting, level_text, listing, long_name, number, plain, setting, share
@@ -17,40 +15,48 @@ from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import bodies_of, of_body
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.results.events import FEW, confining, meets, most_frequent
+from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.results import OUTSIDE, Results
 from trackroller.roller.record import names_not_given
 
 
-def valid_cases(view: StudyView) -> Sentence:
+def valid_cases(results: Results) -> Sentence:
     """Say how many cases roll, stay inside the model and meet the constraints, and why the others do not."""
-    lost = {REGIME_LABELS[c]: int((view.regime == c).sum()) for c in (1, 2, 3)}
-    lost["not converged"] = int(((view.regime == 0) & ~view.rolling).sum())
-    reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(view) if hit.any()]
-    values: dict[str, Any] = {"total": len(view.table), "lost": {words: n for words, n in lost.items() if n}}
-    values |= {name: int(getattr(view, name).sum()) for name in ("rolling", "inside", "valid")}
-    if view.met is not None:
-        values["constraints"] = [f"`{limit}`" for limit in view.study["constraints"]]
-    values |= {"flags": view.flags, "reasons": reasons, "outside": _reason_words(reasons), "removed": _removed(view)}
+    lost = {REGIME_LABELS[c]: int((results.regime == c).sum()) for c in (1, 2, 3)}
+    lost["not converged"] = int(((results.regime == 0) & ~results.rolling).sum())
+    reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(results) if hit.any()]
+    values: dict[str, Any] = {"total": len(results.table), "lost": {words: n for words, n in lost.items() if n}}
+    values |= {name: int(getattr(results, name).sum()) for name in ("rolling", "inside", "valid")}
+    if results.allowed is not None:
+        values["constraints"] = [f"`{limit}`" for limit in results.config.constraints]
+    values |= {
+        "flags": results.flags,
+        "reasons": reasons,
+        "outside": _reason_words(reasons),
+        "removed": _removed(results),
+    }
     return say("cases", "valid", **{"constraints": [], **values})
 
 
-def _removed(view: StudyView) -> list[str]:
+def _removed(results: Results) -> list[str]:
     """Name the levels that meet the constraints nowhere, and the factors that have one level left."""
     said = []
-    for name in view.factors if view.valid.any() else ():
-        own, levels = view.table[name], view.levels(name)
-        before = [v for v in levels if (own[view.inside] == v).any()] if len(levels) <= MOST_LEVELS else []
-        left = [setting(name, v) for v in before if (own[view.valid] == v).any()]
+    for name in results.factors if results.valid.any() else ():
+        own, levels = results.table[name], results.levels(name)
+        before = [v for v in levels if (own[results.inside] == v).any()] if len(levels) <= MOST_LEVELS else []
+        left = [setting(name, v) for v in before if (own[results.valid] == v).any()]
         if gone := [setting(name, v) for v in before if setting(name, v) not in left]:
             said.append(phrase("cases", "removed", gone=gone, left=left))
     return said
 
 
-def _outside(view: StudyView) -> list[tuple[str, str, np.ndarray]]:
+def _outside(results: Results) -> list[tuple[str, str, np.ndarray]]:
     """Return the rolling cases outside the model by flag, and by body if the data set has flags of bodies."""
     hits = []
-    for flag in (f for f in OUTSIDE if f in view.flags):
-        for body in bodies_of(flag, view.by_body):
-            hits.append((flag, body, view.flagged(flag, body) & view.rolling))
+    for flag in (f for f in OUTSIDE if f in results.flags):
+        for body in bodies_of(flag, results.by_body):
+            hits.append((flag, body, results.flagged(flag, body) & results.rolling))
     return hits
 
 
@@ -61,21 +67,21 @@ def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> list[str]:
     return [f"{VALIDITY[flag].words} {' or '.join(where)}" for flag, where in said.items()]
 
 
-def extremes(view: StudyView, column: str, words: str, unit: str, shown: Sequence[str], rows: np.ndarray) -> Sentence:
+def extremes(results: Results, column: str, words: str, unit: str, shown: Sequence[str], rows: np.ndarray) -> Sentence:
     """Name the shortest and the longest life of the cases shown, and where they are."""
-    values = view.column(column)
-    good, beyond = np.flatnonzero(rows & np.isfinite(values)), view.beyond_data(column)
+    values = results.column(column)
+    good, beyond = np.flatnonzero(rows & np.isfinite(values)), results.beyond_data(column)
     if not good.size:
         return say("cases", "none")
     two = [int(good[end(values[good])]) for end in (np.argmin, np.argmax)][: good.size]
-    places = [listing([setting(f, view.table[f].iloc[i]) for f in shown]) for i in two]
+    places = [listing([setting(f, results.table[f].iloc[i]) for f in shown]) for i in two]
     ends = [f"{lasting(values[i], unit, beyond[i])} at {place}" for i, place in zip(two, places, strict=True)]
     return say("cases", "extremes", words=words, ends=ends, unlimited=int((rows & np.isposinf(values)).sum()))
 
 
-def surface(view: StudyView, body: str, rows: np.ndarray) -> Sentence | None:
+def surface(results: Results, body: str, rows: np.ndarray) -> Sentence | None:
     """Say in how many cases the peak stress of a body lies at the surface."""
-    flags = view.column(f"at_surface_{body}")
+    flags = results.column(f"at_surface_{body}")
     known, hit = int((rows & ~np.isnan(flags)).sum()), int((rows & (flags == 1)).sum())
     return say("cases", "surface", body=body, count=hit, of=known) if known else None
 
@@ -93,16 +99,16 @@ def strength(body: str, stress: np.ndarray, limit: np.ndarray, most: np.ndarray,
     return say("cases", "strength", body=body, of=of, below=below, above=above) if of else None
 
 
-def silent_drive(view: StudyView) -> Sentence | None:
+def silent_drive(results: Results) -> Sentence | None:
     """Say that a motor force which the study does not name drives the cases that skid; None if there are none."""
-    force = view.study["base"]["motor_force"] if "motor_force" in names_not_given(view.attrs) else 0.0
-    skid = view.regime == REGIMES.index("full_slip")
+    force = results.config.base["motor_force"] if "motor_force" in names_not_given(results.data.attrs) else 0.0
+    skid = results.regime == REGIMES.index("full_slip")
     if not force or not skid.any():
         return None
     return say("cases", "silent_drive", motor_force=force)
 
 
-def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
+def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Sentence | None:
     """Say how often an event occurs and at which levels of the factors.
 
     None if it never does.
@@ -120,32 +126,32 @@ def occurrence(view: StudyView, hit: np.ndarray, what: str, among: np.ndarray | 
     values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
     if cases == whole:
         return say("cases", "everywhere", **values)
-    only = confining(view, hit, among)
+    only = confining(results, hit, among)
     inside = among.copy()
     for name, levels in only:
-        inside &= meets(view, name, levels)
+        inside &= meets(results, name, levels)
     met = int(inside.sum())
     # few events may share levels by chance, unless all cases at these levels have the event
     common = met == cases and all(isinstance(levels, list) for _, levels in only)
     if only and (cases >= FEW or common):
-        return say("cases", "only", **values, conditions=only, inside=met, places=_places(view, only))
+        return say("cases", "only", **values, conditions=only, inside=met, places=_places(results, only))
     if cases < FEW:
         shared = [(n, own) for n, own in only if isinstance(own, list) and len(own) == 1] if cases > 1 else []
         named = np.flatnonzero(hit).tolist()
-        return say("cases", "cases", **values, cases=named, conditions=shared, places=_places(view, shared))
-    most = most_frequent(view, hit, among)
+        return say("cases", "cases", **values, cases=named, conditions=shared, places=_places(results, shared))
+    most = most_frequent(results, hit, among)
     if most is None:
         return say("cases", "share", **values)
     return say("cases", "frequent", **values, **dict(zip(("factor", "most", "least"), most, strict=True)))
 
 
-def _places(view: StudyView, conditions: list[tuple[str, Any]]) -> list[str]:
-    return [f"at {_levels_words(view, name, levels)}" for name, levels in conditions]
+def _places(results: Results, conditions: list[tuple[str, Any]]) -> list[str]:
+    return [f"at {_levels_words(results, name, levels)}" for name, levels in conditions]
 
 
-def _levels_words(view: StudyView, name: str, levels: Any) -> str:
+def _levels_words(results: Results, name: str, levels: Any) -> str:
     if isinstance(levels, tuple):
-        own = view.table[name]
+        own = results.table[name]
         low, high = levels
         if low <= own.min():
             return at_most(name, high, own.min())
@@ -156,28 +162,28 @@ def _levels_words(view: StudyView, name: str, levels: Any) -> str:
     return listing([first, *(level_text(name, v) for v in levels[1:])], "or")
 
 
-def lift_off(view: StudyView) -> Sentence | None:
+def lift_off(results: Results) -> Sentence | None:
     """Say how many cases lift off and from which axial force on."""
-    lifted = view.regime == 2
-    axial = np.abs(view.column("axial_force"))
+    lifted = results.regime == 2
+    axial = np.abs(results.column("axial_force"))
     if not lifted.any() or np.isnan(axial[lifted]).any():
         return None
     return say("cases", "lift_off", count=int(lifted.sum()), least=float(axial[lifted].min()))
 
 
-def regime_table(view: StudyView) -> Table | None:
+def regime_table(results: Results) -> Table | None:
     """Count the cases in each regime; In short says where each regime occurs."""
-    counts = {name: int((view.regime == code).sum()) for code, name in enumerate(REGIME_LABELS)}
-    rows = [{"Regime": name, "Cases": n, "Share": share(n, len(view.table))} for name, n in counts.items() if n]
+    counts = {name: int((results.regime == code).sum()) for code, name in enumerate(REGIME_LABELS)}
+    rows = [{"Regime": name, "Cases": n, "Share": share(n, len(results.table))} for name, n in counts.items() if n]
     return Table.of("regimes", "Regimes", rows)
 
 
-def validity_table(view: StudyView) -> Table | None:
+def validity_table(results: Results) -> Table | None:
     """Count the rolling cases that carry each validity flag, by body where it is known, and say where they occur."""
-    rows, rolling = [], int(view.rolling.sum())
-    for flag, body in [(name, body) for name in view.flags for body in bodies_of(name, view.by_body)]:
-        hit = view.flagged(flag, body) & view.rolling
-        said = occurrence(view, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", view.rolling)
+    rows, rolling = [], int(results.rolling.sum())
+    for flag, body in [(name, body) for name in results.flags for body in bodies_of(name, results.by_body)]:
+        hit = results.flagged(flag, body) & results.rolling
+        said = occurrence(results, hit, f"The flag '{plain(flag)}'{f' of the {body}' if body else ''}", results.rolling)
         if said is not None:
             row = {"Flag": plain(flag), "Body": body or "either"}
             row |= {"Meaning": VALIDITY[flag].criterion}

@@ -6,9 +6,14 @@ from itertools import product
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 
-from trackroller.analysis.contact_models import (
+from trackroller.report.numbers import long_name, percent
+from trackroller.report.tables.table import Table
+from trackroller.report.words.levels import group_texts, span
+from trackroller.report.words.sentence import phrase
+from trackroller.results.contact_models import (
     GOOD,
     compared,
     designs,
@@ -19,12 +24,8 @@ from trackroller.analysis.contact_models import (
     pairs,
     spread,
 )
-from trackroller.analysis.groups import DRIVE, Groups, drives, groups
-from trackroller.analysis.table import StudyView
-from trackroller.report.numbers import long_name, percent
-from trackroller.report.tables.table import Table
-from trackroller.report.words.levels import group_texts, span
-from trackroller.report.words.sentence import phrase
+from trackroller.results.groups import DRIVE, Groups, drives, groups
+from trackroller.results.results import Results
 
 FRICTION = "friction_coefficient"
 NAMES = {"sliding": "The sliding model", "kalker_table": "The table of the exact theory"}
@@ -60,33 +61,33 @@ def short(paired: xr.Dataset) -> list[str]:
 
 def details(paired: xr.Dataset) -> list[str]:
     """Say for each model and drive up to which friction each quantity is good enough."""
-    view = designs(paired)
-    if not paired.sizes["design"] or FRICTION not in view.factors:
+    table = designs(paired)
+    if not paired.sizes["design"] or FRICTION not in table:
         return []
-    deviations, along = errors(paired), groups(view, FRICTION)
+    deviations, along = errors(paired), groups(table, FRICTION)
     said = []
     for model in map(str, deviations["contact_model"].values):
         one = deviations.sel(contact_model=model)
-        for text, rows in by_drive(view) if compared(one) >= FEWEST else ():
+        for text, rows in by_drive(table) if compared(one) >= FEWEST else ():
             head = f"{NAMES[model]}{f', {text}' if text else ''}"
             said.append(_sentence(one.where(xr.DataArray(rows, dims="design")), along, head))
     return said
 
 
-def by_drive(view: StudyView) -> list[tuple[str, np.ndarray]]:
-    """Return each drive of a study in words with a mask of its cases; one empty text if the drive is no factor."""
-    if DRIVE not in view.factors:
-        return [("", np.ones(len(view.table), dtype=bool))]
-    drive = drives(view)
+def by_drive(table: pd.DataFrame) -> list[tuple[str, np.ndarray]]:
+    """Return each drive of a table of factors in words with a mask of its rows; an empty text if it has no drive."""
+    if DRIVE not in table:
+        return [("", np.ones(len(table), dtype=bool))]
+    drive = drives(table)
     return [(text, drive.index == k) for k, text in enumerate(group_texts(drive))]
 
 
-def report_section(view: StudyView) -> dict[str, Any]:
+def report_section(results: Results) -> dict[str, Any]:
     """Return sentences and a table of errors for the report.
 
     The mapping is empty where there are no models to compare.
     """
-    paired = pairs(view)
+    paired = pairs(results)
     if paired is None:
         return {}
     tables = [_table(paired)] if paired.sizes["design"] else []

@@ -8,8 +8,6 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.analysis.designs import FEWEST, Designs, factor_roles
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
@@ -28,103 +26,105 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.results.candidates import FEWEST, Candidates, factor_roles
+from trackroller.results.results import Results
 
 MOST_TIES = 3  # designs with equal lives that are named
 BEST = 5  # designs that stand side by side
 
 
-def design_words(designs: Designs, row: pd.Series) -> str:
+def design_words(candidates: Candidates, row: pd.Series) -> str:
     """Name a design by its choices, materials first, such as 'PA6 on itself, contact angle 30°'."""
-    names = sorted(designs.choices, key=lambda name: designs.view.numeric(name))
+    names = sorted(candidates.choices, key=lambda name: candidates.results.numeric(name))
     return ", ".join(setting(name, row[name]) for name in names)
 
 
-def condition_words(designs: Designs, case: int) -> str:
+def condition_words(candidates: Candidates, case: int) -> str:
     """Name the conditions of a case, without those that do not change the goal of its design there."""
-    table, goal = designs.view.table, designs.view.column(designs.goal[0])
-    own = designs.usable & (designs.place == designs.place[case])
+    table, goal = candidates.results.table, candidates.results.column(candidates.goal[0])
+    own = candidates.usable & (candidates.place == candidates.place[case])
     alike = own & (goal == goal[case])
-    varied = [n for n in designs.conditions if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
-    return ", ".join(setting(name, table[name].iloc[case]) for name in varied or designs.conditions)
+    varied = [n for n in candidates.conditions if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
+    return ", ".join(setting(name, table[name].iloc[case]) for name in varied or candidates.conditions)
 
 
-def alone(designs: Designs) -> bool:
+def alone(candidates: Candidates) -> bool:
     """Return whether the roller stands for the pair in every case, because the guide's hours are unknown."""
-    return designs.rising and not designs.view.has("guide_life_hours")
+    return candidates.rising and not candidates.results.has("guide_life_hours")
 
 
-def size_words(view: StudyView) -> str:
+def size_words(results: Results) -> str:
     """State the size of a study: '162 cases: 9 designs in 18 conditions each'."""
-    cases, designs = len(view.table), Designs.of(view)
+    cases, candidates = len(results.table), results.candidates()
     text = f"{count(cases)} case{'s' * (cases > 1)}"
-    if designs is None or not (designs.matched and designs.choices and designs.conditions):
+    if candidates is None or not (candidates.matched and candidates.choices and candidates.conditions):
         return text
-    many, size = len(designs.size), int(designs.size[0])
+    many, size = len(candidates.size), int(candidates.size[0])
     each = f": {count(many)} design{'s' * (many > 1)} in {count(size)} conditions{' each' * (many > 1)}"
     return text + each * (many * size == cases)
 
 
-def best_design(view: StudyView) -> list[Sentence]:
+def best_design(results: Results) -> list[Sentence]:
     """Say which design to build, how long it lasts, what fails first, and which design comes next.
 
     Returns
     -------
     The sentences; none without a valid design. A study whose designs of experiments cannot answer says which one can.
     """
-    designs = Designs.of(view)
-    if designs is None:
-        return [] if view.valid.any() else [say("designs", "none_valid")]
-    if not designs.comparable:
-        return [_unanswered(designs)]
-    table = designs.table
+    candidates = results.candidates()
+    if candidates is None:
+        return [] if results.valid.any() else [say("designs", "none_valid")]
+    if not candidates.comparable:
+        return [_unanswered(candidates)]
+    table = candidates.table
     best, ties = table.iloc[0], int((table["rank"] == 1).sum())
-    said = [_of_design("best", designs, best, ("worst", "median", "best"), ties=ties)]
+    said = [_of_design("best", candidates, best, ("worst", "median", "best"), ties=ties)]
     if ties > 1:
-        said.append(_ties(designs, ties))
+        said.append(_ties(candidates, ties))
     counts = {word: int(best[f"first_{word}"]) for word in FIRST_TO_FAIL}
-    if designs.rising and counts["roller"] + counts["guide"]:
+    if candidates.rising and counts["roller"] + counts["guide"]:
         most, fewer = sorted(BODIES, key=lambda body: -counts[body])
         values = {"most": most, "fewer": fewer, "counts": counts, "valid": int(best["valid"])}
-        said.append(say("designs", "first", several=bool(designs.conditions), **values))
+        said.append(say("designs", "first", several=bool(candidates.conditions), **values))
     slip, lift = float(best["slip_margin"]), float(best["lift_off_margin"])
     if slip < 1 or np.isfinite(lift):  # without a drive nothing slips
         values = {"slip": slip, "lift_off": lift, "lifting": bool(np.isfinite(lift))}
-        said.append(say("designs", "margins", several=bool(designs.conditions), **values))
+        said.append(say("designs", "margins", several=bool(candidates.conditions), **values))
     if len(table) > ties and table.iloc[ties]["valid"]:
-        said.append(_of_design("next", designs, table.iloc[ties], ("worst", "median")))
+        said.append(_of_design("next", candidates, table.iloc[ties], ("worst", "median")))
     return said
 
 
-def target_of_designs(view: StudyView, words: str) -> Sentence | None:
+def target_of_designs(results: Results, words: str) -> Sentence | None:
     """Say how many designs meet the study's targets in all their conditions, and which one meets them most often.
 
     Parameters
     ----------
-    view : the study
+    results : the study
     words : the targets in words
 
     Returns
     -------
     The sentence; None without a target, or if the study cannot compare its designs.
     """
-    designs = Designs.of(view)
-    met = designs.targets_met() if designs is not None and designs.comparable else None
-    if designs is None or met is None:
+    candidates = results.candidates()
+    met = candidates.targets_met() if candidates is not None and candidates.comparable else None
+    if candidates is None or met is None:
         return None
-    best = int(np.argmax(met / designs.size))
-    values = {"met": met.tolist(), "every": int((met == designs.size).sum()), "best": best, "words": words}
-    row = designs.table[designs.table.index == best].iloc[0]
-    values |= {"name": design_words(designs, row), "several": bool(designs.conditions)}
-    unknown = "pair_life_hours" in view.study["analysis"]["target"] and alone(designs)
-    return say("designs", "target_of_designs", **values, conditions=int(designs.size[best]), alone=unknown)
+    best = int(np.argmax(met / candidates.size))
+    values = {"met": met.tolist(), "every": int((met == candidates.size).sum()), "best": best, "words": words}
+    row = candidates.table[candidates.table.index == best].iloc[0]
+    values |= {"name": design_words(candidates, row), "several": bool(candidates.conditions)}
+    unknown = "pair_life_hours" in results.config.analysis.target and alone(candidates)
+    return say("designs", "target_of_designs", **values, conditions=int(candidates.size[best]), alone=unknown)
 
 
-def _of_design(kind: str, designs: Designs, row: pd.Series, shown: Sequence[str], **values: Any) -> Sentence:
+def _of_design(kind: str, candidates: Candidates, row: pd.Series, shown: Sequence[str], **values: Any) -> Sentence:
     """Write the lives or the stress of a design, and in how many of its conditions it is valid.
 
     Lives that all lie beyond the S-N data share one remark.
     """
-    unit, lives = designs.goal[2], [(row[name], row[f"{name}_beyond"]) for name in shown]
+    unit, lives = candidates.goal[2], [(row[name], row[f"{name}_beyond"]) for name in shown]
     share = "b10" not in row and all(beyond and np.isfinite(value) for value, beyond in lives)
     texts = [quantity(value, unit) if share else lasting(value, unit, beyond) for value, beyond in lives]
     keys = ("worst", "median", "best", "valid", "cases", "rolls", "worst_case", "beyond")
@@ -134,66 +134,66 @@ def _of_design(kind: str, designs: Designs, row: pd.Series, shown: Sequence[str]
         **values,
         **{key: row[key] for key in keys},
         row=row,
-        design={name: row[name] for name in designs.choices},
-        name=design_words(designs, row),
-        rising=designs.rising,
-        drawn=designs.drawn,
-        several=bool(designs.conditions),
-        goal=designs.goal[1],
+        design={name: row[name] for name in candidates.choices},
+        name=design_words(candidates, row),
+        rising=candidates.rising,
+        drawn=candidates.drawn,
+        several=bool(candidates.conditions),
+        goal=candidates.goal[1],
         unit=unit,
         lives=texts,
         common=f", {'all' if len(shown) > 2 else 'both'} {BEYOND}" * share,
-        where=condition_words(designs, int(row["worst_case"])),
-        possible=designs.possible if designs.matched and len(designs.size) > 1 else 0,
-        alone=alone(designs),
+        where=condition_words(candidates, int(row["worst_case"])),
+        possible=candidates.possible if candidates.matched and len(candidates.size) > 1 else 0,
+        alone=alone(candidates),
     )
 
 
-def _ties(designs: Designs, ties: int) -> Sentence:
+def _ties(candidates: Candidates, ties: int) -> Sentence:
     """Name the designs that are no worse than the first."""
-    others = designs.table.iloc[1:ties]
-    names = [design_words(designs, row) for _, row in others.head(MOST_TIES).iterrows()]
+    others = candidates.table.iloc[1:ties]
+    names = [design_words(candidates, row) for _, row in others.head(MOST_TIES).iterrows()]
     names += [f"{count(len(others) - MOST_TIES)} more"] if len(others) > MOST_TIES else []
-    which = "nine-of-ten life" if designs.drawn and designs.rising else "worst case"
+    which = "nine-of-ten life" if candidates.drawn and candidates.rising else "worst case"
     return say("designs", "ties", ties=ties, names=names, which=which)
 
 
-def _unanswered(designs: Designs) -> Sentence:
+def _unanswered(candidates: Candidates) -> Sentence:
     """Say why a study cannot compare designs, and which design of experiments can."""
-    roles = factor_roles(designs.view)
+    roles = factor_roles(candidates.results)
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
-    values = {"designs": len(designs.size), "least": int(designs.size.min()), "most": int(designs.size.max())}
-    method = plain(designs.view.study["design"])
+    values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
+    method = plain(candidates.results.config.design)
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
 
-def best_table(view: StudyView) -> Table | None:
+def best_table(results: Results) -> Table | None:
     """List the best valid designs as columns, each over all its conditions.
 
     Where a design differs from the best one, the cell stands out.
     """
-    designs = Designs.of(view)
-    if designs is None or not designs.comparable:
+    candidates = results.candidates()
+    if candidates is None or not candidates.comparable:
         return None
-    best = [row for _, row in designs.table.head(BEST).iterrows() if row["valid"]]
-    rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in designs.choices]
-    rows += _judged(designs, best)
+    best = [row for _, row in candidates.table.head(BEST).iterrows() if row["valid"]]
+    rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in candidates.choices]
+    rows += _judged(candidates, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
             rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
-    several, met = bool(designs.conditions), designs.targets_met()
+    several, met = bool(candidates.conditions), candidates.targets_met()
     for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")) if several else ():
         rows.append([words, *(part_of(row[name], row["cases"]) for row in best)])
     if met is not None:
-        places = designs.table.index[: len(best)]
-        rows.append(["Meets the targets in", *(part_of(met[i], designs.size[i]) for i in places)])
+        places = candidates.table.index[: len(best)]
+        rows.append(["Meets the targets in", *(part_of(met[i], candidates.size[i]) for i in places)])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Best {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
-    title = "Best valid designs" if designs.choices else "Life of the design"
-    model = view.held_level("contact_model") if "contact_model" in view.factors else ""
-    facts = {"several": several, "drawn": designs.drawn, "rising": designs.rising, "goal": designs.goal[1]}
+    title = "Best valid designs" if candidates.choices else "Life of the design"
+    model = results.held_level("contact_model") if "contact_model" in results.factors else ""
+    facts = {"several": several, "drawn": candidates.drawn, "rising": candidates.rising, "goal": candidates.goal[1]}
     note = phrase("designs", "note", model=model, **facts)
-    return compared("best_designs", title, heads if designs.choices else ["All conditions"], rows, note)
+    return compared("best_designs", title, heads if candidates.choices else ["All conditions"], rows, note)
 
 
 def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], note: str) -> Table:
@@ -202,24 +202,24 @@ def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], not
     return Table(name, title, ["", *heads], rows, note, frozenset(marks))
 
 
-def _judged(designs: Designs, best: list[pd.Series]) -> list[list[Any]]:
+def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     """Return the rows on the goal of the designs, on the worst condition, and on the body that fails first."""
-    unit, rising = head_unit(designs.goal[2]), designs.rising
+    unit, rising = head_unit(candidates.goal[2]), candidates.rising
 
     def row_of(key: str, head: str, place: str = "") -> list[Any]:
         cells = (Life(row[key], row[f"{key}_beyond"]) if rising else float(row[key]) for row in best)
         return [f"{head}{', ' * bool(place)}{place} [{unit}]", *cells]
 
     rows, places = [], {"worst": "worst condition", "median": "median", "best": "best condition"}
-    if rising and designs.drawn:
+    if rising and candidates.drawn:
         rows.append(row_of("b10", "Nine of ten reach"))
         rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
     places = places if rising else {"worst": "largest", "median": "median"}
-    places = places if designs.conditions else {"worst": ""}
-    rows += [row_of(key, capital(designs.goal[1]), place) for key, place in places.items()]
-    if designs.conditions:
-        rows.append(["Worst condition", *(condition_words(designs, int(row["worst_case"])) for row in best)])
-    if rising and not alone(designs):
+    places = places if candidates.conditions else {"worst": ""}
+    rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
+    if candidates.conditions:
+        rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
+    if rising and not alone(candidates):
         known = [body for body in BODIES if any(np.isfinite(row[f"worst_{body}"]) for row in best)]
         rows += [row_of(f"worst_{body}", f"Life of the {body}", places["worst"]) for body in known]
         rows.append(["Fails first", *(first_words(row) for row in best)])

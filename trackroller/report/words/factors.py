@@ -7,18 +7,18 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis import effects
-from trackroller.analysis.effects import Effect
-from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, setting, times
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results import effects
+from trackroller.results.effects import Effect
+from trackroller.results.results import Results
 from trackroller.study.design.levels import NAMED
 
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
 
 
-def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.ndarray) -> Sentence | None:
+def effect_of(results: Results, column: str, words: str, factor: str, rows: np.ndarray) -> Sentence | None:
     """Say how an output changes with a factor.
 
     Between paired cases if there are any, else between classes.
@@ -33,22 +33,22 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     -------
     The sentence, or None where too few cases can be compared.
     """
-    effect = effects.paired_effect(view, column, factor, rows)
+    effect = effects.paired_effect(results, column, factor, rows)
     paired = effect is not None
-    effect = effect or effects.class_effect(view, column, factor, rows)
-    if effect is None or (not paired and not effects.comparable(view, effect, column, rows)):
+    effect = effect or effects.class_effect(results, column, factor, rows)
+    if effect is None or (not paired and not effects.comparable(results, effect, column, rows)):
         return None
-    parts = effects.strata(view, column, effect, rows)
-    beyond = int((rows & view.beyond_data(column)).sum())
+    parts = effects.strata(results, column, effect, rows)
+    beyond = int((rows & results.beyond_data(column)).sum())
     values = {"column": column, "words": words, **vars(effect), "beyond": beyond}
     values |= {"fold": times(effect.ratio), "verb": _change(words, effect.ratio)[0]}
-    said = (_of_pairs if paired else _of_classes)(view, effect, parts, values, rows)
+    said = (_of_pairs if paired else _of_classes)(results, effect, parts, values, rows)
     if beyond:
         own = f"{count(beyond)} of the {count(int(rows.sum()))} lives lie {BEYOND}"
         said = replace(said, text=f"{said.text.removesuffix('.')}; {own}.")
     if paired:
         return said
-    pairs = [pair for pair in view.study["rank_correlations"] if factor in pair[:2] and pair[2]]
+    pairs = [pair for pair in results.config.rank_correlations if factor in pair[:2] and pair[2]]
     tied = [one if other == factor else other for one, other, _ in pairs]
     if not tied:
         return said
@@ -56,9 +56,9 @@ def effect_of(view: StudyView, column: str, words: str, factor: str, rows: np.nd
     return replace(said, text=text, values={**said.values, "correlated": tied})
 
 
-def _span(view: StudyView, effect: Effect) -> str:
+def _span(results: Results, effect: Effect) -> str:
     """Return 'Friction coefficient 0 → 0.4', or the two levels of a list."""
-    if view.ordered(effect.factor):
+    if results.ordered(effect.factor):
         low = level_text(effect.factor, effect.low, unit=False)
         high = level_text(effect.factor, effect.high, words=False)
         return f"{capital(long_name(effect.factor))} {low} → {high}"
@@ -81,12 +81,12 @@ def _within(parts: Strata, words: str) -> list[str]:
     return [f"{times(r)} {_change(words, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
 
 
-def _of_pairs(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
+def _of_pairs(results: Results, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
     """State the median change of cases that differ in one factor only."""
-    changed = [long_name(name) for name in effects.also_changed(view, effect.factor, rows)]
+    changed = [long_name(name) for name in effects.also_changed(results, effect.factor, rows)]
     pairs = f"{count(effect.size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that follows from it" if changed else ""
-    values |= {"span": _span(view, effect), "pairs": pairs}
+    values |= {"span": _span(results, effect), "pairs": pairs}
     parts = [p for p in parts if p[2].size >= effects.FEWEST_PAIRS]
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     same = effect.rising if effect.ratio > 1 else effect.falling
@@ -107,9 +107,9 @@ def _most_spread(parts: Strata) -> Strata:
     return [part for part in parts if part[0] == category]
 
 
-def _of_classes(view: StudyView, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
+def _of_classes(results: Results, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
     """State the change of the median between the lowest and the highest third of a factor, with its interval."""
-    own = view.table[effect.factor].to_numpy(dtype=float)[rows]
+    own = results.table[effect.factor].to_numpy(dtype=float)[rows]
     values |= {"low_class": at_most(effect.factor, effect.low, own.min()), "name": long_name(effect.factor)}
     values |= {"high_class": at_least(effect.factor, effect.high, own.max())}
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import xarray as xr
 
-from trackroller.analysis.ranking import decisive, headline, order, robust_design
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.numbers import capital
 from trackroller.report.words import indices
@@ -18,56 +16,68 @@ from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.samples import grown, samples
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import target, target_words
+from trackroller.results.ranking import decisive, headline, order, robust_design
+from trackroller.results.results import Results
 
 Line = tuple[str, list[Sentence]]
 
 
-def in_short(view: StudyView, models: list[str]) -> list[Line]:
+def in_short(results: Results, models: list[str]) -> list[Line]:
     """Return the lines of *In short*: a head and its sentences.
 
     A line without content is left out.
 
     Parameters
     ----------
-    view : the study as a table, with its analysis if there is one
+    results : the solved study
     models : sentences of the comparison of contact models, if the study has one
     """
-    sens = view.analysis
-    complete = sens if "missing_cases" not in view.attrs else None  # the study asks for more samples than are solved
-    enough = samples(complete, view.study["samples"]) if complete is not None else None
+    sens = results.analysis
+    complete = sens if not results.unfinished else None  # the study asks for more samples than are solved
+    enough = samples(complete, results.config.samples) if complete is not None else None
     compared = [Sentence("models", text) for text in models]
     lines: list[tuple[str, list[Sentence | None]]] = [
         # first, so that the first screen answers what to build
-        ("Best", [*(optimum_sentences(view) or best_design(view)), _target(view)]),
-        ("What ends it", [limit_of_best(view), best_whatever(view), whichever_first(view)]),
-        ("Valid cases", [valid_cases(view), stopped(view)]),
+        ("Best", [*(optimum_sentences(results) or best_design(results)), _target(results)]),
+        ("What ends it", [limit_of_best(results), best_whatever(results), whichever_first(results)]),
+        ("Valid cases", [valid_cases(results), stopped(results)]),
         ("What decides", decides(sens)),
         (
             "What limits",
-            [*(occurrence(view, view.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)), silent_drive(view)],
+            [
+                *(occurrence(results, results.regime == c, capital(REGIME_LABELS[c])) for c in (1, 2, 3)),
+                silent_drive(results),
+            ],
         ),
         (
             "How sure",
-            [friction_guess(view), guesses(view), worn(view), *known_errors(view), *accuracy(view), *compared],
+            [
+                friction_guess(results),
+                guesses(results),
+                worn(results),
+                *known_errors(results),
+                *accuracy(results),
+                *compared,
+            ],
         ),
-        ("Enough samples?", [grown(view) or enough]),
+        ("Enough samples?", [grown(results) or enough]),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
 
 
-def _target(view: StudyView) -> Sentence | None:
+def _target(results: Results) -> Sentence | None:
     """Say how often all targets of the study are met: by designs over their conditions, otherwise by cases."""
-    sens = view.analysis
+    sens = results.analysis
     if sens is None or "target" not in sens.dims:
         return None
-    of_designs = None if robust_design(sens) else target_of_designs(view, target_words(sens, -1))
+    of_designs = None if robust_design(sens) else target_of_designs(results, target_words(sens, -1))
     return of_designs or target(sens, -1)  # the last target joins several
 
 
-def stopped(view: StudyView) -> Sentence | None:
+def stopped(results: Results) -> Sentence | None:
     """Count the cases in which the condition of `stop_if` ended the search for stresses."""
-    stopped = int((view.column("stopped", 0.0) == 1).sum())
-    return say("cases", "stopped", count=stopped, of=len(view.table)) if stopped else None
+    stopped = int((results.column("stopped", 0.0) == 1).sum())
+    return say("cases", "stopped", count=stopped, of=len(results.table)) if stopped else None
 
 
 def decides(sens: xr.Dataset | None) -> list[Sentence | None]:

@@ -7,12 +7,12 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.labels import INDEX_WORDS, RELIABLE, factor_name
-from trackroller.analysis.ranking import SIGNED, USABLE, Rank, estimate, headline, method_of, order, used_share
 from trackroller.report.numbers import capital, count, level_text, percent, plus_minus, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.labels import INDEX_WORDS, RELIABLE, factor_name
+from trackroller.results.ranking import SIGNED, USABLE, Rank, estimate, headline, method_of, order, used_share
 
 HALF = "± is half the 95 % interval"
 SMALL = 0.02  # share of variance below which a factor is called negligible

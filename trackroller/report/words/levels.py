@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.groups import DRIVE, Groups, classes
-from trackroller.analysis.table import StudyView
 from trackroller.report.numbers import level_text, long_name, number, rounded, setting
+from trackroller.results.groups import DRIVE, Groups, classes
+from trackroller.results.results import Results
 
 LOADS = ("radial_force", "axial_force", "motor_force")  # their sign is a direction: less may mean more load
 COLOURS = 5  # most groups that get a colour each
@@ -99,14 +99,14 @@ def class_words(name: str, end: Any) -> str:
     return level_text(name, end) if isinstance(end, str) else setting(name, end)
 
 
-def coloured(view: StudyView, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:
+def coloured(results: Results, lead: str, rows: np.ndarray) -> list[tuple[str, np.ndarray]]:
     """Return each level (or third) of the deciding factor in words, and which of the chosen rows have it.
 
     Parameters
     ----------
     rows : the chosen cases, shape (n,) bool
     """
-    index, ends = classes(view, lead, rows, 3)
+    index, ends = classes(results.table, lead, rows, 3)
     present = [k for k in range(len(ends)) if (index == k).any()]
     if len(present) > COLOURS:  # of many levels show the lowest, the highest and some between
         chosen = np.unique(np.linspace(0, len(present) - 1, COLOURS).round().astype(int))

@@ -4,11 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.analysis.designs import Designs
-from trackroller.analysis.first_limits import Turn, deciding, first_limit, turn, without_first
-from trackroller.analysis.lives import FIRST_LIMIT, body_lives
-from trackroller.analysis.table import StudyView
-from trackroller.analysis.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
 from trackroller.damage import LIMITS
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.report.numbers import capital, count, level_text, long_name, rounded
@@ -16,6 +11,11 @@ from trackroller.report.tables.limits import guessed_values
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.candidates import Candidates
+from trackroller.results.first_limits import Turn, deciding, first_limit, turn, without_first
+from trackroller.results.lives import FIRST_LIMIT, body_lives
+from trackroller.results.results import Results
+from trackroller.results.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
 
 MOST_NAMED = 4  # designs that a sentence names
 
@@ -25,113 +25,120 @@ def title(name: str) -> str:
     return LIMITS[name].title.partition(" (")[0]
 
 
-def limit_of_best(view: StudyView) -> Sentence | None:
+def limit_of_best(results: Results) -> Sentence | None:
     """Say what ends the best design first at its worst condition, and its life without it; None without limits."""
-    designs = Designs.of(view)
-    if designs is None or designs.goal != FIRST_LIMIT or not designs.comparable or not designs.table.iloc[0]["valid"]:
+    candidates = results.candidates()
+    if (
+        candidates is None
+        or candidates.goal != FIRST_LIMIT
+        or not candidates.comparable
+        or not candidates.table.iloc[0]["valid"]
+    ):
         return None
-    case = int(designs.table.iloc[0]["worst_case"])
-    first, hours, following, then = without_first(view, case)
+    case = int(candidates.table.iloc[0]["worst_case"])
+    first, hours, following, then = without_first(results, case)
     lives = body_lives("").values()
-    beyond = following == "fatigue" and any(view.beyond_data(name)[case] for name in lives)
+    beyond = following == "fatigue" and any(results.beyond_data(name)[case] for name in lives)
     values = {"first": title(first), "hours": hours, "next": title(following), "then": then}
-    return say("limits", "gain", **values, beyond=beyond, several=bool(designs.conditions))
+    return say("limits", "gain", **values, beyond=beyond, several=bool(candidates.conditions))
 
 
-def limit_sentences(view: StudyView) -> list[Sentence]:
+def limit_sentences(results: Results) -> list[Sentence]:
     """Say how often each limit comes first, and how the order of the designs turns; nothing without limits."""
-    designs = Designs.of(view)
-    if designs is None or designs.goal != FIRST_LIMIT:
+    candidates = results.candidates()
+    if candidates is None or candidates.goal != FIRST_LIMIT:
         return []
-    names = first_limit(view)[view.valid]
+    names = first_limit(results)[results.valid]
     counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
     titles = {title(name): cases for name, cases in counts.items()}
-    said = [say("limits", "first_limits", counts=titles, valid=int(view.valid.sum()))] if counts else []
-    order = turn(designs)
-    return [*said, _turned(designs, order)] if order is not None else said
+    said = [say("limits", "first_limits", counts=titles, valid=int(results.valid.sum()))] if counts else []
+    order = turn(candidates)
+    return [*said, _turned(candidates, order)] if order is not None else said
 
 
-def guesses(view: StudyView) -> Sentence | None:
+def guesses(results: Results) -> Sentence | None:
     """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
     placed: dict[str, dict[str, None]] = {}
-    for limit, material, _ in guessed_values(view.data):
+    for limit, material, _ in guessed_values(results.data):
         placed.setdefault(title(limit), {})[material.strip("'")] = None
     return say("limits", "guesses", placed={limit: list(own) for limit, own in placed.items()}) if placed else None
 
 
-def worn(view: StudyView) -> Sentence | None:
+def worn(results: Results) -> Sentence | None:
     """Say in how many cases the groove wears away before the life ends; None if in none."""
-    rows, name = view.valid & view.flagged("worn"), FIRST_LIMIT[0]
-    if view.has(name):
-        speed = view.column("velocity") if view.has("velocity") else float(view.data["velocity"])
-        rows = rows & (KM_PER_HOUR * speed * view.column(name) > view.column("run_in_distance"))
+    rows, name = results.valid & results.flagged("worn"), FIRST_LIMIT[0]
+    if results.has(name):
+        speed = results.column("velocity") if results.has("velocity") else float(results.data["velocity"])
+        rows = rows & (KM_PER_HOUR * speed * results.column(name) > results.column("run_in_distance"))
     if not rows.any():
         return None
-    km, valid = view.column("run_in_distance")[rows], int(view.valid.sum())
-    values = {"count": int(rows.sum()), "valid": valid, "of_limits": view.has(name)}
+    km, valid = results.column("run_in_distance")[rows], int(results.valid.sum())
+    values = {"count": int(rows.sum()), "valid": valid, "of_limits": results.has(name)}
     return say("limits", "worn", **values, least=km.min(), most=km.max())
 
 
-def best_whatever(view: StudyView) -> Sentence | None:
+def best_whatever(results: Results) -> Sentence | None:
     """Say which designs are the best whatever the values known within a range are; None without such values."""
-    designs = Designs.of(view)
-    best = unbeaten(designs) if designs is not None else None
-    if designs is None or best is None or not len(best):
+    candidates = results.candidates()
+    best = unbeaten(candidates) if candidates is not None else None
+    if candidates is None or best is None or not len(best):
         return None
-    rows = designs.table[designs.table.index.isin(best)]
-    names = [design_words(designs, row) for _, row in rows.iterrows()]
-    values = {"designs": rows.index.tolist(), "of": len(designs.size), "names": names, "most": MOST_NAMED}
-    return say("limits", "best_whatever", **values, **_unsure(designs))
+    rows = candidates.table[candidates.table.index.isin(best)]
+    names = [design_words(candidates, row) for _, row in rows.iterrows()]
+    values = {"designs": rows.index.tolist(), "of": len(candidates.size), "names": names, "most": MOST_NAMED}
+    return say("limits", "best_whatever", **values, **_unsure(candidates))
 
 
-def _unsure(designs: Designs) -> dict[str, str]:
+def _unsure(candidates: Candidates) -> dict[str, str]:
     """Return words for the values that a study varies within their ranges, and for the ranges."""
-    names = varied(designs)
+    names = varied(candidates)
     if names == [POSITION]:
         return {"what": "placeholders of materials", "span": "each within its range"}
-    factors = designs.view.table[COEFFICIENT]
+    factors = candidates.results.table[COEFFICIENT]
     span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
     return {"what": "wear coefficients" + " and other placeholders" * (POSITION in names), "span": span}
 
 
-def whichever_first(view: StudyView) -> Sentence | None:
+def whichever_first(results: Results) -> Sentence | None:
     """Say in how many conditions the first limit is the same for all values within their ranges; None without them."""
-    designs = Designs.of(view)
-    counts = settled(designs) if designs is not None else None
-    if designs is None or counts is None or not counts[1]:
+    candidates = results.candidates()
+    counts = settled(candidates) if candidates is not None else None
+    if candidates is None or counts is None or not counts[1]:
         return None
-    return say("limits", "whichever_first", certain=counts[0], of=counts[1], **_unsure(designs))
+    return say("limits", "whichever_first", certain=counts[0], of=counts[1], **_unsure(candidates))
 
 
-def _turned(designs: Designs, order: Turn) -> Sentence:
+def _turned(candidates: Candidates, order: Turn) -> Sentence:
     """Say how many designs change their place, and which one changes most."""
     before, after = order.before, order.after
     steps = {i: before.index(i) - after.index(i) for i in after}
     most = max(steps, key=lambda i: abs(steps[i]))
     values = {"changed": sum(step != 0 for step in steps.values()), "designs": len(after)}
     values |= {"before": before.index(most) + 1, "after": after.index(most) + 1}
-    name = design_words(designs, designs.table.iloc[after.index(most)])
+    name = design_words(candidates, candidates.table.iloc[after.index(most)])
     return say("limits", "turned", **values, correlation=order.correlation, name=name)
 
 
-def first_limit_table(view: StudyView) -> Table | None:
+def first_limit_table(results: Results) -> Table | None:
     """Count the first limits of the valid cases over the two factors that decide most about them.
 
     None for a study without limits, or if the first limit depends on no factor.
     """
-    if view.life != FIRST_LIMIT:
+    if results.life != FIRST_LIMIT:
         return None
-    names = first_limit(view)
-    factors = deciding(view, names)
+    names = first_limit(results)
+    factors = deciding(results, names)
     if not factors:
         return None
     first, *others = factors
-    across = {"All valid cases": view.valid}
+    across = {"All valid cases": results.valid}
     for other in others:
-        across = {level_text(other, v): view.valid & (view.table[other] == v).to_numpy() for v in view.levels(other)}
+        across = {
+            level_text(other, v): results.valid & (results.table[other] == v).to_numpy() for v in results.levels(other)
+        }
     rows = []
-    for level in view.levels(first):
-        own = (view.table[first] == level).to_numpy()
+    for level in results.levels(first):
+        own = (results.table[first] == level).to_numpy()
         counts = {head: _counts(names[own & rows_there]) for head, rows_there in across.items()}
         rows.append({heading(first): factor_cell(first, level)} | counts)
     note = "Number of valid cases that each limit of the pair ends first."

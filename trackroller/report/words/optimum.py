@@ -6,34 +6,34 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.analysis.judging import beyond_data, choices_of, goal_column, optimum_of
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import Life, capital, lasting, long_name, percent, quantity, setting, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.judging import beyond_data, choices_of, goal_column, optimum_of
+from trackroller.results.results import Results
 from trackroller.study.file.search import judged_by
 
 SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
 
 
-def optimum_sentences(view: StudyView) -> list[Sentence]:
+def optimum_sentences(results: Results) -> list[Sentence]:
     """Say which design a search recommends, how it was found, how sure its goals are, and what a tolerance costs.
 
     Returns
     -------
     The sentences; none for a study that is no search.
     """
-    search = optimum_of(view.solved)
+    search = optimum_of(results)
     if search is None:
         return []
     least = least_violation(search)
-    said = [_invalid(view, search, least) if least else None]
+    said = [_invalid(results, search, least) if least else None]
     if least < 1:
         best = next(one for one in search["optima"] if one["design"] == search["recommended"])
-        said += [_recommended(view, search, best), _unreached(view, search), _checked(search)]
-        said.append(_tolerance(view, search, best))
+        said += [_recommended(results, search, best), _unreached(results, search), _checked(search)]
+        said.append(_tolerance(results, search, best))
     facts = ("designs", "generations", "model", "valid", "stopped")
     said.append(say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts}))
     return [sentence for sentence in said if sentence is not None]
@@ -44,39 +44,43 @@ def least_violation(search: dict[str, Any]) -> float:
     return float(min((one["violation"][0] for one in search["optima"]), default=1.0))
 
 
-def design_words(view: StudyView, number: int) -> str:
+def design_words(results: Results, number: int) -> str:
     """Name a design of a search by its choices."""
-    return ", ".join(setting(name, value) for name, value in choices_of(view.solved, number).items())
+    return ", ".join(setting(name, value) for name, value in choices_of(results, number).items())
 
 
-def goal_texts(view: StudyView, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
+def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
     """Write the goals of an optimum with their units; a life beyond the S-N data says so."""
     texts = []
     for goal, value in zip(search["goals"], one["values"], strict=True):
-        _, units, words = goal_column(view.solved, goal)
-        beyond = bool(beyond_data(view.solved, goal)[one["design"]])
+        _, units, words = goal_column(results, goal)
+        beyond = bool(beyond_data(results, goal)[one["design"]])
         texts.append(f"{words} {lasting(value, units, beyond) if units == 'h' else quantity(value, units)}")
     return texts
 
 
-def _recommended(view: StudyView, search: dict[str, Any], best: dict[str, Any]) -> Sentence:
-    values = {"least": least_violation(search), "design": design_words(view, best["design"]), "front": search["front"]}
+def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence:
+    values = {
+        "least": least_violation(search),
+        "design": design_words(results, best["design"]),
+        "front": search["front"],
+    }
     alike = all(one["values"] == best["values"] for one in search["optima"])
-    return say("optimum", "recommended", goals=goal_texts(view, search, best), alike=alike, **values)
+    return say("optimum", "recommended", goals=goal_texts(results, search, best), alike=alike, **values)
 
 
-def _invalid(view: StudyView, search: dict[str, Any], least: float) -> Sentence:
+def _invalid(results: Results, search: dict[str, Any], least: float) -> Sentence:
     """Say that no design is valid in all conditions, and why."""
     reasons = sorted(search["reasons"].items(), key=lambda pair: -pair[1])
-    conditions = view.solved.design.meta["inner_samples"]
+    conditions = results.design.meta["inner_samples"]
     return say("optimum", "invalid", least=least, conditions=conditions, reasons=reasons)
 
 
-def _unreached(view: StudyView, search: dict[str, Any]) -> Sentence | None:
+def _unreached(results: Results, search: dict[str, Any]) -> Sentence | None:
     """Name the probabilities and lives that no design brings above 0, and goals without a value."""
     low = []
     for goal in (goal for goal, way in search["goals"].items() if way == "max"):
-        values, _, words = goal_column(view.solved, goal)
+        values, _, words = goal_column(results, goal)
         rises = "life" in goal or judged_by(goal)[0] == "probability"  # other goals may be negative
         if np.isnan(values).all() or (rises and not np.nanmax(values) > 0):
             low.append(words)
@@ -95,9 +99,9 @@ def _changes(before: list[float], after: list[float]) -> list[float]:
     return [b / a - 1 if a and np.isfinite([a, b]).all() else 0.0 for a, b in zip(before, after, strict=True)]
 
 
-def _tolerance(view: StudyView, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
+def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
     """Say what a small change of each real choice costs."""
-    words, neighbours = [goal_column(view.solved, goal)[2] for goal in search["goals"]], []
+    words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
     for near in search["neighbours"]:
         name, step = near["choice"], float(near["step"])
         moved = f"{'+' if step > 0 else ''}{quantity(step, PARAMETERS[name].unit if name in PARAMETERS else '1')}"
@@ -107,21 +111,21 @@ def _tolerance(view: StudyView, search: dict[str, Any], best: dict[str, Any]) ->
     return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
 
 
-def optima_table(view: StudyView) -> Table | None:
+def optima_table(results: Results) -> Table | None:
     """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
-    search = optimum_of(view.solved)
+    search = optimum_of(results)
     if search is None or least_violation(search) == 1:
         return None
     shown = sorted(search["optima"], key=lambda one: one["design"] != search["recommended"])[:BEST]
-    choices = [choices_of(view.solved, one["design"]) for one in shown]
+    choices = [choices_of(results, one["design"]) for one in shown]
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, own[n]) for own in choices)] for n in choices[0]]
     for i, (goal, way) in enumerate(search["goals"].items()):
-        _, units, words = goal_column(view.solved, goal)
+        _, units, words = goal_column(results, goal)
         head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
         for key, mark in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
             numbers = [float(one[key][i]) for one in shown]
             if "life" in goal and units == "h":
-                marked = beyond_data(view.solved, goal)
+                marked = beyond_data(results, goal)
                 numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
             rows.append([f"{head}{mark}", *numbers])
     if any(one["violation"][0] for one in shown):

@@ -8,23 +8,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.pareto import end_places, goals_of
-from trackroller.analysis.table import StudyView
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import Life, capital, lasting, long_name, quantity, with_unit
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.results.pareto import end_places, goals_of
+from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
 
 
-def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentence:
+def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Sentence:
     """State the size and the ends of a Pareto set, and how many of its designs lie outside the model.
 
     Parameters
     ----------
-    front : dataset of `trackroller.analysis.pareto.pareto`
-    view : the study, for the validity of the designs
+    front : dataset of `trackroller.results.pareto.pareto`
+    results : the study, for the validity of the designs
     """
     best, goals = np.flatnonzero(front["optimal"].values == 1), [name for name, _ in goals_of(front)]
     kind, rows = str(front.attrs.get("kind", "design")), front["row"].values[best]
@@ -39,8 +39,8 @@ def pareto_sentence(front: xr.Dataset, view: StudyView | None = None) -> Sentenc
         values["first"] = [f"{value} {word}" for word, value in zip(words, ends[0], strict=True)]
         values["last"] = ends[1] if len(places) > 1 and (table[places[0]] != table[places[1]]).any() else []
         values["alike"] = len(np.unique(table[best], axis=0)) == 1
-    values["outside"] = int((~view.valid[rows]).sum()) if view is not None and kind == "design" else 0
-    values["alone"] = "pair_life_hours" in goals and view is not None and not view.has("guide_life_hours")
+    values["outside"] = int((~results.valid[rows]).sum()) if results is not None and kind == "design" else 0
+    values["alone"] = "pair_life_hours" in goals and results is not None and not results.has("guide_life_hours")
     return say("pareto", "pareto", several=len(goals) > 1, **values)
 
 
@@ -67,7 +67,7 @@ def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
 MAX_DESIGNS = 12  # rows of the table of the Pareto set
 
 
-def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> Table | None:
+def pareto_table(front: xr.Dataset, results: Results, error: Sentence | None) -> Table | None:
     """List Pareto-optimal designs along the first goal, with a column that says which lie outside the model."""
     goals = goals_of(front)
     best = np.flatnonzero(front["optimal"].values == 1)
@@ -85,7 +85,7 @@ def pareto_table(front: xr.Dataset, view: StudyView, error: Sentence | None) -> 
     for name in (*arrows, *further):
         columns[goal_heading(front, name) + arrows.get(name, "")] = _column(front, name, shown)
     if kind != "design point":
-        columns["Model"] = ["inside" if view.valid[row] else "outside" for row in columns[head]]
+        columns["Model"] = ["inside" if results.valid[row] else "outside" for row in columns[head]]
     wishes = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     remark = error.text if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
     values = {"wishes": wishes, "constraints": front.attrs.get("constraints"), "kind": kind, "error": remark}

@@ -7,9 +7,6 @@ import math
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.looks import looks_of
-from trackroller.analysis.ranking import best_points, estimate
-from trackroller.analysis.table import StudyView
 from trackroller.methods import METHODS, Method
 from trackroller.methods.method import HALF_WIDTH
 from trackroller.parameters import REGIMES
@@ -18,6 +15,9 @@ from trackroller.report.tables.table import Table
 from trackroller.report.words.indices import of_output
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import samples_of_points, target_words
+from trackroller.results.looks import looks_of
+from trackroller.results.ranking import best_points, estimate
+from trackroller.results.results import Results
 from trackroller.roller.output_names import PARTS
 from trackroller.study.file.goals import statistic
 
@@ -39,7 +39,7 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
 
     Notes
     -----
-    A half width falls as one over the root of the samples, measured by ``tests/analysis/test_enough.py``. The number is
+    A half width falls as one over the root of the samples, measured by ``tests/results/test_enough.py``. The number is
     `asked` times a power of two, so that a Sobol sequence stays balanced.
     """
     method, asked = METHODS[str(sens.attrs["method"])], int(sens.attrs.get("samples", asked))
@@ -98,23 +98,23 @@ def quantity_words(name: str, method: Method) -> str:
     return words
 
 
-def grown(view: StudyView) -> Sentence | None:
+def grown(results: Results) -> Sentence | None:
     """Say what a growing sample was to reach, why it stopped, and what it reached; None for other studies."""
-    growth = looks_of(view.solved)
+    growth = looks_of(results)
     if growth is None:
         return None
-    last, method = growth["looks"][-1], view.solved.design.method
+    last, method = growth["looks"][-1], results.design.method
     widths = [(quantity_words(n, method), width, last["at"][n]) for n, width in last["half_width"].items()]
-    sens = view.analysis
+    sens = results.analysis
     points = samples_of_points(sens) if sens is not None and "point_samples" in sens else ""
     facts = {name: growth[name] for name in ("half_width", "stopped", "replicates")}
     values = {"what": method.known_by, "cases": last["cases"], "widths": widths, "points": points}
     return say("samples", "grown", **values, **facts)
 
 
-def looks_table(view: StudyView) -> Table | None:
+def looks_table(results: Results) -> Table | None:
     """List the widest interval of each output at each look; None for a study without the key `until`."""
-    growth = looks_of(view.solved)
+    growth = looks_of(results)
     if growth is None:
         return None
     rows = []
@@ -122,7 +122,7 @@ def looks_table(view: StudyView) -> Table | None:
         row = {"Cases": one["cases"]}
         for name, width in one["half_width"].items():
             text = "–" if width is None else f"± {rounded(width, 2)} ({one['at'][name]})"
-            row[capital(quantity_words(name, view.solved.design.method))] = text
+            row[capital(quantity_words(name, results.design.method))] = text
         rows.append(row)
     note = f"Widest 95 % interval at each look and where; wanted: ± {growth['half_width']:g}."
     return Table.of("looks", "Intervals as the sample grew", rows, f"{note} Stopped: {growth['stopped']}.")

@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.lives import past_data
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, REGIME_LABELS, REGIMES
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.lives import past_data
 from trackroller.roller.dataset import validity_bit
 
 UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))

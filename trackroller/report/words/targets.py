@@ -5,10 +5,6 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from trackroller.analysis.designs import Designs
-from trackroller.analysis.ranking import best_points, estimate, main_lives, method_of
-from trackroller.analysis.table import StudyView
-from trackroller.analysis.targets import most_apart
 from trackroller.damage.sn_curve import DEVIATES_10_TO_90
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.numbers import (
@@ -27,6 +23,9 @@ from trackroller.report.numbers import (
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.results.ranking import best_points, estimate, main_lives, method_of
+from trackroller.results.results import Results
+from trackroller.results.targets import most_apart
 from trackroller.study.design.levels import in_words
 
 SAME = 1e-6  # probabilities that differ by less are called the same
@@ -58,7 +57,7 @@ def target(table: xr.Dataset, number: int) -> Sentence:
 
     Parameters
     ----------
-    table : analysis with the variables of `trackroller.analysis.targets.targets`
+    table : analysis with the variables of `trackroller.results.targets.targets`
     number : of the target
     """
     part = table.isel(target=number)
@@ -111,7 +110,7 @@ def point_words(table: xr.Dataset, point: int) -> str:
 MAX_POINTS = 24  # rows of the table of design points
 
 
-def target_tables(table: xr.Dataset, view: StudyView) -> list[Table]:
+def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
     """List the probability of each target at each design point (or in all cases), and at each level of a factor.
 
     Where designs repeat over conditions, a column counts the designs that meet all targets in all their conditions.
@@ -130,7 +129,7 @@ def target_tables(table: xr.Dataset, view: StudyView) -> list[Table]:
     title = "Targets by level of a factor"
     if table["target_probability"].ndim == 1:
         rows = [["All cases", *_cells(table, "target")], *levels]
-        if met := _designs_that_meet(table, view):
+        if met := _designs_that_meet(table, results):
             heads.insert(0, "Designs that meet all in all conditions")
             rows = [[row[0], count_of, *row[1:]] for row, count_of in zip(rows, met, strict=True)]
         return [Table("targets", title, ["Level", *heads], rows, " ".join(said))]
@@ -148,19 +147,19 @@ def _cells(table: xr.Dataset, kind: str, place: int | None = None) -> list[str]:
     return [_cell(table.isel(target=t), kind, place) for t in range(table.sizes["target"])]
 
 
-def _designs_that_meet(table: xr.Dataset, view: StudyView) -> list[str]:
+def _designs_that_meet(table: xr.Dataset, results: Results) -> list[str]:
     """Write how many designs meet all targets in all their conditions: of all designs, then at each level of a choice.
 
     A level of a condition has a dash. The list is empty where designs do not repeat over conditions.
     """
-    designs = Designs.of(view)
-    if designs is None or not (designs.comparable and designs.conditions and designs.choices):
+    candidates = results.candidates()
+    if candidates is None or not (candidates.comparable and candidates.conditions and candidates.choices):
         return []
-    met = designs.targets_met()
+    met = candidates.targets_met()
     if met is None:
         return []
-    every, chosen = met == designs.size, [np.ones(len(met), dtype=bool)]
-    choices = designs.table.sort_index()
+    every, chosen = met == candidates.size, [np.ones(len(met), dtype=bool)]
+    choices = candidates.table.sort_index()
     for i in range(table.sizes.get("target_level", 0)):
         name, text = str(table["level_factor"][i].item()), str(table["level_text"][i].item())
         own = choices[name] if name in choices else None

@@ -1,7 +1,7 @@
 """Digests of the program's own files: of which code a result was made.
 
 A result depends on the rooms in which it is made: a solved case on those up to `roller`, an analysis on those up to
-`analysis`. The digest of rooms is that of the bytes of their files. A changed comment therefore counts as a change: two
+`results`. The digest of rooms is that of the bytes of their files. A changed comment therefore counts as a change: two
 versions of the program rarely differ by comments alone, and no rule has to say what a comment is.
 
 The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
@@ -12,7 +12,7 @@ instead of on source files, because the date of a source file changes when a cop
     rule sensitivity:
         input:
             study=f"{RESULTS}/study.nc",
-            code=digest_file(f"{RESULTS}/code", "analysis"),
+            code=digest_file(f"{RESULTS}/code", "results"),
 
 `digest_file` returns a path. It writes this file when the workflow is read, and only if the digest has changed.
 
@@ -51,9 +51,8 @@ ROOMS = (  # a room imports from the rooms before it only
     "roller",
     "methods",
     "study",
-    "analysis",
+    "results",
     "report",
-    "solved",
     "app",
     "cli",
 )

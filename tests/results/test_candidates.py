@@ -1,0 +1,319 @@
+"""Designs over their conditions, against plain pandas on the raw rows."""
+
+import json
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from reference_cases import solve_sliding
+from synthetic_results import results_of
+
+import trackroller as tr
+from trackroller.report.pages.study import contents
+from trackroller.report.words.designs import best_design, best_table, target_of_designs
+from trackroller.report.words.pareto import pareto_sentence
+from trackroller.results.candidates import lift_off_margin, slip_margin
+from trackroller.results.pareto import study_pareto
+from trackroller.roller.limits import limits
+from trackroller.study.file.load import parse_study
+
+GRID = {
+    "name": "choose",
+    "design": "grid",
+    "outputs": ["forces", "contact", "peak_stress", "life"],
+    "contact_model": "sliding",
+    "base": {"guide_overrollings_per_hour": 600},
+    "factors": {
+        "roller_profile_radius": {"values": [-6.5, -8, -10]},
+        "material_pair": {
+            "values": [["1.7225-quenched-tempered", "1.7225-normalised"], ["1.7225-normalised", "PA6"]],
+        },
+        "friction_coefficient": {"values": [0, 0.1, 0.3]},
+        "motor_force": {"values": [0, -30]},
+        "axial_force": {"values": [0, 70]},
+    },
+}
+SAMPLE = {
+    "design": "inner_outer",
+    "samples": 32,
+    "base": {"guide_overrollings_per_hour": 600, "motor_force": 0},
+    "factors": {
+        "roller_profile_radius": {"values": [-6.5, -8]},
+        "contact_angle": {"values": [30, 40]},
+        "friction_coefficient": {"uniform": [0.05, 0.3]},
+        "axial_force": {"uniform": [0, 40]},
+    },
+}
+
+
+def solved(**changes):
+    """Return a study solved with full sliding, as its view, and its rows as one plain table."""
+    study = parse_study(GRID | changes)
+    ds = solve_sliding(study.design(), outputs=GRID["outputs"], life_rule=changes.get("life_rule", "elementary"))
+    design = study.design()
+    names = [n for n, v in design.variables.items() if v.dims == ("case",) and n != "case"]
+    if "material_pair" in study.factors:
+        pairs = [f"{a} / {b}" for a, b in design[["roller_material", "guide_material"]].to_dataframe().values[:, -2:]]
+        ds = ds.assign_coords(material_pair=("case", np.array(pairs, dtype=object)))
+    ds = ds.assign_coords({n: design[n] for n in names} | {"case": design["case"]})
+    materials = {m for n in ("roller_material", "guide_material") for m in set(design[n].values.tolist())}
+    known = {m: vars(study.materials.material(m)) for m in materials}
+    values = {m: {k: v for k, v in own.items() if k == "name" or isinstance(v, float)} for m, own in known.items()}
+    ds.attrs |= {"study": study.merged(), "materials": json.dumps(values)}
+    frame = pd.DataFrame({n: design[n].values for n in names})
+    for name in (
+        "regime",
+        "converged",
+        "validity",
+        "first_to_fail",
+        *(f"{b}_life_hours" for b in ("roller", "guide", "pair")),
+    ):
+        frame[name] = ds[name].values
+    frame["rolls"] = (frame["regime"] == 0) & (frame["converged"] == 1)
+    outside = sum(1 << ds["validity"].attrs["flag_meanings"].split().index(f) for f in OUTSIDE)
+    frame["valid"] = frame["rolls"] & ((frame["validity"] & outside) == 0)
+    for body in ("roller", "guide"):
+        cycles = ds["life_cycles"].sel(body=body).min("contact").values
+        knee = np.array([values[m]["cycles_at_fatigue_limit"] for m in frame[f"{body}_material"]])
+        frame[f"{body}_beyond"] = cycles > np.minimum(knee, 1e8)
+    frame["beyond"] = np.where(frame["first_to_fail"] == 1, frame["guide_beyond"], frame["roller_beyond"])
+    return ds, frame
+
+
+OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
+LIFE = "pair_life_hours"
+CHOICES = ["roller_profile_radius", "roller_material"]
+
+
+def compared(frame, choices, life):
+    """Return the numbers of each design by a group-by on the raw rows, the best design first."""
+    frame = frame.assign(life=frame[life].where(frame["valid"]))
+    groups = frame.groupby(choices)
+    found = groups.agg(cases=("life", "size"), rolls=("rolls", "sum"), valid=("life", "count"), worst=("life", "min"))
+    found["median"], found["best"] = groups.life.median(), groups.life.max()
+    known = frame[frame["valid"]].groupby(choices)
+    for code, word in enumerate(("roller", "guide", "none", "unknown")):
+        found[f"first_{word}"] = known.first_to_fail.apply(lambda values, code=code: (values == code).sum())
+    found["beyond"] = known.beyond.sum()
+    return found.sort_values(["valid", "worst"], ascending=False)
+
+
+@pytest.mark.parametrize("rate", [None, 600, 2e5], ids=["unknown", "roller first", "guide first"])
+def test_designs_of_a_grid_against_a_group_by(rate):
+    """Counts, lives, bodies that fail first and lives beyond the data; the sentence names the best design."""
+    ds, frame = solved(base={"guide_overrollings_per_hour": rate} if rate else {})
+    results = results_of(ds)
+    designs = results.candidates()
+    assert designs.matched and designs.comparable and not designs.drawn
+    assert designs.conditions == ("friction_coefficient", "motor_force", "axial_force")
+    life = "pair_life_hours" if rate else "roller_life_hours"
+    expected = compared(frame, CHOICES, life)
+    assert (designs.table["valid"] > 0).sum() == (expected["valid"] > 0).sum()
+    expected, table = expected[expected["valid"] > 0], designs.table[designs.table["valid"] > 0]
+    assert table["roller_profile_radius"].tolist() == expected.index.get_level_values(0).tolist()
+    for name in expected:
+        np.testing.assert_allclose(table[name], expected[name], err_msg=name)
+    conditions = frame[frame["valid"]][list(designs.conditions)].drop_duplicates()
+    assert designs.possible == len(conditions)
+    said = {s.kind: s.text for s in best_design(results)}
+    top = expected.iloc[0]
+    assert said["best"].startswith(f"Build {expected.index[0][1]} on ")
+    assert f"valid in {top['valid']:.0f} of {top['cases']:.0f} conditions" in said["best"]
+    assert ("roller and guide last" in said["best"]) == bool(rate)
+    assert ("give `guide_overrollings_per_hour`" in said["best"]) == (rate is None)
+    assert ("beyond the S-N data" in said["best"]) == bool(top["beyond"])
+    if rate is None:
+        assert "first" not in said and "give `guide_overrollings_per_hour`" in said["next"]
+        assert "Life of the roller, worst condition [h]" in {row[0] for row in best_table(results).rows}
+    else:
+        body = "guide" if top["first_guide"] > top["first_roller"] else "roller"
+        assert (body == "guide" or rate == 600) and said["first"].startswith(f"The {body} fails first in")
+
+
+def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
+    ds, frame = solved(base={"guide_overrollings_per_hour": 2e5})
+    np.testing.assert_array_equal(
+        frame["pair_life_hours"], np.minimum(frame["roller_life_hours"], frame["guide_life_hours"])
+    )
+    said = best_design(results_of(ds))[0]
+    worst = frame.iloc[said.values["worst_case"]]
+    assert worst["valid"] and worst["pair_life_hours"] == said.values["worst"]
+    drive = "free rolling" if worst["motor_force"] == 0 else "driven −30 N"
+    friction = f"friction coefficient {worst['friction_coefficient']:g}"
+    assert f"({friction}, {drive}, axial force {worst['axial_force']:g} N)" in said.text
+
+
+def test_an_inner_outer_design_is_compared_by_the_life_that_nine_of_ten_reach():
+    """The order statistic of raw rows, with cases that are not valid as life 0."""
+    ds, frame = solved(**SAMPLE)
+    designs = results_of(ds).candidates()
+    assert designs.choices == ("roller_profile_radius", "contact_angle") and designs.drawn and designs.comparable
+    lives = frame["pair_life_hours"].where(frame["valid"], 0.0)
+    groups = lives.groupby([frame["roller_profile_radius"], frame["contact_angle"]])
+    expected = groups.apply(lambda own: np.sort(own)[math.ceil(0.1 * len(own)) - 1]).sort_values(ascending=False)
+    np.testing.assert_allclose(designs.table["b10"], expected)
+    text = best_design(results_of(ds))[0].text
+    assert "nine of ten of its 32 sampled conditions reach" in text and "95 % interval" in text
+
+
+def test_designs_that_hold_in_fewer_than_nine_of_ten_conditions_come_last():
+    """There the life of nine of ten is 0: the number of valid conditions ranks them, not a tie at 0."""
+    factors = SAMPLE["factors"] | {"axial_force": {"uniform": [0, 250]}}
+    ds, frame = solved(**SAMPLE | {"factors": factors})
+    found = results_of(ds).candidates().table
+    held = frame.groupby(["roller_profile_radius", "contact_angle"]).valid.sum()
+    assert (found["b10"] == 0).all() and found["valid"].tolist() == sorted(held, reverse=True)
+    assert found["rank"].max() > 1
+    assert (
+        "sampled conditions are not valid, so there is no life that nine of ten reach"
+        in best_design(results_of(ds))[0].text
+    )
+
+
+def test_a_sample_in_which_no_design_repeats_names_the_design_of_experiments_that_can_answer():
+    factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
+    ds, frame = solved(design="lhs", samples=40, factors=factors)
+    said = best_design(results_of(ds))
+    assert [s.kind for s in said] == ["unanswered"] and frame["valid"].any()
+    assert said[0].text.startswith("Each of the 40 cases is a design of its own at one condition, so this lhs study")
+    assert "give roller profile radius and contact angle as lists" in said[0].text
+    assert "friction coefficient and axial force as distributions with `design: inner_outer`" in said[0].text
+    page = contents(results_of(ds))
+    assert "best_designs" not in {t.name for t in page["tables"]["decide"]}
+    ds, _ = solved(design="lhs", samples=40, factors={"roller_profile_radius": {"uniform": [-8, -6.5]}})
+    said = best_design(results_of(ds))[0]  # no condition varies: each row is a design under the one condition
+    assert said.kind == "best" and "worst condition" not in said.text
+
+
+def test_lives_beyond_the_data_are_never_bare():
+    """All peaks below the fatigue limit: no hours stand alone, and an unlimited life is no number."""
+    light = {"guide_overrollings_per_hour": 600, "radial_force": -1, "motor_force": 0}
+    factors = {"roller_profile_radius": {"values": [-6.5, -8]}, "friction_coefficient": {"values": [0.0, 0.2]}}
+    ds, frame = solved(base=light | {"axial_force": 0}, factors=factors)
+    assert frame["beyond"].all()
+    said = best_design(results_of(ds))
+    assert "all beyond the S-N data" in said[0].text and "both beyond the S-N data" in said[-1].text
+    ds, _ = solved(base=light | {"axial_force": 0}, factors=factors, life_rule="unlimited")
+    said = best_design(results_of(ds))
+    assert "the roller does not fail (beyond the S-N data)" in said[0].text and "unlimited" not in said[0].text
+    assert said[0].values["ties"] == 2 and said[1].kind == "ties" and said[1].text.startswith("2 designs tie")
+    assert best_table(results_of(ds)).heads[1:] == ["Best 1 (tie)", "Best 1 (tie)"]
+
+
+def test_margins_against_the_searched_limits():
+    """Slip margin: what the drive leaves of the motor force at which the roller skids; lift-off: 0 where it lifts."""
+    cases = [tr.Case(), tr.Case(friction_coefficient=0.1, motor_force=-10), tr.Case(axial_force=78.0)]
+    ds = solve_sliding(cases)
+    data = {
+        n: ("case", np.array([getattr(c, n) for c in cases]))
+        for n in ("friction_coefficient", "motor_force", "axial_force")
+    }
+    results = results_of(ds.assign_coords(data))
+    edges = [limits(c, "sliding").motor_force[0] for c in cases[:2]]
+    expected = [1 - c.motor_force / edge for c, edge in zip(cases, edges, strict=False)]
+    np.testing.assert_allclose(slip_margin(results)[:2], expected, atol=1e-5)
+    loads = ds["normal_force"].values
+    np.testing.assert_allclose(lift_off_margin(results), loads.min(axis=1) / loads.max(axis=1))
+    assert lift_off_margin(results)[2] < 0.01  # lifts at 78.08 N
+
+
+def test_roles_of_the_study_file_decide_what_a_design_is():
+    ds, frame = solved(roles={"friction_coefficient": "choice", "roller_profile_radius": "condition"})
+    designs = results_of(ds).candidates()
+    assert set(designs.choices) == {"friction_coefficient", "material_pair"} and len(designs.size) == 6
+    expected = compared(frame, ["friction_coefficient", "roller_material"], "pair_life_hours")
+    np.testing.assert_allclose(designs.table["worst"].dropna(), expected["worst"].dropna())
+
+
+def test_a_study_without_choices_has_one_design():
+    factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 30]}}
+    ds, frame = solved(factors=factors)
+    said = best_design(results_of(ds))
+    assert said[0].text.startswith("The study has one design: roller and guide last") and "Next" not in said[-1].text
+    assert said[0].values["worst"] == frame["pair_life_hours"].min()
+    assert isinstance(ds, xr.Dataset) and best_table(results_of(ds)).heads == ["", "All conditions"]
+
+
+def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
+    """Goals by a group-by on raw rows, the set by brute force; the number of valid conditions is a goal, too."""
+    ds, frame = solved()
+    frame["pressure"] = ds["max_pressure"].max("contact").values
+    valid = frame[frame["valid"]].groupby(CHOICES)
+    expected = valid.agg(life=("pair_life_hours", "min"), pressure=("pressure", "max"), valid=("valid", "sum"))
+    results = results_of(ds)
+    front = study_pareto(results)
+    assert front.attrs["objectives"] == "pair_life_hours max, max_pressure min"
+    materials = [pair.split(" / ")[0] for pair in front["material_pair"].values]
+    found = pd.DataFrame(
+        {
+            "life": front["pair_life_hours"].values,
+            "pressure": front["max_pressure"].values,
+            "valid": front["valid_in"].values,
+        },
+        index=pd.MultiIndex.from_arrays([front["roller_profile_radius"].values, materials]),
+    )
+    for name in expected:
+        np.testing.assert_allclose(found[name].sort_index(), expected[name].sort_index(), err_msg=name)
+    costs = found.to_numpy() * [-1, 1, -1]
+    beaten = [any((o <= c).all() and (o < c).any() for o in costs) for c in costs]
+    assert front["optimal"].values.tolist() == [int(not b) for b in beaten]
+    text = pareto_sentence(front, results).text
+    assert 1 < sum(front["optimal"].values) and len(expected) > 2
+    assert text.startswith(f"{sum(front['optimal'].values)} of {len(expected)} allowed designs are Pareto-optimal")
+    assert "each goal at the worst of the conditions" in text
+    ds, _ = solved(base={})
+    results = results_of(ds)
+    assert "h (beyond the S-N data) life of the roller" in pareto_sentence(study_pareto(results), results).text
+
+
+def test_a_condition_that_is_a_goal_is_no_condition():
+    ds, frame = solved(pareto={"pair_life_hours": "max", "axial_force": "max"})
+    front = study_pareto(results_of(ds))
+    worst = frame[frame["valid"]].groupby([*CHOICES, "axial_force"]).pair_life_hours.min()
+    assert sorted(front["pair_life_hours"].values) == pytest.approx(sorted(worst))
+
+
+def test_a_sample_of_cases_has_no_pareto_set_of_designs():
+    factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
+    ds, _ = solved(design="lhs", samples=40, factors=factors)
+    assert study_pareto(results_of(ds)) is None
+    ds, _ = solved(design="lhs", samples=40, factors=factors, pareto={"pair_life_hours": "max", "max_pressure": "min"})
+    results = results_of(ds)
+    text = pareto_sentence(study_pareto(results), results).text
+    assert "allowed cases" in text and "`design: inner_outer` compares designs" in text
+
+
+def test_equal_designs_tie_and_one_design_is_no_set():
+    light = {"guide_overrollings_per_hour": 600, "radial_force": -1, "motor_force": 0, "axial_force": 0}
+    same = {"axis_distance": {"values": [20, 22]}, "friction_coefficient": {"values": [0.0, 0.2]}}
+    goals = {"pair_life_hours": "max", "radial_force": "min"}
+    ds, _ = solved(base=light, factors=same, pareto=goals, life_rule="unlimited")
+    results = results_of(ds)
+    text = pareto_sentence(study_pareto(results), results).text
+    assert text.startswith("2 of 2 allowed designs tie") and "no failure (beyond the S-N data)" in text
+    ds, _ = solved(factors={"friction_coefficient": {"values": [0.1, 0.2]}})
+    results = results_of(ds)
+    assert pareto_sentence(study_pareto(results), results).text.startswith(
+        "One design is left, so there is no Pareto set"
+    )
+
+
+def test_targets_are_met_by_designs():
+    """Designs that meet a life of the pair in their conditions, by a group-by on raw rows."""
+    ds, frame = solved(analysis={"target": {"min": 100}})
+    results = results_of(ds)
+    assert results.config.analysis.target == {"pair_life_hours": {"min": 100}}
+    hits = (frame["valid"] & (frame["pair_life_hours"] >= 100)).groupby([frame[n] for n in CHOICES]).sum()
+    said = target_of_designs(results, "life of the pair of at least 100 h")
+    assert sorted(said.values["met"]) == sorted(hits) and 0 < max(hits) < 12
+    (radius, material), most = hits.idxmax(), hits.max()
+    assert said.text.startswith("Life of the pair of at least 100 h: none of 6 designs meets it in all conditions; ")
+    often = f"radius −{-radius:g} mm meets it most often, in {most} of 12 conditions."
+    assert f"{material} on " in said.text and often in said.text
+    row = next(r for r in best_table(results).rows if r[0] == "Meets the targets in")
+    assert row[1] == f"{hits[results.candidates().table.iloc[0][CHOICES[0]], material]} of 12"
+    ds, _ = solved(base={}, analysis={"target": {"min": 100}})
+    said = target_of_designs(results_of(ds), "life of the pair of at least 100 h")
+    assert "give `guide_overrollings_per_hour`" in said.text

@@ -1,0 +1,285 @@
+"""A search finds the designs that a grid of all designs holds, and goes on where it was stopped."""
+
+import itertools
+import re
+
+import numpy as np
+import pytest
+
+import trackroller as tr
+from trackroller.cli.study import print_best
+from trackroller.errors import InputError
+from trackroller.methods.optimise import (
+    Gene,
+    first_generation,
+    next_generation,
+    nondominated_ranks,
+)
+from trackroller.report.pages.best import best_of, write_best
+from trackroller.results.judging import beyond_data, judge, optimum_of
+from trackroller.results.optimum import cheaper, search_designs
+from trackroller.results.pareto import pareto_mask
+from trackroller.study.file.load import load_study
+from validation.benchmarks.optimum import hypervolume
+
+STUDY = {
+    "name": "search",
+    "base": {"motor_force": -5, "guide_curve_radius": "inf", "guide_overrollings_per_hour": 600},
+    "factors": {
+        "roller_profile_radius": {"values": [-6.4, -6.6, -7, -7.5, -8, -9]},
+        "contact_angle": {"values": [25, 30, 35, 40]},
+        "friction_coefficient": {"values": [0.1, 0.2]},
+    },
+    "design": "optimise",
+    "goals": {"pair_life_hours": "max", "mean(friction_power)": "min"},
+    "budget": {"designs": 16, "population": 4},
+    "outputs": ["forces", "contact", "friction_work", "peak_stress", "life"],
+    "contact_model": "sliding",
+    "accuracy": "preview",
+}
+
+
+def changed(**keys):
+    return load_study({**STUDY, **keys})
+
+
+def mixed(genes):
+    """A front f2 = 1 - sqrt(f1) whose quarters belong to four categories; an integer is best at 7."""
+    x, y, whole, kind = genes.T
+    far = 1 + 4 * (y - 0.3) ** 2 + 3 * ((whole - 7) / 9) ** 2
+    first = 0.25 * (kind + x)
+    return np.stack([first, far * (1 - np.sqrt(first / far))], axis=1)
+
+
+def evolve(seed, designs, population=24):
+    kinds = [Gene(), Gene(), Gene(10), Gene(4, ordered=False)]
+    genes = first_generation(kinds, population, seed)
+    number = 1
+    while len(genes) < designs:
+        costs = mixed(genes)
+        children = next_generation(kinds, genes, costs, np.zeros(len(genes)), population, (seed, number))
+        genes, number = np.concatenate([genes, children]), number + 1
+    return genes
+
+
+def test_a_search_covers_a_known_front_of_real_integer_and_categorical_factors():
+    x = np.linspace(0, 1, 2001)
+    whole = hypervolume(np.stack([x, 1 - np.sqrt(x)], axis=1), [1.1, 1.1])
+    shares = [hypervolume(mixed(evolve(seed, 480)), [1.1, 1.1]) / whole for seed in range(3)]
+    drawn = np.random.default_rng(1).random((480, 4)) * [1, 1, 10, 4]
+    drawn[:, 2:] = np.floor(drawn[:, 2:])
+    assert min(shares) > 0.98 > hypervolume(mixed(drawn), [1.1, 1.1]) / whole + 0.05
+
+
+def test_a_search_draws_no_design_twice_and_ends_when_all_are_drawn():
+    kinds = [Gene(3), Gene(4, ordered=False)]
+    genes = first_generation(kinds, 4, 1)
+    for number in range(1, 30):
+        costs = genes @ [[1.0], [0.3]]
+        children = next_generation(kinds, genes, costs, np.zeros(len(genes)), 4, (1, number))
+        if not len(children):
+            break
+        genes = np.concatenate([genes, children])
+    assert sorted(map(tuple, genes)) == sorted(itertools.product(range(3), range(4)))
+
+
+def test_generations_follow_from_the_seed_alone():
+    assert np.array_equal(evolve(3, 96), evolve(3, 96)) and not np.array_equal(evolve(3, 96), evolve(4, 96))
+
+
+def test_ranks_agree_with_the_pareto_set_peeled_front_by_front():
+    costs = np.random.default_rng(2).integers(0, 8, (80, 3)).astype(float)
+    ranks, left = nondominated_ranks(costs, np.zeros(80)), np.arange(80)
+    for front in range(ranks.max() + 1):
+        best = pareto_mask(costs[left], ["min"] * 3)
+        assert set(left[best]) == set(np.flatnonzero(ranks == front))
+        left = left[~best]
+    assert nondominated_ranks(np.array([[0.0], [1.0]]), np.array([0.5, 0.0])).tolist() == [1, 0]
+
+
+def test_the_hypervolume_of_an_eighth_of_a_sphere():
+    angles = np.linspace(0, np.pi / 2, 60)
+    a, b = (grid.ravel() for grid in np.meshgrid(angles, angles))
+    shell = np.stack([np.cos(a) * np.cos(b), np.cos(a) * np.sin(b), np.sin(a)], axis=1)
+    assert hypervolume(shell, [1, 1, 1]) == pytest.approx(1 - np.pi / 6, rel=0.03)
+
+
+def test_a_search_finds_the_front_of_all_designs(tmp_path):
+    plan = search_designs(changed(budget={"designs": 24, "population": 8}), tmp_path)
+    solved = tr.open_study(plan.folder.root)
+    grid = {**STUDY, "design": "grid", "name": "grid"}
+    data = tr.run({k: v for k, v in grid.items() if k not in ("goals", "budget")}, progress=False).data
+    life = data["pair_life_hours"].min("friction_coefficient").values.ravel()
+    power = data["friction_power"].sum("contact").mean("friction_coefficient").values.ravel()
+    wanted = pareto_mask(np.stack([life, power], axis=1), ["max", "min"])
+    front = solved.pareto()
+    found = front["pair_life_hours"].values[front["optimal"].values == 1]
+    np.testing.assert_allclose(np.sort(found), np.sort(life[wanted]))
+    with pytest.raises(InputError, match="a search prefers good designs"):
+        solved.indices()
+
+
+@pytest.mark.slow
+def test_a_search_goes_on_where_it_was_stopped(tmp_path):
+    whole = tr.open_study(search_designs(changed(), tmp_path / "whole").folder.root)
+    calls = []
+
+    def stops(cases, **how):
+        calls.append(len(cases["case"]))
+        if len(calls) % 4 == 0:
+            raise KeyboardInterrupt
+        return tr.solve(cases, **how)
+
+    for _ in range(40):
+        try:
+            plan = search_designs(changed(), tmp_path / "parts", solver=stops)
+            break
+        except KeyboardInterrupt:
+            continue
+    parts = tr.open_study(plan.folder.root)
+    assert len(calls) > 8 and parts.data.drop_attrs().identical(whole.data.drop_attrs())
+    assert optimum_of(parts) == optimum_of(whole)
+
+
+def test_hours_add_up_over_runs(tmp_path):
+    told = []
+    tight = changed(budget={"designs": 12, "population": 4, "hours": 1e-9})
+    search_designs(tight, tmp_path, tell=told.append)
+    assert [line for line in told if line.startswith("generation")][-1].startswith("generation 1:")
+    search_designs(tight, tmp_path, tell=told.append)
+    assert sum(line.startswith("generation") for line in told) == 2
+
+
+def test_the_table_prunes_and_elements_decide():
+    assert cheaper(changed(contact_model="kalker")).config.contact_model == "kalker_table"
+    assert cheaper(changed()).config.contact_model == "sliding"
+    halfspace = changed(contact_model="kalker", normal="halfspace")
+    assert cheaper(halfspace) is halfspace
+
+
+def test_optima_are_solved_again_at_reference_and_told(tmp_path):
+    solved = tr.open_study(search_designs(changed(), tmp_path).folder.root)
+    found = optimum_of(solved)
+    best = next(one for one in found["optima"] if one["design"] == found["recommended"])
+    np.testing.assert_allclose(judge(solved).values[found["recommended"]], best["values"])
+    assert best["reference"] != best["values"] and np.allclose(best["reference"], best["values"], rtol=0.2)
+    said, table = best_of(solved)
+    assert "Beside the budget it solved polished designs (" in said[-1]
+    assert said[0].startswith("Recommended: ") and "at `reference`" in " ".join(said)
+    assert table.heads[1] == "Recommended" and len(table.heads) <= 6
+    page = write_best(solved, tmp_path / "best.html").read_text()
+    assert "Optima of the search" in page and said[0].split(":")[0] in page
+
+
+def test_a_search_without_a_valid_design_solves_its_budget_only_and_says_why(tmp_path):
+    none = changed(constraints=["max_pressure < 100", "max_pressure > 200"], budget={"designs": 1})
+    solved = tr.open_study(search_designs(none, tmp_path).folder.root)
+    assert solved.data.sizes["case"] == 2 and optimum_of(solved)["optima"] == []  # one design at two conditions
+    assert solved.pareto().attrs["excluded"] == "1 that are valid in no condition"
+    said, _ = best_of(solved)
+    assert "budget of 1 design is spent" in said[-1] and "Beside the budget" not in said[-1]
+
+
+def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
+    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
+    best = tr.run(grid, progress=False, results=tmp_path).best(1)
+    print_best("grid", tmp_path, tmp_path / "best.html")
+    said = capsys.readouterr().out
+    assert "Best valid designs" in said and f"contact angle {best['contact_angle'].iloc[0]:g}°" in said
+    assert "Best valid designs" in (tmp_path / "best.html").read_text()
+
+
+@pytest.mark.parametrize(
+    ("keys", "says"),
+    [
+        ({"base": {"motor_force": 0, "roller_material": "POM", "radial_force": -300}}, "of them stay inside the model"),
+        ({"outputs": ["forces"]}, "Add life or peak_stress to its outputs"),
+    ],
+)
+def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, says):
+    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
+    tr.run(grid | keys, progress=False, results=tmp_path)
+    print_best("grid", tmp_path, None)
+    assert says in " ".join(capsys.readouterr().out.split())
+
+
+def test_a_life_beyond_the_data_is_marked(tmp_path):
+    more = dict(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
+    light = changed(**more, budget={"designs": 4, "population": 4})
+    solved = tr.open_study(search_designs(light, tmp_path).folder.root)
+    marked = beyond_data(solved, "pair_life_hours")
+    worst = solved.column("pair_life_hours").reshape(-1, 2).argmin(axis=1)
+    rows = solved.beyond_data("pair_life_hours").reshape(-1, 2)
+    assert marked.any() and np.array_equal(marked, rows[np.arange(len(rows)), worst])
+    assert "beyond the S-N data" in best_of(solved)[0][0]
+
+
+@pytest.mark.parametrize(
+    ("goal", "way", "says"),
+    [
+        ("pair_life_hours", "max", "is best: life of the pair"),
+        ("roller_profile_radius", "max", "have the same value of the goal"),
+    ],
+)
+def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
+    solved = tr.run(changed(goals={goal: way}, budget={"designs": 8, "population": 4}), progress=False)
+    text = re.sub(r"\s+", " ", solved.report(tmp_path / "report.html").read_text(encoding="utf-8"))
+    assert says in text and "everything" not in text and "out of reach" not in text
+    assert "Its goal: " in text
+    assert solved.explore(tmp_path / "explorer.html").stat().st_size > 0
+
+
+@pytest.mark.parametrize(
+    ("keys", "says"),
+    [
+        ({"constraints": ["max_pressure < 100", "max_pressure > 200"]}, "No design is valid in any condition"),
+        ({"constraints": ["friction_coefficient < 0.15"]}, "No design is valid in all 2 conditions"),
+        (
+            {"factors": {**STUDY["factors"], "roller_profile_radius": {"uniform": [-9, -6.4]}}},
+            "roller profile radius −0.05 mm changes",
+        ),
+        ({"goals": {"axial_force": "max"}}, "have the same value of the goal, so the goal does not choose"),
+        (
+            {
+                "goals": {"probability(pair_life_hours)": "max"},
+                "analysis": {"target": {"pair_life_hours": {"min": 1e30}}},
+            },
+            "the goal is out of reach",
+        ),
+    ],
+)
+def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, says):
+    small = {"budget": {"designs": 4, "population": 4}}
+    solved = tr.open_study(search_designs(changed(**keys, **small), tmp_path).folder.root)
+    said, table = best_of(solved)
+    assert says in " ".join(said)
+    invalid = said[0].startswith("No design is valid")
+    assert invalid != any(text.startswith("Recommended") for text in said)
+    assert (table is None) == ("valid in any" in said[0])
+
+
+@pytest.mark.parametrize(
+    ("keys", "says"),
+    [
+        ({"budget": {"desings": 8}}, "Did you mean 'designs'"),
+        ({"budget": {"designs": 0}}, "budget.designs = 0"),
+        ({"budget": {"hours": 0}}, "budget.hours = 0"),
+        ({"goals": {"pair_life_hour": "max"}}, "Did you mean 'pair_life_hours'"),
+        ({"goals": {"b10(max_pressure)": "min"}}, "b10 of a life"),
+        ({"goals": {"median(pair_life_hours)": "max"}}, "mean, worst, b10 or probability of one. For example mean"),
+        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a target or of a regime"),
+        ({"goals": {"pair_life_hours": "up"}}, "Allowed: max, min"),
+        ({"goals": {"pair_life_hours": "max", "worst(pair_life_hours)": "min"}}, "each result once"),
+        ({"pareto": {"pair_life_hours": "max", "max_pressure": "min"}}, "Rename the key to goals"),
+        ({"design": "grid"}, "design: optimise"),
+        ({"contact_model": ["kalker", "sliding"]}, "one model"),
+        (
+            {"factors": {"contact_angle": {"values": [30]}, "motor_force": {"values": [0, -5]}}, "base": {}},
+            "one choice",
+        ),
+        ({"factors": {"contact_angle": {"normal": [30, 1]}}}, "Write samples"),
+    ],
+)
+def test_a_wrong_search_is_refused(keys, says):
+    with pytest.raises(InputError, match=says.replace("(", r"\(")):
+        changed(**keys).design()

@@ -1,0 +1,183 @@
+"""Pareto sets: right against a brute-force check, with directions and constraints."""
+
+import numpy as np
+import pytest
+from synthetic_results import results_of
+
+from trackroller.errors import InputError
+from trackroller.report.numbers import quantity
+from trackroller.report.pages.study import contents
+from trackroller.report.words.pareto import pareto_sentence
+from trackroller.results.pareto import pareto, pareto_mask, study_pareto
+from trackroller.results.sensitivity import analyse
+from trackroller.study.file.load import parse_study
+
+LHS = {
+    "name": "p",
+    "design": "lhs",
+    "samples": 400,
+    "factors": {"velocity": {"uniform": [1.0, 2.0]}, "axial_force": {"uniform": [0.0, 1.0]}},
+}
+
+
+def brute(costs):
+    """Return which rows no other row beats, by comparing each row with each."""
+    worse = (costs[None] <= costs[:, None]).all(axis=2) & (costs[None] < costs[:, None]).any(axis=2)
+    return ~worse.any(axis=1)
+
+
+@pytest.mark.parametrize("count", [2, 3, 4])
+def test_set_equals_the_brute_force_set(count):
+    """Random points, with ties, in two to four objectives."""
+    rng = np.random.default_rng(count)
+    points = rng.integers(0, 12, (300, count)).astype(float)
+    directions = ["min", "max", "min", "max"][:count]
+    costs = points * np.array([1.0, -1.0, 1.0, -1.0])[:count]
+    np.testing.assert_array_equal(pareto_mask(points, directions), brute(costs))
+
+
+def test_rows_without_a_value_are_no_candidates():
+    """NaN keeps a row out; infinite lives win."""
+    points = np.array([[1.0, 1.0], [0.5, np.nan], [2.0, 0.0], [3.0, np.inf], [np.nan, 9.0]])
+    mask = pareto_mask(points, ["min", "max"])
+    np.testing.assert_array_equal(mask, [True, False, False, True, False])
+
+
+def trade(x, y, slip=None):
+    study = parse_study(LHS)
+    ds = study.design()
+    a, b = ds["velocity"].values, ds["axial_force"].values
+    ds["roller_life_hours"] = ("case", x(a, b), {"units": "h"})
+    ds["friction_power"] = ("case", y(a, b), {"units": "W"})
+    ds["regime"] = ("case", np.zeros(a.size, dtype=np.int8) if slip is None else slip(a, b).astype(np.int8))
+    return ds
+
+
+def test_study_set_respects_regimes_and_constraints():
+    """Life grows with velocity, so does power: without limits all on the line; slip and the limit cut it."""
+    ds = trade(lambda a, b: 100 * a, lambda a, b: 10 * a, lambda a, b: a > 1.9)
+    goals = {"roller_life_hours": "max", "friction_power": "min"}
+    free = pareto(results_of(ds), goals)
+    assert free.sizes["row"] == int((ds["velocity"] <= 1.9).sum()) and bool((free["optimal"] == 1).all())
+    tight = pareto(results_of(ds), goals, ["friction_power < 15", "velocity >= 1.2"])
+    assert float(tight["friction_power"].max()) < 15 and float(tight["velocity"].min()) >= 1.2
+    assert "friction_power < 15" in tight.attrs["excluded"] and "regime" in tight.attrs["excluded"]
+    np.testing.assert_allclose(tight["roller_life_hours"], 100 * ds["velocity"].values[tight["row"].values])
+
+
+def test_sentence_tells_the_size_and_the_ends():
+    """Counts and ends come from the data."""
+    front = pareto(
+        results_of(trade(lambda a, b: 100 * a, lambda a, b: 10 * a + b)),
+        {"roller_life_hours": "max", "friction_power": "min"},
+    )
+    text = pareto_sentence(front).text
+    assert text.startswith(
+        f"{int(front['optimal'].sum())} of 400 allowed designs are Pareto-optimal: from 200 h life of the roller"
+    )
+    best = front.isel(row=np.flatnonzero(front["optimal"]))
+    low = best.isel(row=int(best["friction_power"].values.argmin()))
+    ends = quantity(float(low["roller_life_hours"]), "h"), quantity(float(low["friction_power"]), "W")
+    assert f" friction power of both contacts to {ends[0]} and {ends[1]}." in text
+
+
+def test_a_single_best_design_is_called_so():
+    """The Pareto set is one design if this design is best in every goal."""
+    ds = trade(lambda a, b: 100 - a, lambda a, b: a)
+    front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
+    assert pareto_sentence(front).text.startswith(
+        "One of 400 allowed designs is best in everything: life of the roller 99"
+    )
+
+
+@pytest.mark.parametrize(
+    ("objectives", "constraints", "says"),
+    [
+        ({"friction_power": "min"}, [], "at least two"),
+        ({"friction_power": "min", "roller_life_hours": "up"}, [], "min or max"),
+        ({"friction_powr": "min", "roller_life_hours": "max"}, [], "Did you mean 'friction_power'"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power 15"], "syntax error"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power < 1e"], "syntax error"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power + 15"], "a comparison such as"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != 2"], "with a number"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["regime != full_slp"], "full_slip"),
+        ({"friction_power": "min", "roller_life_hours": "max"}, ["friction_power.real < 1"], "not allowed"),
+    ],
+)
+def test_wrong_goals_are_refused(objectives, constraints, says):
+    """Names, directions and limits are checked, with what is allowed."""
+    with pytest.raises(InputError, match=says):
+        pareto(results_of(trade(lambda a, b: a, lambda a, b: b + 1)), objectives, constraints)
+
+
+def test_figures_of_the_set_are_drawn_in_words():
+    """The front is drawn, and its caption names conditions of use among the factors."""
+    from trackroller.report.figures import style
+    from trackroller.report.figures.designs import pareto_front
+
+    ds = trade(lambda a, b: 100 * a * (1.01 - b), lambda a, b: 10 * a * (1 + b))
+    front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
+    with style.look():
+        _, first = pareto_front(front)
+    assert "a designer cannot choose: " in first.caption
+    assert first.sentence == pareto_sentence(front).text
+    assert pareto_front(front.assign_attrs(objectives="roller_life_hours max")) is None  # a search with one goal
+
+
+def test_design_points_are_compared_by_their_statistics():
+    """B10, mean and probability at each point from raw rows; the set and its sentence as by brute force."""
+    data = {
+        "name": "points",
+        "design": "inner_outer",
+        "samples": 50,
+        "outputs": ["forces", "friction_work", "life"],
+        "factors": {
+            "velocity": {"values": [1.0, 2.0, 3.0, 4.0]},
+            "contact_angle": {"values": [30, 36]},
+            "axial_force": {"uniform": [0.0, 1.0]},
+        },
+        "analysis": {"outputs": ["roller_life_hours"], "target": {"roller_life_hours": {"min": 150}}},
+        "pareto": {
+            "b10(roller_life_hours)": "max",
+            "mean(friction_power)": "min",
+            "probability(roller_life_hours)": "max",
+            "velocity": "min",
+        },
+    }
+    study = parse_study(data)
+    ds = study.design()
+    v, a, angle = (ds[n].values for n in ("velocity", "axial_force", "contact_angle"))
+    ds["roller_life_hours"] = ("case", 100 * v * (1 + a) * np.where(angle > 33, 0.7, 1.0), {"units": "h"})
+    ds["friction_power"] = ("case", v**2 * (1 + a**2) * np.where(angle > 33, 0.8, 1.0), {"units": "W"})
+    sens = analyse(results_of(ds))
+    front = study_pareto(results_of(ds, sens))
+    life, power = (ds[n].values.reshape(8, 50) for n in ("roller_life_hours", "friction_power"))
+    table = [np.sort(life)[:, 4], power.mean(axis=1), (life >= 150).mean(axis=1), v.reshape(8, 50)[:, 0]]
+    for name, values in zip(data["pareto"], table, strict=True):
+        np.testing.assert_allclose(front[name], values)
+    optimal = brute(np.stack(table, axis=1) * np.array([-1.0, 1.0, -1.0, 1.0]))
+    np.testing.assert_array_equal(front["optimal"], optimal)
+    text = pareto_sentence(front, results_of(ds)).text
+    assert text.startswith(f"{optimal.sum()} of 8 allowed design points are Pareto-optimal: from ")
+    told = {t.name: t for t in contents(results_of(ds, sens))["tables"]["decide"]}
+    assert told["pareto"].heads[:3] == ["Design point", "B10 of life of the roller [h] ↑", told["pareto"].heads[2]]
+    assert len(told["pareto"].rows) == optimal.sum() and "percentiles_friction_power" in told
+    assert study_pareto(results_of(ds)) is None  # without an analysis there are no statistics
+
+
+@pytest.mark.parametrize(
+    ("design", "name", "says"),
+    [
+        ("inner_outer", "roller_life_hours", "compares design points"),
+        ("inner_outer", "axial_force", "compares design points"),
+        ("inner_outer", "b10(max_pressure)", "mean.max_pressure"),
+        ("inner_outer", "mean(max_presure)", "max_pressure"),
+        ("inner_outer", "probability(roller_life_hours)", "analysis.target"),
+        ("lhs", "b10(roller_life_hours)", "inner_outer"),
+    ],
+)
+def test_wrong_statistics_are_refused(design, name, says):
+    data = LHS | {"design": design, "pareto": {name: "max", "velocity": "min"}}
+    data["factors"] = LHS["factors"] | {"velocity": {"values": [1.0, 2.0]}}
+    with pytest.raises(InputError, match=says):
+        parse_study(data)

@@ -1,0 +1,143 @@
+"""A solved study keeps its meaning in memory, in its folder and in `study.nc`, and each way gives the same numbers."""
+
+from __future__ import annotations
+
+import shutil
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import trackroller as tr
+from trackroller.study.file.load import parse_study
+from trackroller.study.run import run_study
+
+ROOT = Path(__file__).parents[2]
+SHIPPED = sorted((ROOT / "config" / "studies").glob("*.yaml"))
+SMALL = {"name": "s", "factors": {"friction_coefficient": {"values": [0.1, 0.2]}}, "contact_model": "sliding"}
+
+
+def few_cases(path: Path):
+    """Return a shipped study with its design, factors, goals and analysis, but few cases and a quick model."""
+    told = tr.load_study(path).as_dict() | {"contact_model": "sliding", "accuracy": "preview"}
+    told["samples"] = 32 if told["design"] == "inner_outer" else 8
+    if "until" in told:  # stops at the first look
+        told |= {"samples": 128, "until": told["until"] | {"half_width": 9.0}}
+    for spec in told["factors"].values() if told["design"] == "grid" else ():
+        kind = next(key for key in ("values", "linspace", "logspace") if key in spec)
+        spec[kind] = spec[kind][:2] if kind == "values" else [*spec[kind][:2], 2]
+    return parse_study(told)
+
+
+@pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
+def test_a_shipped_study_gives_the_same_indices_in_memory_and_through_its_files(path, tmp_path):
+    study = few_cases(path)
+    here = tr.run(study, progress=False)
+    folder = run_study(study, tmp_path).folder
+    alone = shutil.copy(folder.gathered, tmp_path / "alone.nc")
+    wanted, front = here.indices(), here.pareto()
+    assert wanted.data_vars, "the study has indices"
+    for again in (tr.open_study(folder.root), tr.open_study(alone), tr.open_study(tr.solve(study.design()))):
+        assert again.config == study.config and again.study.merged() == study.merged()
+        assert again.design.method == here.design.method and list(again.design.factors) == list(here.design.factors)
+        np.testing.assert_array_equal(again.design.unit, here.design.unit)
+        for name, column in here.design.columns.items():
+            np.testing.assert_array_equal(again.design.columns[name], column)
+        xr.testing.assert_identical(again.indices(), wanted)
+        assert front is None or again.pareto().identical(front)
+        assert again.to_table().equals(here.to_table())
+
+
+def test_solve_takes_the_options_of_the_study_that_a_design_comes_from():
+    study = parse_study(SMALL | {"accuracy": "preview", "outputs": ["forces"]})
+    ds = tr.solve(study.design())
+    assert ds.attrs["contact_model"] == "sliding" and ds.attrs["accuracy"] == "preview" and "peak_stress" not in ds
+    given = tr.solve(study.design(), contact_model="kalker_table")
+    assert given.attrs["contact_model"] == "kalker_table" and given.attrs["accuracy"] == "preview"
+
+
+def test_solve_takes_the_contact_model_of_each_case_and_refuses_another_one():
+    models = ["sliding", "kalker_table"]
+    study = parse_study(SMALL | {"contact_model": models, "accuracy": "preview", "outputs": ["forces"]})
+    design = study.design()
+    ds = tr.solve(design)
+    assert sorted(set(ds["contact_model"].values.tolist())) == sorted(models)
+    for model in models:
+        own = design["contact_model"].values == model
+        part = tr.solve(design.isel(case=own).drop_vars("contact_model"), contact_model=model)
+        np.testing.assert_array_equal(ds["normal_force"].values[own], part["normal_force"].values)
+        np.testing.assert_array_equal(ds["driving_force"].values[own], part["driving_force"].values)
+    with pytest.raises(tr.InputError, match=r"contact_model = .kalker. .* of the cases, which vary it \(sliding"):
+        tr.solve(design, contact_model="kalker")
+
+
+def test_rows_that_are_not_those_of_the_design_are_refused():
+    ds = tr.solve(parse_study(SMALL | {"design": "lhs", "samples": 8, "factors": LOADS}).design(), accuracy="preview")
+    tr.open_study(ds)
+    with pytest.raises(tr.InputError, match="the 8 rows of its design lhs"):
+        tr.open_study(ds.isel(case=slice(0, 4)))
+    with pytest.raises(tr.InputError, match="the values of its design"):
+        tr.open_study(ds.assign_coords(axial_force=ds["axial_force"] * 1.01))
+    with pytest.raises(tr.InputError, match="results with their study file"):
+        tr.open_study(ds.drop_attrs())
+
+
+LOADS = {"axial_force": {"uniform": [10, 40]}, "velocity": {"uniform": [20, 60]}}
+
+
+def test_a_study_file_that_would_be_read_with_another_meaning_is_refused(monkeypatch):
+    ds = tr.solve(parse_study(SMALL).design(), accuracy="preview")
+    changed = ds.assign_attrs(study=ds.attrs["study"].replace("friction_coefficient", "radius_of_luck"))
+    with pytest.raises(tr.InputError):
+        tr.open_study(changed)
+    text = ds.attrs["study"].replace("contact_model: sliding", "contact_model: [sliding]")
+    with pytest.raises(tr.InputError, match="has another contact_model in this version"):
+        tr.open_study(ds.assign_attrs(study=text))
+
+
+def test_a_report_takes_the_indices_that_are_known(tmp_path, monkeypatch):
+    solved = tr.run(SMALL, progress=False)
+    solved.indices().to_netcdf(tmp_path / "indices.nc")
+    opened = tr.open_study(solved.data, tmp_path / "indices.nc")
+
+    def again(_):
+        raise AssertionError("the indices were computed a second time")
+
+    monkeypatch.setattr("trackroller.results.sensitivity.analyse", again)
+    for name, study in (("computed", solved), ("given", opened)):
+        assert "friction coefficient" in study.report(tmp_path / f"{name}.html").read_text(encoding="utf-8")
+
+
+def test_report_explorer_and_best_cases_come_from_the_same_object(tmp_path):
+    grooves = {"roller_profile_radius": {"values": [-7, -8, -9]}}
+    study = parse_study(SMALL | {"factors": SMALL["factors"] | grooves})
+    ds = tr.solve(study.design(), accuracy="preview")
+    solved = tr.open_study(ds)
+    assert solved.table is solved.table, "the table of cases is made once"
+    best = solved.best(2)
+    worst = solved.to_table().groupby("roller_profile_radius")[solved.life[0]].min().sort_values(ascending=False)
+    assert best["roller_profile_radius"].tolist() == worst.index[:2].tolist()
+    assert best["worst"].tolist() == worst[:2].tolist()
+    page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
+    again = tr.report(ds, tmp_path / "again.html").read_text(encoding="utf-8")
+    assert "Valid cases" in page and len(page) == pytest.approx(len(again), rel=0.01)
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["again.html", "report.html"]
+    assert "data-count" in solved.explore(tmp_path / "explorer.html").read_text(encoding="utf-8")
+    with pytest.raises(tr.InputError, match="inner_outer"):
+        solved.robustness()
+
+
+def test_a_run_with_a_folder_goes_on_where_it_stopped(tmp_path):
+    first = tr.run(parse_study(SMALL), cores=1, progress=False, results=tmp_path)
+    again = tr.run(parse_study(SMALL), progress=False, results=tmp_path)
+    xr.testing.assert_equal(first.data, again.data)
+    assert (tmp_path / "s" / "study.nc").is_file()
+
+
+def test_best_refuses_a_sample_in_which_no_design_repeats():
+    """A Latin hypercube has each design once, at one condition: the error names the design that can answer."""
+    factors = {"roller_profile_radius": {"uniform": [-8, -6.5]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
+    data = {"name": "sample", "design": "lhs", "samples": 8, "factors": factors, "contact_model": "sliding"}
+    with pytest.raises(tr.InputError, match="design: inner_outer"):
+        tr.run(data, progress=False).best()

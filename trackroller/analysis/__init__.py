@@ -1,1 +1,0 @@
-"""Analyse a solved study: sensitivity indices, convergence, robustness and Pareto sets."""

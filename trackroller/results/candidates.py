@@ -1,0 +1,278 @@
+"""Compare designs over their conditions.
+
+A design is one combination of choices. It is judged over all conditions in which the study has it, the worst first.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+import pandas as pd
+
+from trackroller.methods.b10 import b10
+from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.results.columns import codes
+from trackroller.results.lives import FIRST_LIMIT, body_lives
+from trackroller.results.results import Results
+from trackroller.results.robustness import material_deviations
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.roles import roles_of
+
+FEWEST = 20  # sampled conditions of a design below which its life is not stated
+TIED = 1e-9  # relative difference of lives that count as equal
+
+
+def factor_roles(results: Results) -> dict[str, str]:
+    """Return the role of each factor of a study that varies: `choice` or `condition`."""
+    study = results.study
+    return roles_of(results.factors, study.parsed, study.config.roles, study.config.design)
+
+
+def slip_margin(results: Results) -> np.ndarray:
+    """Return the share of the largest transmissible force that the drive leaves, 1 - |F_Motor|/(mu |F_rad|/cos alpha).
+
+    Returns
+    -------
+    Shape (n,) [1]; NaN without friction and drive, and with friction that depends on the slip speed.
+
+    Notes
+    -----
+    At full slip no lateral friction is left, and both contacts carry |F_rad|/cos alpha together.
+    """
+    friction = "friction_coefficient_value" if "friction_coefficient_value" in results.table else "friction_coefficient"
+    motor, mu, radial, angle = (_input(results, n) for n in ("motor_force", friction, "radial_force", "contact_angle"))
+    if results.base.get("friction_law") or "friction_law" in results.table:
+        return np.full(len(results.table), np.nan)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        margin: np.ndarray = 1.0 - np.abs(motor) * np.cos(np.deg2rad(angle)) / (mu * np.abs(radial))
+    return margin
+
+
+def lift_off_margin(results: Results) -> np.ndarray:
+    """Return the load of the lighter contact over that of the heavier one, shape (n,) [1]; 0 at lift-off."""
+    loads = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ratio: np.ndarray = np.min(loads, axis=0) / np.max(loads, axis=0)
+    return ratio
+
+
+def _input(results: Results, name: str) -> np.ndarray:
+    if name in results.table and results.numeric(name):
+        return results.column(name)
+    value = results.base.get(name)
+    return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
+
+
+@dataclass(frozen=True)
+class Candidates:
+    """The designs of a study.
+
+    Attributes
+    ----------
+    results : the solved study
+    choices, conditions : names of the factors by role
+    goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller
+    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model
+    matched : whether each design has the same conditions, each once
+    """
+
+    results: Results
+    choices: tuple[str, ...]
+    conditions: tuple[str, ...]
+    goal: tuple[str, str, str]
+    place: np.ndarray
+    matched: bool
+
+    @classmethod
+    def of(cls, results: Results, free: tuple[str, ...] = ()) -> Candidates | None:
+        """Return the designs of a study, None without a valid case that has a life or a stress.
+
+        Parameters
+        ----------
+        results : the solved study
+        free : conditions that count as choices here, because a goal names them
+        """
+        goal = results.life or ("peak_stress_roller", "peak stress of the roller", "MPa")
+        if not (results.valid & ~np.isnan(results.column(goal[0]))).any():
+            return None
+        roles = factor_roles(results) | dict.fromkeys(free, "choice")
+        choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
+        own = np.ones(len(results.table), dtype=bool)
+        for option in (n for n in results.factors if n in OPTION_FACTORS):
+            own &= (results.table[option] == results.held_level(option)).to_numpy()
+        place = np.where(own, codes(results.table, choices), -1)
+        place[own] = np.unique(place[own], return_inverse=True)[1]
+        use = codes(results.table, conditions)[own]
+        several, many = place.max() + 1, len(np.unique(use))
+        pairs = len(np.unique(place[own] * (use.max() + 1) + use))
+        return cls(results, choices, conditions, goal, place, bool(pairs == own.sum() == several * many))
+
+    @cached_property
+    def size(self) -> np.ndarray:
+        """Return the number of conditions of each design, shape (designs,)."""
+        return np.bincount(self.place[self.place >= 0])
+
+    @property
+    def drawn(self) -> bool:
+        """Return whether the conditions are a random sample, so that a worst case depends on its size."""
+        return bool(self.conditions) and (not self.matched or self.results.config.method.sampled)
+
+    @property
+    def comparable(self) -> bool:
+        """Return whether the designs can be compared: they share their conditions, or each has a sample of them."""
+        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST)
+
+    @property
+    def rising(self) -> bool:
+        """Return whether more of the goal is better."""
+        return "life" in self.goal[0]
+
+    @property
+    def usable(self) -> np.ndarray:
+        """Return the cases whose life or stress counts, shape (n,): valid, compared, and with a value."""
+        rows: np.ndarray = self.results.valid & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+        return rows
+
+    @cached_property
+    def possible(self) -> int:
+        """Return the number of conditions in which at least one design is valid; 0 if designs share no conditions."""
+        return len(np.unique(codes(self.results.table, self.conditions)[self.usable])) if self.matched else 0
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """Return one row a design, the best first; designs without a valid case come last.
+
+        Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
+        goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
+        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins
+        of the rolling cases; with random conditions `b10`, the life that nine of ten cases reach if cases that are not
+        valid count as 0, with its 95 % interval; `rank`, equal for ties.
+        """
+        results, count = self.results, len(self.size)
+        members = {name: results.table[name].to_numpy()[self._first] for name in self.choices}
+        table = pd.DataFrame(members, index=range(count))
+        table["cases"] = self.size
+        for name, rows in (("rolls", results.rolling), ("valid", self.usable)):
+            table[name] = self._count(rows)
+        table = table.assign(**self._spread())
+        first = results.first_failing(self.goal[0])
+        for code, word in enumerate(FIRST_TO_FAIL):
+            table[f"first_{word}"] = self._count(self.usable & (first == code))
+        for body, name in body_lives(self.goal[0]).items():
+            case = self._least(results.column(name), self.usable)
+            table[f"worst_{body}"] = np.where(case < 0, np.nan, results.column(name)[case])
+            table[f"worst_{body}_beyond"] = (case >= 0) & results.beyond_data(name)[case]
+        for name, margin in (("slip_margin", slip_margin(results)), ("lift_off_margin", lift_off_margin(results))):
+            case = self._least(margin, results.rolling)
+            table[name] = np.where(case < 0, np.nan, margin[case])
+        sign = 1.0 if self.rising else -1.0
+        key = sign * table["worst"]
+        held = table["valid"] / table["cases"]
+        if self.drawn and self.rising:
+            table = table.assign(**self._quantile())
+            sure = table["b10"] > 0
+            key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
+        return _ranked(table, held, key, sign * table["median"])
+
+    def cases_of(self, design: int) -> np.ndarray:
+        """Return the cases of a row of `table` by its index, shape (n,) bool."""
+        rows: np.ndarray = self.place == design
+        return rows
+
+    def targets_met(self) -> np.ndarray | None:
+        """Return the number of cases of each design that are valid and meet every target of the study, (designs,).
+
+        None without the key `analysis.target`.
+        """
+        targets = self.results.config.analysis.target
+        return self._count(self.usable & np.all([*map(self.results.meets, targets)], axis=0)) if targets else None
+
+    def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
+        """Return the case of each design with the worst value among its valid cases, -1 without one.
+
+        Parameters
+        ----------
+        values : of the cases, shape (n,)
+        way : `max` if more is better, otherwise `min`
+        """
+        return self._least(values if way == "max" else -values, self.usable)
+
+    @cached_property
+    def _first(self) -> np.ndarray:
+        """Return the row of the first case of each design."""
+        numbers, first = np.unique(self.place, return_index=True)
+        return first[numbers >= 0]
+
+    def _count(self, rows: np.ndarray) -> np.ndarray:
+        return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))
+
+    def _least(self, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+        """Return the case with the smallest value of each design among the rows, -1 if no value is known."""
+        known = np.flatnonzero(rows & (self.place >= 0) & ~np.isnan(values))
+        order = known[np.lexsort((values[known], self.place[known]))]
+        candidates, first = np.unique(self.place[order], return_index=True)
+        out = np.full(len(self.size), -1)
+        out[candidates] = order[first]
+        return out
+
+    def _spread(self) -> dict[str, np.ndarray]:
+        """Return worst, median and best of the goal of each design, and whether they lie beyond the S-N data."""
+        values, rows = self.results.column(self.goal[0]), np.flatnonzero(self.usable)
+        order = rows[np.lexsort((values[rows] if self.rising else -values[rows], self.place[rows]))]
+        number = self._count(self.usable)
+        start, some = np.cumsum(number) - number, number > 0
+        beyond = self.results.beyond_data(self.goal[0])
+        ends = {"worst": (0, 0), "median": ((number - 1) // 2, number // 2), "best": (number - 1, number - 1)}
+        columns: dict[str, np.ndarray] = {}
+        for name, two in ends.items():
+            low, high = (order[np.where(some, start + step, 0)] for step in two)
+            middle = np.where(low == high, values[low], (values[low] + values[high]) / 2)
+            columns[name] = np.where(some, middle, np.nan)
+            columns[f"{name}_beyond"] = some & (beyond[low] | beyond[high])
+        columns["worst_case"] = np.where(some, order[np.where(some, start, 0)], -1)
+        columns["beyond"] = self._count(self.usable & beyond)
+        return columns
+
+    def _quantile(self) -> dict[str, np.ndarray]:
+        """Return the life that nine of ten cases of each design reach, its interval, and whether it lies beyond.
+
+        Cases that are not valid have life 0. The scatter of the material of the body that fails first counts if the
+        study asks for it, and if the S-N curve decides.
+        """
+        results = self.results
+        lives = np.where(self.usable, results.column(self.goal[0]), 0.0)
+        own = material_deviations(results) if self.goal != FIRST_LIMIT else {}
+        guide = results.first_failing(self.goal[0]) == FIRST_TO_FAIL.index("guide")
+        scatter = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0))
+        cases = [self.cases_of(i) for i in range(len(self.size))]
+        ends = np.array([b10(lives[c], scatter[c]) for c in cases]).T
+        columns = dict(zip(("b10", "b10_low", "b10_high"), ends, strict=True))
+        rests = np.array([max(b10(lives[c])[0], value) for c, value in zip(cases, ends[0], strict=True)])
+        there = self.usable & (lives <= rests[self.place]) & results.beyond_data(self.goal[0])
+        return columns | {"b10_beyond": self._count(there) > 0}
+
+
+def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Series) -> pd.DataFrame:
+    """Sort designs by the share of cases that they hold, then by the key, and rank them; equal ones tie."""
+    order = np.lexsort((-middle.fillna(-np.inf), -key.fillna(-np.inf), -held))
+    shares, keys = held.to_numpy()[order], key.to_numpy()[order]
+    same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
+    rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
+    return table.iloc[order].assign(rank=rank)
+
+
+def hardest_first(candidates: Candidates) -> np.ndarray:
+    """Number the conditions of the cases, shape (n,): fewest valid designs first, then the worse worst case.
+
+    Cases of a less exact contact model have the number -1.
+    """
+    table, own = candidates.results.table, candidates.place >= 0
+    use = codes(table, candidates.conditions)
+    use = np.unique(np.where(own, use, -1), return_inverse=True)[1] - int(not own.all())
+    worst = np.full(use.max() + 1, np.inf)
+    values = candidates.results.column(candidates.goal[0]) * (1.0 if candidates.rising else -1.0)
+    np.minimum.at(worst, use[candidates.usable], values[candidates.usable])
+    valid = np.bincount(use[candidates.usable], minlength=len(worst))
+    return np.where(own, np.argsort(np.lexsort((worst, valid)))[use], -1)

@@ -1,0 +1,105 @@
+"""Which limit ends the pair first, which factors decide it, and how it turns the order of the designs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
+
+from trackroller.damage import LIMITS
+from trackroller.damage.verdict import reached_by_breaking, until_reached
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
+from trackroller.results.candidates import Candidates
+from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.results import Results
+from trackroller.study.outputs import flat
+
+AMONG = 20  # designs whose order is compared, the best by either life
+
+
+def first_limit(results: Results) -> np.ndarray:
+    """Return the name of the limit that ends the pair first in every case, shape (n,); '' where it is not known."""
+    guide = results.first_failing(FIRST_LIMIT[0]) == FIRST_TO_FAIL.index("guide")
+    numbers = [
+        np.nan_to_num(results.column(f"limiting_mechanism_{body}", np.nan), nan=-1).astype(int) for body in BODIES
+    ]
+    names = np.array([*(name if name in LIMITS else "" for name in results.limits), ""], dtype=object)
+    return np.asarray(names[np.where(guide, numbers[1], numbers[0])])
+
+
+def deciding(results: Results, names: np.ndarray, most: int = 2) -> list[str]:
+    """Return the factors on which the first limit of the valid cases depends most, the strongest first.
+
+    Parameters
+    ----------
+    results : the solved study
+    names : first limit of every case, shape (n,)
+    most : number of factors at most
+
+    Notes
+    -----
+    Factors are ranked by the mutual information of their levels and the first limit. Factors without mutual
+    information are left out, and so are factors with more than `MOST_LEVELS` levels, whose table would be too long.
+    """
+    information: dict[str, float] = {}
+    for factor in (f for f in results.factors if len(results.levels(f)) <= MOST_LEVELS):
+        counts = pd.crosstab(results.table[factor].to_numpy()[results.valid], names[results.valid]).to_numpy(
+            dtype=float
+        )
+        share = counts / max(counts.sum(), 1.0)
+        expected = share.sum(axis=1, keepdims=True) * share.sum(axis=0, keepdims=True)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            information[factor] = float(np.nansum(share * np.log(share / expected)))
+    return sorted((f for f in information if information[f] > 1e-9), key=lambda f: -information[f])[:most]
+
+
+@dataclass(frozen=True)
+class Turn:
+    """How the order of the best designs changes from the life by the S-N curve to the first limit.
+
+    Attributes
+    ----------
+    correlation : rank correlation (Spearman) of the worst cases of the designs [1]
+    before, after : designs (rows of `Candidates.table`), the best first, by the S-N curve and by the first limit
+    """
+
+    correlation: float
+    before: tuple[int, ...]
+    after: tuple[int, ...]
+
+
+def turn(candidates: Candidates) -> Turn | None:
+    """Return how the order of at most `AMONG` designs turns; None with fewer than three designs or without lives."""
+    results = candidates.results
+    published = next((life for life in results.fatigue_lives if life[0] in results.table), None)
+    if candidates.goal != FIRST_LIMIT or published is None or not candidates.comparable:
+        return None
+    by_fatigue = replace(candidates, goal=published).table
+    known = candidates.table.index[candidates.table["valid"] > 0]
+    after = [int(i) for i in known[:AMONG]]
+    before = [int(i) for i in by_fatigue.index if i in after]
+    if len(after) < 3:
+        return None
+    places = pd.Series(range(len(before)), index=before)[after]
+    return Turn(float(np.corrcoef(places, range(len(after)))[0, 1]), tuple(before), tuple(after))
+
+
+def reached_hours(results: Results) -> np.ndarray:
+    """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
+    used, hours = (flat(results.data, name, results.dims) for name in ("utilisation", "life_hours_by_limit"))
+    timed = results.data["life_hours_by_limit"].notnull().any([*results.dims, "body"]).values
+    limits = [LIMITS[name] for name in results.data["limit"].values.tolist()]
+    breaks = np.stack([results.flagged("static", body if results.by_body else "") for body in BODIES], axis=1)
+    reached = until_reached(used, hours, timed, limits, reached_by_breaking(breaks, limits))
+    return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
+
+
+def without_first(results: Results, case: int) -> tuple[str, float, str, float]:
+    """Return first limit and hours of a case, and limit and hours that come next if the first were moved far away."""
+    names, reached = results.data["limit"].values.tolist(), reached_hours(results)[case]
+    use = np.nan_to_num(flat(results.data, "utilisation", results.dims)[case], nan=0.0).max(axis=1)
+    order = np.lexsort((-use, reached))
+    first, second = int(order[0]), int(order[1]) if len(order) > 1 else int(order[0])
+    return names[first], float(reached[first]), names[second], float(reached[second])

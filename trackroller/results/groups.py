@@ -1,0 +1,108 @@
+"""Levels of a factor, and groups of cases along it: one group a level, or groups of equal size of many levels."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.study.design.levels import NAMED
+
+MOST_LEVELS = 12  # a factor with more levels is divided into classes
+BINS = 8  # groups of a factor with more than `MOST_LEVELS` levels
+DRIVE = "motor_force"
+
+
+def levels(values: pd.Series) -> list[Any]:
+    """List the values of a factor: numbers in rising order, categories in order of appearance."""
+    known = values.dropna().unique()
+    return sorted(known.tolist()) if numeric(values) else list(known)
+
+
+def numeric(values: pd.Series) -> bool:
+    """Return whether a factor is a number."""
+    return bool(np.issubdtype(np.asarray(values).dtype, np.number))
+
+
+def ordered(values: pd.Series) -> bool:
+    """Return whether the levels of a factor have an order; materials, few drives and few curves have none."""
+    spoken = values.name in NAMED and len(levels(values)) <= MOST_LEVELS
+    return numeric(values) and not spoken and bool(np.isfinite(values).all())
+
+
+@dataclass(frozen=True)
+class Groups:
+    """Cases in groups along a factor.
+
+    Attributes
+    ----------
+    name : name of the factor
+    index : group of each case, shape (n,)
+    low, high : ends of each group; both are the level where a group is a level
+    at : place of each group on an axis: its median, or its number where the factor has no order
+    ordered : whether the groups have an order
+    """
+
+    name: str
+    index: np.ndarray
+    low: tuple[Any, ...]
+    high: tuple[Any, ...]
+    at: np.ndarray
+    ordered: bool
+
+    def __len__(self) -> int:
+        return len(self.low)
+
+
+def spaced_by_ratio(values: np.ndarray, least: float) -> bool:
+    """Return whether positive numbers spread by a factor above `least`, closer to evenly by ratio than by difference.
+
+    The median of such numbers lies nearer to the geometric than to the arithmetic mean of their ends, as on a
+    logarithmic axis. Uniform numbers belong on a linear axis.
+    """
+    finite = values[np.isfinite(values)]
+    if not finite.size or finite.min() <= 0 or finite.max() <= least * finite.min():
+        return False
+    low, middle, high = (float(v) for v in np.quantile(finite, (0.0, 0.5, 1.0)))
+    return bool(middle < 0.5 * ((low * high) ** 0.5 + 0.5 * (low + high)))
+
+
+def classes(table: pd.DataFrame, name: str, rows: np.ndarray, most: int | None) -> tuple[np.ndarray, list[Any]]:
+    """Sort rows into the factor's own levels, or into `most` classes of equally many rows where it has many levels.
+
+    Returns
+    -------
+    Index of the class of each of the chosen rows, shape (rows.sum(),), and per class its level or its ends (low, high).
+    """
+    values, known = table[name].to_numpy()[rows], levels(table[name])
+    if most is None or not numeric(table[name]) or len(known) <= MOST_LEVELS:
+        place = {v: i for i, v in enumerate(known)}
+        return np.array([place.get(v, 0) for v in values], dtype=int), known
+    edges = np.unique(np.quantile(values, np.linspace(0, 1, most + 1), method="nearest"))
+    index = np.clip(np.searchsorted(edges, values, side="right") - 1, 0, max(len(edges) - 2, 0))
+    kinds, index = np.unique(index, return_inverse=True)
+    return index, [(float(values[index == k].min()), float(values[index == k].max())) for k in range(len(kinds))]
+
+
+def groups(table: pd.DataFrame, name: str, rows: np.ndarray | None = None, most: int = BINS) -> Groups:
+    """Sort the chosen cases (all if `rows` is not given) into groups along a factor."""
+    rows = np.ones(len(table), dtype=bool) if rows is None else rows
+    index, ends = classes(table, name, rows, most)
+    low, high = zip(*(end if isinstance(end, tuple) else (end, end) for end in ends), strict=True)
+    at, own = np.arange(len(ends), dtype=float), table[name].to_numpy()[rows]
+    if in_order := ordered(table[name]):
+        at = np.array([np.median(own[index == k]) if (index == k).any() else np.nan for k in range(len(ends))])
+    return Groups(name, index, low, high, at, in_order)
+
+
+def drives(table: pd.DataFrame) -> Groups:
+    """Sort the cases into free rolling, driven and braked ones; each level is a group where there are up to three."""
+    if len(levels(table[DRIVE])) <= 3:
+        return groups(table, DRIVE)
+    force = table[DRIVE].to_numpy(dtype=float)
+    signs, index = np.unique(np.sign(force), return_inverse=True)
+    own = [force[index == k] for k in range(len(signs))]
+    low, high = (tuple(float(end(forces)) for forces in own) for end in (np.min, np.max))
+    return Groups(DRIVE, index, low, high, np.arange(len(signs), dtype=float), False)

@@ -1,0 +1,146 @@
+"""Let the sample of a study grow by doublings until its intervals are narrow, the key `until`.
+
+A step solves all cases of the sample, looks at the intervals, and doubles every replicate; an inner/outer design grows
+at the design points whose intervals are too wide. Each step is a design of the
+study whose cases go through plan and chunks. A run that was stopped therefore repeats its looks from the stored cases.
+"""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from trackroller.results.looks import UNTIL, look
+from trackroller.results.stored_study import solved_results
+from trackroller.study.cost import duration
+from trackroller.study.design.growth import doubled
+from trackroller.study.file.study import Study
+from trackroller.study.run import Runner
+from trackroller.study.store.folder import StudyFolder, Tell
+from trackroller.study.store.gather import gather
+from trackroller.study.store.identity import Cases
+from trackroller.study.store.inventory import take_inventory
+from trackroller.study.store.plan import Plan, study_folder, working_plan
+
+
+class Growing:
+    """A study that grows, with the looks so far.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study with the key `until`, at its first look.
+    folder : StudyFolder
+        Its folder.
+    tell : callable
+        Receives a line for each look.
+    """
+
+    def __init__(self, study: Study, folder: StudyFolder, tell: Tell) -> None:
+        assert study.config.until is not None
+        self.study, self.until, self.tell = study, study.config.until, tell
+        self.folder, self.found = folder, take_inventory(folder)
+        self.looks: list[dict[str, Any]] = []
+
+    def advance(self) -> str:
+        """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
+        self.found = take_inventory(self.folder)
+        while True:
+            cases = Cases(self.study)
+            place = self.found.find(cases.fingerprints)
+            if (place < 0).any():
+                return ""
+            seen = look(solved_results(self.study, cases, self.found, place, self.folder))
+            self.looks.append(seen)
+            widest = ", ".join(f"{name} ± {_text(seen, name)}" for name in self.until.of)
+            self.tell(f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}")
+            if unsure := seen.get("unsure"):
+                self.tell(f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} design points")
+            larger = doubled(self.study, unsure)
+            if why := self._why(larger):
+                self.tell(f"stopped: {why}")
+                return why
+            self.study = larger
+
+    def _why(self, larger: Study) -> str:
+        """Return why the study stops at its last look, '' if it goes on with the larger sample."""
+        seen, until = self.looks[-1], self.until
+        widths = seen["half_width"].values()
+        if seen["empty"]:
+            return f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
+        if all(width is not None and width <= until.half_width for width in widths):
+            return f"the intervals asked for are narrower than ± {until.half_width:g}"
+        if seen["constant"]:
+            return f"{' and '.join(seen['constant'])} does not vary, so it has no index"
+        many = larger.drawn.size
+        if many > until.at_most:
+            return f"the next step has {many} cases, and at_most is {until.at_most}"
+        if until.hours is None:
+            return ""
+        missing = int((self.found.find(Cases(larger).fingerprints) < 0).sum())
+        needed = self.found.hours * missing / max(1, self.found.states.sizes["case"])
+        if missing and self.found.hours + needed > until.hours:
+            spent = duration(3600 * self.found.hours)
+            left = f"about {duration(3600 * needed)} of solving"
+            return f"{spent} of the {until.hours:g} h are spent, and the next step needs {left}"
+        return ""
+
+    def record(self, why: str) -> dict[str, str]:
+        """Return the attribute of `study.nc` with the looks."""
+        asked = {"half_width": self.until.half_width, "replicates": self.until.replicates}
+        return {UNTIL: json.dumps(asked | {"stopped": why, "looks": self.looks})}
+
+
+def _text(seen: dict[str, Any], name: str) -> str:
+    width = seen["half_width"][name]
+    return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
+
+
+def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Plan:
+    """Let the sample of a study grow until its intervals are narrow, and gather the cases.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study with the key `until`.
+    results : path
+        Parent of the study's folder.
+    **how
+        Other fields of `trackroller.study.run.Runner`.
+
+    Returns
+    -------
+    Plan
+        The plan of the last step. The attribute `until` of `study.nc` holds the looks and why it stopped (JSON).
+
+    Raises
+    ------
+    InputError
+        If the study is wrong.
+    WorkError
+        If the work cannot be completed; every finished chunk is kept.
+    """
+    with Runner(results, **how) as runner, runner.deciding(study) as folder:
+        growing = Growing(study, folder, runner.tell)
+        while not (why := growing.advance()):
+            with runner.solved(growing.study):
+                pass
+        with runner.solved(growing.study) as plan:
+            gather(plan, runner.tell, growing.record(why))
+    return plan
+
+
+def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
+    """Look at the solved steps of a study and plan the next one, for a workflow.
+
+    Returns
+    -------
+    dict
+        `stopped`, why the study stops ('' if it goes on), and `chunks`, the names of the chunks that are not solved.
+    """
+    growing = Growing(study, study_folder(study.name, results).create(), tell)
+    if why := growing.advance():
+        return {"stopped": why, "chunks": []}
+    with working_plan(growing.study, results, tell=tell) as plan:
+        return {"stopped": "", "chunks": plan.open}

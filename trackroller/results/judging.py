@@ -1,0 +1,193 @@
+"""Judge the designs of a search over their conditions, and choose among the best ones."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from trackroller.methods.b10 import b10
+from trackroller.methods.factor import readable
+from trackroller.methods.optimise import crowding
+from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.results.constraints import Column
+from trackroller.results.results import OUTSIDE, Results
+from trackroller.study.file.search import judged_by
+
+SAFE_B10 = "B10 of {}, other cases as life 0"  # other cases: those that do not roll, or have no known life
+OPTIMUM = "optimum"  # attribute of study.nc with what the search found (JSON)
+
+
+@dataclass(frozen=True)
+class Judged:
+    """Designs with their goals.
+
+    Attributes
+    ----------
+    genes : shape (n, choices)
+    values : goals in their units, shape (n, goals); NaN where no condition gives a value
+    costs : the same with smaller as better
+    violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where B10 or a probability
+        counts these conditions
+    reasons : cases by what they break, of all designs together
+    """
+
+    genes: np.ndarray
+    values: np.ndarray
+    costs: np.ndarray
+    violation: np.ndarray
+    reasons: Mapping[str, int] = field(default_factory=dict)
+
+    def take(self, rows: np.ndarray) -> Judged:
+        """Return some of the designs."""
+        return Judged(self.genes[rows], self.values[rows], self.costs[rows], self.violation[rows], self.reasons)
+
+    def __add__(self, other: Judged) -> Judged:
+        """Return the designs of both."""
+        counts = {k: self.reasons.get(k, 0) + other.reasons.get(k, 0) for k in {**self.reasons, **other.reasons}}
+        pairs = ((getattr(self, n), getattr(other, n)) for n in ("genes", "values", "costs", "violation"))
+        genes, values, costs, violation = map(np.concatenate, pairs)
+        return Judged(genes, values, costs, violation, counts)
+
+
+def goals_of_search(results: Results) -> dict[str, str]:
+    """Return the goals of a search: the key `goals`, otherwise the usual ones."""
+    return dict(results.config.goals) or results.goals
+
+
+def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
+    """Judge each design of a solved search over its conditions.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study with `design: optimise`.
+    genes : numpy.ndarray, shape (n, choices), optional
+        Genes of the designs; by default those of the design.
+    """
+    design = results.design
+    shape = design.meta["design_points"], design.meta["inner_samples"]
+    valid, goals = results.valid.reshape(shape), goals_of_search(results)
+    values, known = [], valid.copy()
+    for goal in goals:
+        kind, output = judged_by(goal)
+        if kind == "probability":
+            values.append(_met(results, output).reshape(shape).mean(axis=1))
+            continue
+        raw = results.quantity(output)[0].astype(float).reshape(shape)
+        good = valid & ~np.isnan(raw)
+        known &= good | (kind == "b10")
+        values.append(_over_conditions(raw, good, kind, goals[goal]))
+    counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
+    table = np.stack(values, axis=1)
+    if genes is None:
+        places = [list(design.factors).index(name) for name in design.meta["outer"]]
+        genes = design.unit[:: shape[1], places]
+    costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
+    violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
+    return Judged(genes, table, costs, violation.astype(float), _reasons(results, known.ravel()))
+
+
+def _met(results: Results, output: str) -> np.ndarray:
+    """Return which cases are in a regime, or are valid and meet a target of the study, shape (n,)."""
+    if output in REGIMES:
+        return np.asarray(results.regime == REGIMES.index(output))
+    return np.asarray(results.valid & results.meets(output))
+
+
+def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
+    """Return a statistic of a result over the conditions of each design, shape (n, conditions) -> (n,)."""
+    if kind == "b10":
+        return np.array([b10(lives)[0] for lives in np.where(good, raw, 0.0)])
+    out = np.full(len(raw), np.nan)
+    some = good.any(axis=1)
+    if kind == "mean":
+        out[some] = np.mean(raw[some], axis=1, where=good[some])
+    else:
+        worst, end = (np.min, np.inf) if way == "max" else (np.max, -np.inf)
+        out[some] = worst(np.where(good, raw, end)[some], axis=1)
+    return out
+
+
+def _reasons(results: Results, known: np.ndarray) -> dict[str, int]:
+    """Count the cases that do not count, by what they break."""
+    counts = {word: int((results.regime == i).sum()) for i, word in enumerate(REGIMES) if i}
+    counts |= {flag: int((results.rolling & results.flagged(flag)).sum()) for flag in results.flags if flag in OUTSIDE}
+    if results.allowed is not None:
+        counts["constraints"] = int((results.inside & ~results.allowed).sum())
+    counts["no value of a goal"] = int((results.valid & ~known).sum())
+    return {word: n for word, n in counts.items() if n}
+
+
+def recommended(best: Judged) -> int:
+    """Return the design of a front that is nearest to the best of all goals, each normalised over the front.
+
+    Lives count by their logarithm, because they span decades. Of equal designs, the first goal decides.
+    """
+    shares = _normalised(best.costs)
+    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9)))[0])
+
+
+def _normalised(costs: np.ndarray) -> np.ndarray:
+    """Return costs from 0 (best) to 1 (worst) by goal; goals that span a decade by their logarithm."""
+    out = np.zeros(costs.shape)
+    for j, values in enumerate(costs.T):
+        finite = values[np.isfinite(values)]
+        if not finite.size:
+            continue
+        size, sign = np.abs(finite), np.sign(finite[0])
+        if (np.sign(finite) == sign).all() and size.max() > 10 * size.min() > 0:
+            values, finite = (sign * np.log(np.abs(v)) for v in (values, finite))
+        low, high = finite.min(), finite.max()
+        out[:, j] = (np.clip(np.nan_to_num(values, nan=high), low, high) - low) / (high - low or 1.0)
+    return out
+
+
+def spread(costs: np.ndarray, count: int) -> np.ndarray:
+    """Return the indices of at most `count` designs along a front: the least crowded ones, its ends first."""
+    left = np.arange(len(costs))
+    while len(left) > count:
+        left = np.delete(left, np.argmin(crowding(costs[left])))
+    return left
+
+
+def optimum_of(results: Results) -> dict[str, Any] | None:
+    """Return what a search found, from the attribute of its results; None for another study."""
+    text = results.data.attrs.get(OPTIMUM)
+    return json.loads(text) if isinstance(text, str) else None
+
+
+def choices_of(results: Results, number: int) -> dict[str, Any]:
+    """Return the choices of a design of a search by name."""
+    design = results.design
+    row = number * design.meta["inner_samples"]
+    return {name: readable(design.columns[name][row : row + 1])[0] for name in design.meta["outer"]}
+
+
+def goal_column(results: Results, goal: str) -> Column:
+    """Return the values (n,) of a goal by design, its units and its name in words."""
+    judged, (kind, output) = judge(results), judged_by(goal)
+    values = judged.values[:, list(goals_of_search(results)).index(goal)]
+    if kind == "probability":
+        if output in REGIMES:
+            return values, "1", f"probability of {REGIME_LABELS[REGIMES.index(output)]}"
+        return values, "1", f"probability that the {results.quantity(output)[2]} meets its target"
+    _, units, words = results.quantity(output)
+    if output in results.design.meta["outer"] or results.design.meta["inner_samples"] == 1:
+        return values, units, words
+    named = {"worst": f"{words} at the worst condition", "b10": SAFE_B10.format(f"the {words}")}
+    return values, units, named.get(kind, f"mean {words}")
+
+
+def beyond_data(results: Results, goal: str) -> np.ndarray:
+    """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape (n,)."""
+    kind, output = judged_by(goal)
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    if "life" not in output or kind == "probability":
+        return np.zeros(shape[0], dtype=bool)
+    lives = results.quantity(output)[0].astype(float).reshape(shape)
+    counted = results.valid.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
+    return np.asarray((counted & results.beyond_data(output).reshape(shape)).any(axis=1))

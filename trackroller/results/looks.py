@@ -1,0 +1,103 @@
+"""Look at the intervals of a sample that grows, the key `until`, and read the looks back from a solved study."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import numpy as np
+
+from trackroller.methods.b10 import log_b10, share
+from trackroller.methods.intervals import constant
+from trackroller.parameters import REGIMES
+from trackroller.results.labels import factor_name
+from trackroller.results.results import Results
+from trackroller.results.robustness import material_deviations
+from trackroller.results.targets import body_of, hits_of
+from trackroller.study.design.levels import in_words
+from trackroller.study.file.goals import statistic
+from trackroller.study.outputs import outputs, regimes
+
+UNTIL = "until"  # attribute of study.nc with the looks and the reason for stopping (JSON)
+
+
+def looks_of(results: Results) -> dict[str, Any] | None:
+    """Return the looks at a grown sample from the attribute of its results; None for another study."""
+    text = results.data.attrs.get(UNTIL)
+    return json.loads(text) if isinstance(text, str) else None
+
+
+def look(results: Results) -> dict[str, Any]:
+    """Return the widest interval of each output of `until`.
+
+    Parameters
+    ----------
+    results : Results
+        The solved step.
+
+    Returns
+    -------
+    dict
+        `cases`, and by output `half_width` (None: no interval yet) and `at`, the factor or design point with the widest
+        interval; `constant` names outputs that do not vary, so that they have no index, and `empty` those without a
+        valid case. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
+    """
+    design, until = results.design, results.config.until
+    assert until is not None
+    seen: dict[str, Any] = {"cases": design.size, "half_width": {}, "at": {}, "constant": [], "empty": []}
+    names = _names(results)
+    unsure = np.zeros(len(names), dtype=bool)
+    inside = results.inside.any() or results.config.analysis.keep != ("rolling",)
+    for name in until.of:
+        values, widths = (_of_points if design.method.points else _of_indices)(results, name)
+        if np.isnan(values).all() or not (inside or statistic(name)[1] in REGIMES):
+            seen["empty"].append(name)
+            widths[:] = np.inf
+        elif not design.method.points and constant(values):
+            seen["constant"].append(name)
+        widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)
+        widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
+        seen["half_width"][name] = float(widths[widest]) if np.isfinite(widths[widest]) else None
+        seen["at"][name] = names[widest]
+    return seen | ({"unsure": np.flatnonzero(unsure).tolist()} if design.method.points else {})
+
+
+def _of_indices(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return an output (n,) and the half widths of its headline indices; those of effects over the output's range."""
+    design, given = results.design, results.config.analysis
+    y = outputs(results.data, design.factors, [name], given.keep, scale=given.scale, allowed=results.allowed)[0].values
+    estimates = design.method.replicated(y, design, design.samples)
+    scale = float(np.nanmax(y) - np.nanmin(y)) if design.method.effects and not constant(y) else 1.0
+    widths = [estimates[f"{index}_high"] - estimates[index] for index in design.method.narrowed]
+    return y, np.concatenate(widths) / scale
+
+
+def _of_points(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the values (n,) and, by design point, the half width of log10 B10 or of a probability.
+
+    It is 0 at a point without a value in any case: more cases would not decide there.
+    """
+    design, (kind, output), own = results.design, statistic(name), material_deviations(results)
+    copies, points = int(design.meta["replicates"]), design.points
+    if output in REGIMES:
+        values = hits = (regimes(results.data, results.dims) == REGIMES.index(output)).astype(float)
+    else:
+        column = outputs(
+            results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed
+        )[0]
+        values, scatter = results.with_breaks(column), own.get(body_of(output))
+        if kind != "probability":
+            scatter = np.zeros(design.size) if scatter is None else scatter
+            halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]
+            return values, np.where([np.isnan(values[rows]).all() for rows in points], 0.0, halves)
+        hits = hits_of(column, results.config.analysis.target[output], scatter)
+    return values, np.array([share(hits[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points])
+
+
+def _names(results: Results) -> list[str]:
+    """Return the factors, or the design points of an inner/outer design, in words."""
+    design = results.design
+    if not design.method.points:
+        return list(map(factor_name, design.factors))
+    named = [[in_words(n, design.columns[n][rows.start]) for n in design.meta["outer"]] for rows in design.points]
+    return [", ".join(row) or "all" for row in named]

@@ -1,0 +1,256 @@
+"""Search for the best designs of a study, `design: optimise`.
+
+The search draws a generation of designs, solves each of them at all its conditions, judges it by the goals and draws
+the next generation. Every generation is a design of the study whose cases go through plan and chunks, so a search that
+was stopped repeats its generations from the stored cases.
+
+A ladder of models saves time: the search uses the table of Kalker's tractions where the options allow it. The model of
+the study then decides among the designs on the best fronts, the recommended one is polished with it, and every reported
+optimum is solved again with the accuracy `reference`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trackroller.errors import InputError
+from trackroller.files import sha256
+from trackroller.methods.factor import Factor
+from trackroller.methods.optimise import first_generation, genes_of, next_generation, nondominated_ranks, survivors
+from trackroller.parameters import PARAMETERS
+from trackroller.results.judging import OPTIMUM, Judged, goals_of_search, judge, recommended, spread
+from trackroller.results.results import Results
+from trackroller.results.stored_study import solved_results
+from trackroller.study.file.load import parse_study
+from trackroller.study.file.study import Study
+from trackroller.study.run import Runner
+from trackroller.study.store.folder import StudyFolder, Tell, unheard
+from trackroller.study.store.gather import gather
+from trackroller.study.store.identity import Cases
+from trackroller.study.store.inventory import Inventory, take_inventory
+from trackroller.study.store.plan import Plan
+from trackroller.study.store.seal import put_text
+
+TABLE, ELEMENTS = "kalker_table", "kalker"
+REPORTED = 10  # optima that are solved again at reference, spread along the front
+DECIDED = 2  # designs of the best fronts that the study's model decides among, in populations
+TOLERANCE = 0.05  # mm; a choice without the unit mm is changed by 1 % of its range
+POLISH_STEPS = (0.04, 0.02, 0.01, 0.005)  # shares of the range of a real choice
+
+
+@dataclass
+class _Search:
+    """Solve designs of a study and judge them; solved cases are found in the store."""
+
+    study: Study
+    folder: StudyFolder
+    runner: Runner
+    found: Inventory = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.found = take_inventory(self.folder)
+
+    def of(self, study: Study, genes: np.ndarray) -> Study:
+        """Return a study with these designs, which stand in `designs.csv`."""
+        path, choices = self.folder.root / "designs.csv", study.drawn.meta["outer"]
+        lines = [",".join(choices), *(",".join(repr(float(gene)) for gene in row) for row in genes)]
+        put_text(path, "\n".join(lines) + "\n")
+        config = study.config.model_copy(update={"table": path.name})
+        inputs = study.inputs | {path: ("table", sha256(path))}
+        return dataclasses.replace(study, config=config, path=path, inputs=inputs)
+
+    def stored(self, cases: Cases) -> bool:
+        """Return whether all cases are solved."""
+        return bool((self.found.find(cases.fingerprints) >= 0).all())
+
+    def judged(self, study: Study, genes: np.ndarray) -> Judged:
+        """Solve designs, as far as they are not solved yet, and judge them."""
+        one = self.of(study, genes)
+        cases = Cases(one)
+        if not self.stored(cases):
+            with self.runner.solved(one):
+                self.found = take_inventory(self.folder)
+        else:
+            self.runner.progress(len(cases.fingerprints), 0)
+        return judge(self.collected(one, cases), genes)
+
+    def collected(self, study: Study, cases: Cases) -> Results:
+        """Return the results of solved cases of a study."""
+        return solved_results(study, cases, self.found, self.found.find(cases.fingerprints), self.folder)
+
+
+def cheaper(study: Study) -> Study:
+    """Return the study with the table of Kalker's tractions where its options allow that, otherwise the study."""
+    if study.config.contact_model != ELEMENTS:
+        return study
+    try:
+        return _with(study, contact_model=TABLE)
+    except InputError:
+        return study
+
+
+def _with(study: Study, **values: str) -> Study:
+    """Return the study with other options."""
+    other = parse_study(study.as_dict() | values, study.path, study.database, planned=True)
+    return dataclasses.replace(other, inputs=study.inputs)
+
+
+def search_designs(study: Study, results: Path | str = "results", **how: Any) -> Plan:
+    """Search for the best designs of a study and gather the designs among which its model decided.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study, with `design: optimise`.
+    results : path
+        Parent of the study's folder.
+    **how
+        Other fields of `trackroller.study.run.Runner`.
+
+    Returns
+    -------
+    Plan
+        The plan of the gathered designs. The attribute `optimum` of `study.nc` holds the optima (JSON).
+
+    Raises
+    ------
+    InputError
+        If the study is wrong.
+    WorkError
+        If the work cannot be completed; every finished chunk is kept.
+    """
+    with Runner(results, **how) as runner, runner.deciding(study) as folder:
+        tell = runner.tell
+        runner.started(study.config.budget.designs * study.drawn.meta["inner_samples"], 0)
+        search = _Search(study, folder, dataclasses.replace(runner, tell=unheard, started=unheard))
+        known, facts = _evolve(search, cheaper(study), tell)
+        if cheaper(study) is study:
+            decided = known
+        else:
+            best = survivors(known.costs, known.violation, DECIDED * study.config.budget.generation)
+            decided = search.judged(study, known.genes[best])
+            tell(f"decided among {len(best)} designs with {study.config.contact_model}")
+        return _reported(search, decided, facts | {"reasons": known.reasons}, tell)
+
+
+def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str, Any]]:
+    """Return all designs of the search and facts about it; stop at the budget or when no design is left."""
+    budget, choices = study.config.budget, _choices(study)
+    genes, known, number, why = genes_of(choices), None, 0, "every design is solved"
+    drawn = first_generation(genes, min(budget.generation, budget.designs), study.config.seed)
+    while len(drawn):
+        if known is not None and budget.hours is not None and search.found.hours >= budget.hours:
+            if not search.stored(Cases(search.of(study, drawn))):
+                why = f"the {budget.hours:g} hours are spent"
+                break
+        new = search.judged(study, drawn)
+        known = new if known is None else known + new
+        first = nondominated_ranks(known.costs, known.violation) == 0
+        number += 1
+        valid = int((known.violation == 0).sum())
+        tell(f"generation {number}: {len(known.genes)} designs, {valid} valid in all conditions, {first.sum()} best")
+        if len(known.genes) >= budget.designs:
+            why = f"the budget of {budget.designs} design{'s' * (budget.designs != 1)} is spent"
+            break
+        many = min(budget.generation, budget.designs - len(known.genes))
+        drawn = next_generation(genes, known.genes, known.costs, known.violation, many, (study.config.seed, number))
+    assert known is not None
+    facts = {"model": study.config.contact_model, "designs": len(known.genes), "generations": number, "stopped": why}
+    return known, facts | {"valid": int((known.violation == 0).sum())}
+
+
+def _choices(study: Study) -> dict[str, Factor]:
+    return {name: study.drawn.factors[name] for name in study.drawn.meta["outer"]}
+
+
+def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Plan:
+    """Polish the recommended design, solve the optima at reference, and gather the designs."""
+    study, choices = search.study, _choices(search.study)
+    many, usable = len(decided.genes), decided.violation.min() < 1  # a design that is never valid is no optimum
+    decided = _polished(search, decided, choices) if usable else decided
+    front = np.flatnonzero(nondominated_ranks(decided.costs, decided.violation) == 0)
+    best = decided.take(front)
+    chosen = recommended(best)
+    shown = np.union1d(spread(best.costs, REPORTED), [chosen]) if usable else np.empty(0, int)
+    exact = {"accuracy": "reference"}
+    if study.config.contact_model == TABLE:
+        exact["contact_model"] = ELEMENTS
+    checked = search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
+    around = _neighbours(choices, best.genes[chosen]) if usable else []
+    moved = search.judged(study, np.array([genes for *_, genes in around])) if around else best.take(np.empty(0, int))
+    beside = (
+        f"polished designs ({len(decided.genes) - many}), neighbours of the recommended design ({len(around)}) and "
+    )
+    beside += f"optima at reference ({len(shown)})"
+    tell(f"solved beside the budget: {beside}" if usable else "no design is valid, so there is no optimum to check")
+    final = search.of(study, decided.genes)
+    goals = goals_of_search(search.collected(final, Cases(final)))
+    result = facts | {
+        "beside": beside if usable else "",
+        "goals": goals,
+        "front": len(front),
+        "decided": len(decided.genes),
+        "recommended": int(front[chosen]),
+        "optima": [
+            {
+                "design": int(front[row]),
+                "values": best.values[row].tolist(),
+                "reference": checked.values[i].tolist(),
+                "violation": [float(best.violation[row]), float(checked.violation[i])],
+            }
+            for i, row in enumerate(shown)
+        ],
+        "neighbours": [
+            {"choice": name, "step": step, "values": values.tolist(), "violation": float(violation)}
+            for (name, step, _), values, violation in zip(around, moved.values, moved.violation, strict=True)
+        ],
+    }
+    with search.runner.solved(final) as plan:
+        gather(plan, tell, {OPTIMUM: json.dumps(result)})
+    return plan
+
+
+def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> Judged:
+    """Add neighbours of the recommended design, in falling steps from the best one found so far."""
+    for step in POLISH_STEPS:
+        front = decided.take(np.flatnonzero(nondominated_ranks(decided.costs, decided.violation) == 0))
+        middle = front.genes[recommended(front)]
+        known = {row.tobytes() for row in decided.genes}
+        tried = []
+        for j, factor in enumerate(choices.values()):
+            if not factor.ordered:
+                continue
+            for side in (-1, 1):
+                genes = middle.copy()
+                top = len(factor.levels) - 1 if factor.discrete else 1.0
+                genes[j] = np.clip(genes[j] + side * (1 if factor.discrete else step), 0, top)
+                if genes.tobytes() not in known:
+                    tried.append(genes)
+        if tried:
+            decided += search.judged(search.study, np.array(tried))
+    return decided
+
+
+def _neighbours(choices: Mapping[str, Factor], genes: np.ndarray) -> list[tuple[str, str, np.ndarray]]:
+    """Return the designs that a tolerance makes of one: choice, change in words and genes."""
+    out = []
+    for j, (name, factor) in enumerate(choices.items()):
+        if factor.discrete:
+            continue
+        low, high = factor.numbers
+        size = TOLERANCE if name in PARAMETERS and PARAMETERS[name].unit == "mm" else abs(high - low) / 100
+        value = float(factor.from_unit(genes[j : j + 1])[0])
+        for side in (-1, 1):
+            to = np.clip(value + side * size, min(low, high), max(low, high))
+            moved = genes.copy()
+            moved[j] = (to - low) / (high - low) if factor.kind == "uniform" else np.log(to / low) / np.log(high / low)
+            if moved[j] != genes[j]:
+                out.append((name, f"{side * size:+.3g}", moved))
+    return out

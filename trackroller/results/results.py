@@ -1,0 +1,510 @@
+"""The results of a study: its data, its cases as a table, which of them are valid, and what analysis makes of them."""
+
+from __future__ import annotations
+
+import importlib
+import json
+import logging
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from trackroller.damage.pair import first_failure
+from trackroller.errors import InputError
+from trackroller.methods import Design
+from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS
+from trackroller.results import groups
+from trackroller.results.columns import base_values, case_columns, factor_names
+from trackroller.results.constraints import Column, meeting, quantity_of
+from trackroller.results.lives import FIRST_LIMIT, LIVES, body_lives, past_data
+from trackroller.roller.duty import years
+from trackroller.study.file.config import StudyFile
+from trackroller.study.file.goals import names_in
+from trackroller.study.file.study import Study
+from trackroller.study.outputs import Output, case_dims, of_fatigue
+
+log = logging.getLogger("trackroller")
+OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
+
+
+@dataclass(frozen=True, eq=False)
+class Results:
+    """The results of a study, which analysis, figures and report take.
+
+    `trackroller.run` and `trackroller.open_study` return them.
+
+    Parameters
+    ----------
+    study : Study
+        The checked study; `config` is what its file says.
+    design : Design
+        The rows of the design with their places and the groups of factors, as they were drawn.
+    data : xarray.Dataset
+        The results, over the factors of a grid or along `case`, with every input as a coordinate.
+    known_indices : xarray.Dataset, optional
+        Sensitivity indices that were computed before. A data set without variables stands for a study that has none.
+        By default they are computed when they are needed.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> text = "{name: friction, factors: {friction_coefficient: {values: [0.1, 0.2]}}, contact_model: sliding}"
+    >>> characters = Path("friction.yaml").write_text(text)
+    >>> results = tr.run("friction.yaml", progress=False)
+    >>> results.data.sizes["friction_coefficient"], results.indices().attrs["method"]
+    (2, 'grid')
+    """
+
+    study: Study
+    design: Design
+    data: xr.Dataset
+    known_indices: xr.Dataset | None = field(default=None, repr=False)
+
+    @property
+    def config(self) -> StudyFile:
+        """Return what the study file says."""
+        return self.study.config
+
+    @property
+    def unfinished(self) -> bool:
+        """Return whether some cases of the study are not solved yet."""
+        return "missing_cases" in self.data.attrs
+
+    # what analysis and report make of the results: their files take `Results`, so they are imported by name
+
+    def indices(self) -> xr.Dataset:
+        """Return the sensitivity indices of every output, see `trackroller.results.sensitivity.analyse`.
+
+        Raises
+        ------
+        InputError
+            If no output or no factor varies.
+        """
+        return self._indices
+
+    @cached_property
+    def _indices(self) -> xr.Dataset:
+        if self.known_indices is not None:
+            return self.known_indices
+        computed: xr.Dataset = _of("results.sensitivity", "analyse")(self)
+        return computed
+
+    @cached_property
+    def analysis(self) -> xr.Dataset | None:
+        """Return the sensitivity indices; None for a study that has none."""
+        try:
+            found = self.indices()
+        except InputError as error:
+            log.info("no sensitivity analysis: %s", error)
+            return None
+        return found if found.data_vars else None
+
+    def robustness(self) -> xr.Dataset:
+        """Return life and probabilities at each design point of an inner/outer array design.
+
+        Raises
+        ------
+        InputError
+            If the study has another design.
+        """
+        if not self.design.method.points:
+            remedy = "Take indices() for this study, or give the study design: inner_outer."
+            raise InputError("design", self.design.method.name, "design inner_outer, which has design points", remedy)
+        return self.indices()
+
+    def pareto(
+        self, objectives: Mapping[str, str] | None = None, constraints: Iterable[str] | None = None
+    ) -> xr.Dataset | None:
+        """Return the Pareto set of the designs, or of the cases where goals or constraints are given.
+
+        Parameters
+        ----------
+        objectives : mapping of str to str, optional
+            Outputs or factors, each with `min` or `max`. Default: the key `pareto` of the study file, otherwise the
+            longest life with the lowest friction or pressure.
+        constraints : iterable of str, optional
+            Comparisons that an allowed design must meet. Default: the key `constraints` of the study file.
+
+        Returns
+        -------
+        xarray.Dataset or None
+            None if the study has no goals.
+        """
+        if objectives is None and constraints is None:
+            front: xr.Dataset | None = _of("results.pareto", "study_pareto")(self)
+            return front
+        limits = self.config.constraints if constraints is None else constraints
+        allowed: xr.Dataset = _of("results.pareto", "pareto")(self, objectives or self.goals, limits)
+        return allowed
+
+    def candidates(self, free: tuple[str, ...] = ()) -> Any:
+        """Return the combinations of choices, each judged over its conditions.
+
+        Parameters
+        ----------
+        free : tuple of str
+            Conditions that count as choices here, because a goal names them.
+
+        Returns
+        -------
+        Candidates or None
+            See `trackroller.results.candidates.Candidates`; None without a valid case that has a life or a stress.
+        """
+        if free not in self._candidates:  # a report asks for them seven times
+            self._candidates[free] = _of("results.candidates", "Candidates").of(self, free)
+        return self._candidates[free]
+
+    @cached_property
+    def _candidates(self) -> dict[tuple[str, ...], Any]:
+        return {}
+
+    def best(self, count: int = 5) -> pd.DataFrame:
+        """Return the best designs over all their conditions, the best one first.
+
+        Parameters
+        ----------
+        count : int
+            Number of designs.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Rows of `trackroller.results.candidates.Candidates.table`; empty for a study without a valid case.
+
+        Raises
+        ------
+        InputError
+            If no design repeats, as in most random samples, so that designs cannot be compared.
+        """
+        candidates = self.candidates()
+        if candidates is not None and not candidates.comparable:
+            remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
+            raise InputError("design", self.design.method.name, "designs that share their conditions", remedy)
+        return pd.DataFrame() if candidates is None else candidates.table.head(count).copy()
+
+    def to_table(self) -> pd.DataFrame:
+        """Return one row a case: factors, other inputs that vary, and results by contact and body.
+
+        Lives in hours are followed by lives in years if the study file has a `duty`.
+        """
+        table, duty = self.table.copy(), self.config.duty
+        if duty is None:
+            return table
+        lives = [name for name in map(str, table) if "life" in name and "hours" in name]
+        return table.assign(**{name.replace("hours", "years"): years(table[name], duty) for name in lives})
+
+    def export(self, path: Path | str) -> Path:
+        """Write `to_table` as a workbook (.xlsx) or as CSV by the name of the file, and return its path."""
+        return Path(_of("report.workbook", "write_cases")(self.to_table(), Path(path)))
+
+    def report(self, path: Path | str) -> Path:
+        """Write the report as one HTML file, or as PDF by the name of the file, and return its path."""
+        return Path(_of("report.html", "write_page")(Path(path), _of("report.build", "report_text")(self)))
+
+    def explore(self, path: Path | str) -> Path:
+        """Write the explorer as one HTML file that works without a network, and return its path."""
+        return Path(_of("report.explorer.page", "write_explorer")(self, Path(path)))
+
+    # the cases as a table
+
+    @cached_property
+    def dims(self) -> tuple[str, ...]:
+        """Return the dimensions that count cases: `case`, or the factors of a grid in the order of the study file."""
+        return case_dims(self.data, self.study.factors)
+
+    @cached_property
+    def table(self) -> pd.DataFrame:
+        """Return one row a case: factors, inputs that vary, and results.
+
+        Results by contact and body have the suffixes `_1`, `_2`, `_roller`, `_guide`; a body counts at its worse
+        contact.
+        """
+        return pd.DataFrame(case_columns(self.data, self.dims))
+
+    @cached_property
+    def factors(self) -> tuple[str, ...]:
+        """Return the names of the factors that vary."""
+        return tuple(factor_names(self.data, self.dims, self.design, self.table))
+
+    @cached_property
+    def grid(self) -> bool:
+        """Return whether every combination of levels is there."""
+        names, rows = self.factors, len(self.table)
+        full = int(np.prod([self.table[f].nunique(dropna=False) for f in names], dtype=float)) if names else 1
+        return full == rows and not (len(names) == 1 and self.dims == ("case",) and rows > 60)
+
+    @cached_property
+    def base(self) -> dict[str, Any]:
+        """Return the values of the parameters that are no factors."""
+        base = base_values(self.data, self.config.base)
+        for name in self.dims:  # a dimension of one level is held by itself
+            if name not in self.factors and name in self.table and len(self.table):
+                base[name] = self.table[name].iloc[0]
+        return base
+
+    @cached_property
+    def derived(self) -> dict[str, tuple[str, ...]]:
+        """Return the parameters that are computed from factors, each with these factors."""
+        ds, table = self.data, self.table
+        return {
+            p: tuple(d for d in map(str, ds[p].dims) if d in self.factors or d == "case")
+            for p in PARAMETERS
+            if p in ds.variables and p in table and p not in self.factors and table[p].nunique() > 1
+        }
+
+    @cached_property
+    def flags(self) -> tuple[str, ...]:
+        """Return the names of the validity flags in the order of the bits of the columns `validity`."""
+        known = "validity" in self.data
+        return tuple(str(self.data["validity"].attrs.get("flag_meanings", "")).split()) if known else ()
+
+    @cached_property
+    def limits(self) -> tuple[str, ...]:
+        """Return the names of the limits by their numbers in the columns `limiting_mechanism_`."""
+        known = "limiting_mechanism" in self.data
+        return tuple(self.data["limiting_mechanism"].attrs["flag_meanings"].split()) if known else ()
+
+    @cached_property
+    def goals(self) -> dict[str, str]:
+        """Return the goals of the key `pareto`, each `min` or `max`, otherwise the usual ones.
+
+        The usual goals are the longest life of the pair, and the lowest friction power, friction energy or contact
+        pressure. The mapping is empty if the study lacks one of the two.
+        """
+        return dict(self.config.pareto) or _usual_goals(self.data)
+
+    def quantity(self, name: str) -> Column:
+        """Return values (n,), units and words of a factor, parameter or output; see `constraints.quantity_of`."""
+        return quantity_of(self.data, self.dims, name, self.config.base, self.design.columns)
+
+    def levels(self, name: str) -> list[Any]:
+        """List the values of a factor.
+
+        Numbers in rising order, categories in order of appearance.
+        """
+        if name not in self._levels:  # a page asks a dozen times for the levels of each factor
+            self._levels[name] = groups.levels(self.table[name])
+        return list(self._levels[name])
+
+    @cached_property
+    def _levels(self) -> dict[str, list[Any]]:
+        return {}
+
+    def numeric(self, name: str) -> bool:
+        """Say whether the factor is a number."""
+        return groups.numeric(self.table[name])
+
+    def ordered(self, name: str) -> bool:
+        """Return whether the levels of a factor have an order.
+
+        Materials, few drives and few curves have no order.
+        """
+        return groups.ordered(self.table[name])
+
+    @cached_property
+    def categories(self) -> tuple[str, ...]:
+        """Return the factors without an order; every pooled statement must hold within each of their levels."""
+        return tuple(f for f in self.factors if not self.ordered(f) and len(self.levels(f)) <= groups.MOST_LEVELS)
+
+    def behind(self, name: str) -> tuple[str, ...]:
+        """Return the factors that decide a parameter.
+
+        These are the parameter itself or the factors that it is computed from. A fixed parameter has no such factor.
+        """
+        return (name,) if name in self.factors else self.derived.get(name, ())
+
+    def held_level(self, name: str) -> Any:
+        """Return the level at which a factor is held.
+
+        It is the level of the base case, or the middle level if the base case has none. Contact models are held at the
+        most exact model.
+        """
+        levels = self.levels(name)
+        if name == "contact_model":
+            return next((model for model in EXACTNESS if model in levels), levels[0])
+        base = self.base.get(name)
+        if base is not None and base in levels:
+            return base
+        return levels[len(levels) // 2] if self.numeric(name) else levels[0]
+
+    def hold(self, shown: tuple[str, ...]) -> tuple[pd.DataFrame, dict[str, Any]]:
+        """Return the rows with every factor outside `shown` at its held level, and these levels by factor.
+
+        A sampled study has no such rows: there the whole table comes back, and no factor is held.
+        """
+        held = {f: self.held_level(f) for f in self.factors if f not in shown} if self.grid else {}
+        rows = self.table
+        for name, level in held.items():
+            rows = rows[rows[name] == level]
+        return rows, held
+
+    @cached_property
+    def life(self) -> tuple[str, str, str] | None:
+        """Return the column, wording and unit of the life to show, or None when the study has no life.
+
+        It is the life to the first limit if the study asks for limits. Otherwise it is the life of the pair where the
+        hours of the guide are known in a case, and that of the roller where they are not.
+        """
+        for column, words, unit in (FIRST_LIMIT, *self.fatigue_lives):
+            if column in self.table and (self.table[column] > 0).any():
+                return column, words, unit
+        return None
+
+    @property
+    def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
+        """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of the guide."""
+        return LIVES[0 if self.has("guide_life_hours") else 1 :]
+
+    @cached_property
+    def regime(self) -> np.ndarray:
+        """Return the regime of every case, shape (n,); 0 (rolling) where the data set has none."""
+        return self.column("regime", 0.0)
+
+    def column(self, name: str, missing: float = np.nan) -> np.ndarray:
+        """Return a column of numbers, shape (n,).
+
+        `missing` everywhere if the study has no such result.
+        """
+        if name not in self.table:
+            return np.full(len(self.table), missing)
+        return self.table[name].to_numpy(dtype=float)
+
+    def material(self, body: str) -> np.ndarray:
+        """Return the name of the material of a body in every case, shape (n,)."""
+        if "material_pair" in self.table:
+            return self.table["material_pair"].str.split(" / ").str[BODIES.index(body)].to_numpy(dtype=str)
+        name = f"{body}_material"
+        given = self.table.get(name, pd.Series(str(self.base.get(name, "")), self.table.index))
+        return given.to_numpy(dtype=str)
+
+    def flagged(self, flag: str, body: str = "") -> np.ndarray:
+        """Mark the cases that carry a validity flag, shape (n,).
+
+        With `body` only where it holds for this body. No case carries a flag that the data set does not know.
+        """
+        if flag not in self.flags:
+            return np.zeros(len(self.table), dtype=bool)
+        name = f"validity_{body}" if body else "validity"
+        bit = 1 << self.flags.index(flag)
+        return np.asarray((np.nan_to_num(self.column(name, 0.0)).astype(np.int64) & bit) != 0)
+
+    @property
+    def by_body(self) -> bool:
+        """Return whether the flags are known for each body."""
+        return all(f"validity_{body}" in self.table for body in BODIES)
+
+    @cached_property
+    def rolling(self) -> np.ndarray:
+        """Return the cases that roll and converged, shape (n,)."""
+        return np.asarray((self.regime == 0) & (self.column("converged", 1.0) == 1))
+
+    @cached_property
+    def inside(self) -> np.ndarray:
+        """Return the cases that roll, converged, and carry no flag of a design outside the model, shape (n,)."""
+        return np.asarray(self.rolling & ~np.any([self.flagged(flag) for flag in OUTSIDE], axis=0))
+
+    @cached_property
+    def allowed(self) -> np.ndarray | None:
+        """Return the cases that meet the constraints of the study, shape (n,); None without constraints."""
+        texts = self.config.constraints
+        if not texts:
+            return None
+        values = {name: self.quantity(name)[0] for name in sorted({name for text in texts for name in names_in(text)})}
+        rows = int(np.prod([self.data.sizes[d] for d in self.dims]))
+        return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))
+
+    @cached_property
+    def counted(self) -> np.ndarray:
+        """Return the cases that roll, converged, and meet the constraints of the study, shape (n,)."""
+        return self.rolling if self.allowed is None else self.rolling & self.allowed
+
+    @cached_property
+    def valid(self) -> np.ndarray:
+        """Return the cases inside the model that meet the constraints of the study, shape (n,)."""
+        return np.asarray(self.inside & self.counted)
+
+    def meets(self, target: str) -> np.ndarray:
+        """Return the cases that meet a target of the study, shape (n,), whether they are valid or not."""
+        values, ends = self.quantity(target)[0].astype(float), self.config.analysis.target[target]
+        return np.asarray((values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+
+    def first_failing(self, goal: str) -> np.ndarray:
+        """Return the number in `FIRST_TO_FAIL` of the body that fails first in every case, shape (n,).
+
+        Parameters
+        ----------
+        goal : a life of the pair: by the S-N curve, or to the first limit
+        """
+        if goal != FIRST_LIMIT[0]:
+            return self.column("first_to_fail", FIRST_TO_FAIL.index("unknown"))
+        return first_failure(*(self.column(name) for name in body_lives(goal).values()))[1]
+
+    def beyond_data(self, column: str) -> np.ndarray:
+        """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another quantity.
+
+        The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. For the pair the body that
+        fails first counts, or the roller where no body is known to fail first.
+
+        Parameters
+        ----------
+        column : a life, such as `pair_life_hours` or `life_cycles_guide`
+        """
+        if "life" not in column or "wear" in column:
+            return np.zeros(len(self.table), dtype=bool)
+        if not any(body in column for body in BODIES):
+            guide = self.first_failing(column) == FIRST_TO_FAIL.index("guide")
+            own = body_lives(column)
+            return np.where(guide, *(self.beyond_data(own[body]) for body in ("guide", "roller")))
+        body = "guide" if "guide" in column else "roller"
+        if "first_limit" in column:
+            fatigue = self.column(f"limiting_mechanism_{body}") == self.limits.index("fatigue")
+            rate = self.column(f"life_cycles_{body}") / self.column(f"{body}_life_hours")  # overrollings an hour
+            by_fatigue = fatigue & self.beyond_data(f"{body}_life_hours")
+            return np.asarray(by_fatigue | past_data(self.column(column) * rate))
+        names = pd.Series(self.material(body))
+        stored = json.loads(str(self.data.attrs.get("materials", "{}")))
+        knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
+        endless = np.isposinf(self.column(f"{body}_life_hours"))
+        return past_data(self.column(f"life_cycles_{body}"), names.map(knees).to_numpy(dtype=float)) | endless
+
+    def with_breaks(self, column: Output) -> np.ndarray:
+        """Return the values of an output, shape (n,); a fatigue life of a body above its tensile strength counts as 0.
+
+        The results state no life there. A statistic over the cases must not leave out those that fail at once.
+        """
+        if not of_fatigue(column.name):
+            return column.values
+        body = next((body for body in BODIES if body in column.name and self.by_body), "")
+        return np.where(self.counted & self.flagged("static", body), 0.0, column.values)
+
+    def has(self, *columns: str) -> bool:
+        """Say whether these columns are there with at least one number in each."""
+        return all(c in self.table and np.isfinite(self.table[c]).any() for c in columns)
+
+
+def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
+    """Return the longest life and the lowest friction or pressure, each `max` or `min`; empty if one is missing."""
+    goals: dict[str, str] = {}
+    known = "guide_life_hours" in ds and not bool(ds["guide_life_hours"].isnull().all())
+    # of the pair where the guide's hours are known
+    lives = ["pair_life_to_first_limit_hours", *["pair_life_hours"] * known, "roller_life_hours"]
+    lives = [n for n in lives if n in ds and np.isfinite(ds[n]).any()]
+    if lives:
+        goals[lives[0]] = "max"
+    elif "life_cycles" in ds:
+        goals["life_cycles_roller"] = "max"
+    for name in ("friction_power", "friction_energy_per_distance", "max_pressure"):
+        if name in ds and len(goals) == 1:
+            goals[name] = "min"
+    return goals if len(goals) == 2 else {}
+
+
+def _of(place: str, name: str) -> Any:
+    """Return a function of another file that takes `Results`; an import of the file itself would be a circle."""
+    return getattr(importlib.import_module(f"trackroller.{place}"), name)

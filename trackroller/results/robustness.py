@@ -1,0 +1,177 @@
+"""Robust design: the life at each design point if friction, fit and load scatter.
+
+An inner/outer array design (`inner_outer`) has a grid of design points (outer array) and the same sample of the
+scattering factors (inner array) at each of them. Differences between design points are therefore not chance (common
+random numbers).
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.damage.sn_curve import DEVIATES_10_TO_90, SNCurve
+from trackroller.errors import InputError
+from trackroller.methods import Design
+from trackroller.methods.b10 import b10, quantile
+from trackroller.methods.factor import readable
+from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
+from trackroller.results.labels import output_labels
+from trackroller.results.results import Results
+from trackroller.results.targets import at_points, body_of
+from trackroller.study.design.levels import in_words
+from trackroller.study.file.goals import statistic
+from trackroller.study.outputs import Output, default_names, flat, outputs, regimes
+
+PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
+
+
+def robustness(
+    results: Results,
+    log_life_scatter: Mapping[str, np.ndarray],
+) -> xr.Dataset:
+    """Summarise every output and the probability of each regime at every design point.
+
+    Parameters
+    ----------
+    results : Results
+        Solved study with an inner/outer array design.
+    log_life_scatter : mapping of str to numpy.ndarray
+        For each body the standard deviation of log10 life of the material itself [1], shape (n,), besides the scatter
+        of the study: see `material_deviations`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimension `point`, with the factors of the outer array as coordinates. `percentile_value` (output, point,
+        percentile); `mean` and `standard_deviation` (output, point) over the rolling cases. For each life `b10` with
+        `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
+        full slip, in lift-off or failed counts as life 0. A body above its tensile strength has the life 0 in both;
+        `beyond_data`, the shortest life beyond the S-N data, NaN without one. `probability` (regime, point)
+        with intervals. `analysis.target` adds the variables of `trackroller.results.targets.targets`.
+
+    Raises
+    ------
+    InputError
+        If the study has another design.
+    """
+    ds, design, config = results.data, results.design, results.config
+    if not design.method.points:
+        allowed = "design inner_outer: lists as outer array, distributions as inner array"
+        raise InputError("design", design.method.name, allowed)
+    regime = regimes(ds, results.dims)
+    wanted = list(config.analysis.outputs or default_names(ds, design.factors, results.dims))
+    goals = [statistic(goal) for goal in config.pareto]
+    wanted += [output for kind, output in goals if kind not in ("", "probability") and output not in wanted]
+    columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed)
+    by_output = []
+    for column in columns:
+        scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size))
+        values = results.with_breaks(column)
+        by_output.append(_statistics(values, regime, "life" in column.name, scatter, design.points))
+        beyond = np.where(results.beyond_data(column.name), column.values, np.nan)
+        by_output[-1]["beyond_data"] = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
+    out = xr.Dataset(coords=_coordinates(design, columns))
+    for key in by_output[0] if by_output else ():
+        axes = ("output", "point", "percentile") if key == "percentile_value" else ("output", "point")
+        out[key] = (axes, np.stack([one[key] for one in by_output]), {"comment": "in the units of the output"})
+    events = np.stack([regime == i for i in range(len(REGIMES))], axis=1).astype(float)
+    for end, value in zip(("", "_low", "_high"), at_points(events, design), strict=True):
+        attrs = {"units": "1", "long_name": f"probability{end.replace('_', ' ')} of the regime"}
+        out[f"probability{end}"] = (("regime", "point"), value.T, attrs)
+    largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
+    out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
+    out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
+    return out
+
+
+def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
+    treatment = (
+        "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
+        "other case as life 0; a body above its tensile strength counts as life 0; "
+        "the same inner sample at every design point"
+    )
+    return {
+        "method": design.method.name,
+        "rows": design.size,
+        "inner_samples": design.meta["inner_samples"],
+        "interval": "95 %",
+        "outer_factors": ", ".join(design.meta["outer"]),
+        "inner_factors": ", ".join(design.meta["inner"]),
+        "log_life_scatter": scatter,
+        "treatment": treatment + (", the material's own scatter of life in B10" if scatter else ""),
+    }
+
+
+def material_deviations(results: Results) -> dict[str, np.ndarray]:
+    """Return the standard deviation of log10 life of each body's material in each case, lg(T_N) / 2.563.
+
+    Parameters
+    ----------
+    results : solved study, whose key `analysis.material_scatter` states what is wanted: true: T_N (or T_S to the power
+        of k) of the materials in the attribute `materials`; a number: T_N itself; false: nothing
+
+    Returns
+    -------
+    body -> array [1] of shape (n,), 0 for a material without scatter. Empty if not wanted.
+    """
+    ds, dims, wanted = results.data, results.dims, results.config.analysis.material_scatter
+    if wanted is False:
+        return {}
+    known = json.loads(ds.attrs.get("materials", "{}"))
+    out = {}
+    for field, body in zip(MATERIAL_FIELDS, BODIES, strict=True):
+        if wanted is not True:
+            out[body] = np.full(
+                int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DEVIATES_10_TO_90
+            )
+        elif field in ds.variables:
+            names = flat(ds, field, dims)
+            of = {str(n): float(SNCurve.of(known[str(n)]).log_life_deviation) for n in np.unique(names.astype(str))}
+            out[body] = np.array([of[str(n)] for n in names])
+    return out
+
+
+def _coordinates(design: Design, columns: list[Output]) -> dict[str, Any]:
+    first = [rows.start for rows in design.points]
+    outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
+    point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(len(first))]
+    return {
+        **output_labels(columns),
+        "percentile": np.array(PERCENTILES),
+        "regime": np.array(REGIMES, dtype=object),
+        "point": np.arange(len(first)),
+        "point_samples": ("point", np.array([rows.stop - rows.start for rows in design.points])),
+        "point_name": ("point", np.array(point, dtype=object)),
+        **outer,
+    }
+
+
+def _statistics(
+    values: np.ndarray, regime: np.ndarray, life: bool, scatter: np.ndarray, points: list[slice]
+) -> dict[str, np.ndarray]:
+    """Return statistics of one output, shape (n,), NaN where a value is not usable, at the rows of each point."""
+    names = ("mean", "standard_deviation", "used_share", "b10", "b10_low", "b10_high", "b10_safe")
+    out = {name: np.full(len(points), np.nan) for name in names}
+    out["percentile_value"] = np.full((len(points), len(PERCENTILES)), np.nan)
+    for p, rows in enumerate(points):
+        own, spread = values[rows], scatter[rows]
+        known = ~np.isnan(own)
+        good = own[known]
+        out["used_share"][p] = good.size / own.size
+        if good.size < 2:
+            continue
+        out["percentile_value"][p] = quantile(good, np.array(PERCENTILES) / 100)
+        if np.isfinite(good).all():
+            out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
+        if life:
+            out["b10"][p], out["b10_low"][p], out["b10_high"][p] = b10(good, spread[known])
+            # a rolling case without a life (not converged) must not count as a long life
+            safe = np.where(~known | (regime[rows] != 0), 0.0, own)
+            out["b10_safe"][p] = b10(safe, spread)[0]
+    return out

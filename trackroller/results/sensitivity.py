@@ -1,0 +1,143 @@
+"""From a solved study to its labelled sensitivity indices.
+
+The design decides the analysis: shares of variance on a grid, elementary effects for Morris, Sobol indices for
+Saltelli samples, effects for response-surface designs, measures from given data for every independent sample. An
+inner/outer array design gets distributions of life (`robustness`).
+"""
+
+from __future__ import annotations
+
+import logging
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.methods import Design, Method, convergence
+from trackroller.methods.correlation import correlated_pairs
+from trackroller.methods.method import Estimated, Estimates
+from trackroller.results.labels import (
+    RELIABLE,
+    correlated,
+    first_order_sums,
+    labelled,
+    note,
+    treatment,
+)
+from trackroller.results.parts import parts_of
+from trackroller.results.results import Results
+from trackroller.results.robustness import material_deviations, robustness
+from trackroller.results.targets import targets
+from trackroller.roller.dataset import file_attributes
+from trackroller.study.outputs import Output, outputs, regimes
+
+log = logging.getLogger("trackroller")
+
+
+def _of_replicates(found: Estimated, y: np.ndarray, design: Design) -> Estimated:
+    """Replace the intervals and the course of the headline indices by those of the replicates of a grown sample."""
+    method, total = design.method, design.samples
+    at = convergence.sizes(total, smallest=2 * int(design.meta["replicates"]))
+    out = method.replicated(y, design, total)
+    course = convergence.course(lambda samples: method.replicated(y, design, samples), at, out, method.narrowed)
+    return found._replace(estimates=found.estimates | out | course, sizes=at)
+
+
+def analyse(results: Results) -> xr.Dataset:
+    """Compute sensitivity indices of every output of a study and record how they were obtained.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study. The key `analysis` of its study file says which outputs and regimes count. The same study gives
+        the same indices.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star, sigma
+        (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
+        surfaces); first, delta, prcc (given data). A random sample also has interaction_share by a polynomial
+        that predicts `fit_share` of the variance. The keys `groups` and `conditional_on` add the variables of
+        `trackroller.results.parts.parts_of`. Indices have _low, _high and their course with the sample size. For
+        each output: used_share, reliable, take_times, and `note`, which states the rows left out and why;
+        first_order_sum, and first_order_sum_note, which explains a sum above 100 %. An
+        inner/outer array design gives the result of `trackroller.results.robustness.robustness`.
+
+    Raises
+    ------
+    InputError
+        If no output or no factor varies.
+    """
+    ds, design, given = results.data, results.design, results.config.analysis
+    if design.method.proposes:
+        allowed = "a design that draws its rows evenly: a search prefers good designs"
+        raise InputError("design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices.")
+    own = material_deviations(results)
+    aims = targets(ds, design, given.target, own, results.valid) if given.target else xr.Dataset()
+    if design.method.points:
+        return robustness(results, own).merge(aims, combine_attrs="override")
+    columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)
+    if not columns or not design.factors:
+        raise InputError("study", list(ds.data_vars), "at least one output and one factor that varies")
+    by_output = []
+    for number, column in enumerate(columns, 1):
+        log.info("analyse output %d of %d: %s", number, len(columns), column.name)
+        by_output.append(design.method.estimate(column.values, design))
+        by_output[-1].estimates.pop("rows_used", None)
+        if "replicates" in design.meta:
+            by_output[-1] = _of_replicates(by_output[-1], column.values, design)
+    result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
+    result = result.merge(parts_of(design, columns, given))
+    result = result.assign(_quality(result, design, columns, by_output))
+    if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
+        words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
+        result["correlated"] = ("factor", np.array([name in tied for name in design.factors], np.int8), words)
+    result = result.assign(first_order_sums(result, not design.method.observed))
+    result.attrs = {
+        **file_attributes("Sensitivity analysis of a study of track rollers", "analysed"),
+        "method": design.method.name,
+        "needs": design.method.needs,
+        "rows": design.size,
+        "samples": design.samples,
+        "kept_regimes": ", ".join(given.keep),
+        "interval": "95 %",
+        "treatment": treatment(regimes(ds, results.dims), given.keep, results.allowed) + correlated(design),
+        "study": results.study.merged(),
+    }
+    return result.merge(aims, combine_attrs="override")
+
+
+def _quality(
+    result: xr.Dataset, design: Design, columns: list[Output], by_output: list[Estimated]
+) -> dict[str, tuple[str, np.ndarray, dict[str, str]]]:
+    """Return the variables that say how many rows the indices of each output use, and whether these suffice."""
+    share = np.array([one.used / max(1, one.total) for one in by_output])
+    notes = [
+        note(column, one.used, one.total, design.method.unit) for column, one in zip(columns, by_output, strict=True)
+    ]
+    bounds = [_bounds(one.estimates, design.method) for one in by_output]
+    if design.meta.get("groups"):
+        bounds = list(zip(result["group_ST_low"].values, result["group_ST_high"].values, strict=True))
+    times = [convergence.take_times(*both, design.method.half_width) for both in bounds]
+    half = [convergence.half_width(*both) for both in bounds]
+    return {
+        name: ("output", values, {"long_name": words} | ({} if values.dtype == object else {"units": "1"}))
+        for name, values, words in (
+            ("used_share", share, "share of the rows that the indices use"),
+            ("reliable", (share >= RELIABLE).astype(np.int8), f"1 where at least {RELIABLE:g} of the rows are used"),
+            ("note", np.array(notes, dtype=object), "rows left out, and why"),
+            ("half_width", np.array(half), "half width of the widest interval (of mu*: over the largest mu*)"),
+            ("take_times", np.array(times), "factor on the samples after which the intervals are narrow enough"),
+        )
+    }
+
+
+def _bounds(out: Estimates, method: Method) -> tuple[np.ndarray, np.ndarray]:
+    """Return the bounds of the indices that must be narrow, as shares of the variance or of the largest effect."""
+    names = [name for name in method.judged if f"{name}_low" in out]
+    if not names:
+        return np.full(1, np.nan), np.full(1, np.nan)
+    low, high = (np.concatenate([out[f"{name}_{end}"] for name in names]) for end in ("low", "high"))
+    whole = float(np.nanmax(out[names[0]], initial=0.0)) if method.effects else 1.0
+    return (low / whole, high / whole) if whole > 0 else (low * np.nan, high * np.nan)

@@ -1,0 +1,68 @@
+"""Solve a study in this process and return its results."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Mapping
+from contextlib import nullcontext
+from pathlib import Path
+from typing import Any
+
+from trackroller.numerics.threads import limited_to
+from trackroller.results.deciding import decides, run_any
+from trackroller.results.results import Results
+from trackroller.results.stored_study import open_study
+from trackroller.study.file.load import load_study
+from trackroller.study.file.study import Study
+from trackroller.study.progress import progress_bar
+from trackroller.study.run import solve_study
+
+
+def run(
+    study: Study | Path | str | Mapping[str, Any],
+    cores: int | None = None,
+    progress: bool = True,
+    results: Path | str | None = None,
+) -> Results:
+    """Solve a study in this process.
+
+    Parameters
+    ----------
+    study : Study, pathlib.Path, str or mapping
+        The study, its file, or a mapping with the keys of a study file.
+    cores : int, optional
+        Number of threads; by default one for each processor.
+    progress : bool
+        Whether to show a progress bar.
+    results : path, optional
+        Parent of a folder that keeps every solved case, as `trackroller run` does: a run that was interrupted goes on
+        there. By default nothing is written.
+
+    Returns
+    -------
+    Results
+        The results of the study.
+
+    Raises
+    ------
+    InputError
+        If the study is wrong.
+    WorkError
+        If the folder cannot be written.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> factors = {"friction_coefficient": {"values": [0.1, 0.2]}, "roller_profile_radius": {"values": [-7, -8]}}
+    >>> solved = tr.run({"name": "groove", "factors": factors, "contact_model": "sliding"}, progress=False)
+    >>> float(solved.best(1)["roller_profile_radius"].iloc[0])
+    -7.0
+    """
+    checked = study if isinstance(study, Study) else load_study(study)
+    with limited_to(cores), progress_bar(checked.name, progress) as bar:
+        shown: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
+        if results is None and not decides(checked):
+            return Results(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
+        # the cases of a study that decides follow from stored results
+        with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
+            return open_study(run_any(checked, place, **shown).folder.root)

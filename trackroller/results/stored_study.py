@@ -1,0 +1,192 @@
+"""Open the results of a study: from its folder, from `study.nc`, or from what `solve` returned for a study's design.
+
+This is the only place that reads a study file from the attribute of a data set.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import warnings
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.results.results import Results
+from trackroller.roller.record import NOT_GIVEN
+from trackroller.study.design.entries import CASE_FIELDS
+from trackroller.study.design.stored import restored, solved_part
+from trackroller.study.file.load import checked_keys, former_defaults, with_present_names, without_former
+from trackroller.study.file.study import Study
+from trackroller.study.outputs import case_dims
+from trackroller.study.store import chunks
+from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
+from trackroller.study.store.gather import collect
+from trackroller.study.store.identity import Cases
+from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.inventory import Inventory
+from trackroller.study.store.labels import labelled
+from trackroller.study.store.ownership import check_readable
+from trackroller.study.store.plan import locate
+from trackroller.study.store.provenance import DATE
+from trackroller.study.store.seal import digest_of, read_result
+from trackroller.study.store.sources import solver_digest
+from trackroller.yaml_file import parse_mapping
+
+_REMEDY = "Run the study again."
+NOTICE = "notice"  # attribute with a sentence that every page of the study shows at its top
+MISSING = "missing_cases"  # attribute with the number of cases that are not solved yet
+_EARLIER = "Another version of the solver made these results. `trackroller run` with the study file solves them anew."
+
+
+def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = None) -> Results:
+    """Open the results of a study.
+
+    Parameters
+    ----------
+    source : xarray.Dataset, pathlib.Path or str
+        Folder of a study, its file `study.nc`, the data set in such a file, or the result of `trackroller.solve` for
+        the design of a study.
+    indices : pathlib.Path or str, optional
+        File `sensitivity.nc` with the indices of the study. By default they are computed when they are needed.
+
+    Returns
+    -------
+    Results
+        The results with the same meaning as before they were written. For the folder of a study that is not gathered
+        yet, the cases that are solved: the attribute `missing_cases` of the data counts the others, and `notice` says
+        so.
+
+    Raises
+    ------
+    InputError
+        If there is no such file, it holds no study, this version would read its study file differently, its rows are
+        not those of its design, or the folder holds a link.
+    WorkError
+        If the file was altered after it was written.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> factors = {"roller_profile_radius": {"values": [-7, -8]}}
+    >>> study = {"name": "groove", "factors": factors, "contact_model": "sliding"}
+    >>> ds = tr.solve(tr.load_study(study).design(), accuracy="preview")
+    >>> tr.open_study(ds).data.sizes["roller_profile_radius"]
+    2
+    """
+    if not isinstance(source, (xr.Dataset, str, Path)):
+        remedy = "Give the folder results/NAME, or its file study.nc."
+        raise InputError("study", type(source).__name__, "a path or a data set", remedy)
+    known = None if indices is None else read_result(indices)
+    data = source if isinstance(source, xr.Dataset) else _gathered(Path(source))
+    if data is None:
+        return _read_unfinished(StudyFolder(Path(source)), known)
+    data = data.assign_attrs(_checked_version(data))
+    study = _study(data)
+    data = data.assign_attrs({NOT_GIVEN: json.dumps(study.not_given)})
+    design = restored(data, study.parsed, case_dims(data, study.factors))
+    if "options" in data.attrs and "case" in data.dims:  # the cases of a design beside their results: not labelled yet
+        names = [name for name in data.data_vars if name not in CASE_FIELDS]
+        solved = data[names].transpose("case", ...)
+        if "regime" in names:
+            solved = chunks.from_results(solved, np.arange(data.sizes["case"]))
+        data = labelled(study, design, data.drop_vars(names), solved)
+    return Results(study, design, data, known)
+
+
+def open_as_reported(root: Path) -> Results:
+    """Open the results in a folder with the indices that a report has written there, and without indices otherwise.
+
+    Nothing is computed: a page or a figure that must not wait takes these results.
+    """
+    results, stored = open_study(root), root / "sensitivity.nc"
+    known = stored.is_file() and not results.unfinished and digest_of(stored)
+    return dataclasses.replace(results, known_indices=read_result(stored) if known else xr.Dataset())
+
+
+def solved_results(study: Study, cases: Cases, found: Inventory, place: np.ndarray, folder: StudyFolder) -> Results:
+    """Return the results of a study whose cases lie at `place`, shape (n,), in the inventory of its folder."""
+    data = labelled(study, study.drawn, cases.design, collect(found, place, folder.root))
+    return Results(study, study.drawn, data)
+
+
+def _gathered(path: Path) -> xr.Dataset | None:
+    """Return the results in `study.nc`; None for the folder of a study whose plan is not gathered yet."""
+    if path.is_dir():
+        check_readable(path)
+    file = StudyFolder(path).gathered if path.is_dir() else path
+    record = StudyFolder(path).record() if path.is_dir() else {}
+    planned = record.get("study")
+    if not file.is_file() and planned is None:
+        allowed = "a folder results/NAME with study.nc, or such a file"
+        raise InputError("study", str(path), allowed, "Run the study to its end first.", "holds no results")
+    data = read_result(file) if file.is_file() else None
+    if data is None or planned not in (None, data.attrs.get("study")):
+        return None
+    return data.assign_attrs({DATE: record["planned"]} if "planned" in record else {})
+
+
+def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
+    """Return the solved cases of a study that is not gathered yet."""
+    study = study_of_folder(folder)
+    design, inventory, place = locate(study, folder)
+    rows = np.flatnonzero(place >= 0)
+    if len(rows) in (0, len(place)):
+        state = "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
+        raise InputError("study", str(folder.root), "a study with results", "Run the study to its end first.", state)
+    drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
+    data = labelled(study, drawn, cases, collect(inventory, place[rows], folder.root)).assign_coords(case=rows)
+    lacking = [n for n in study.drawn.factors if n not in drawn.factors]
+    only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
+    notice = (
+        f"Unfinished study: {len(rows)} of {len(place)} cases are solved, and all numbers are those of these.{only}"
+    )
+    warnings.warn(notice, stacklevel=3)
+    if study.config.method.points:  # its goals are statistics of whole design points
+        study = dataclasses.replace(study, config=study.config.model_copy(update={"pareto": {}}))
+    data = data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(rows)})
+    return Results(study, drawn, data, indices)
+
+
+def _checked_version(data: xr.Dataset) -> dict[str, str]:
+    """Refuse results in another format; return the notice for results of another solver, {} for those of this one."""
+    solver, written = data.attrs.get("solver_digest"), data.attrs.get("store_format")
+    if solver is None or (solver == solver_digest() and written == STORE_FORMAT):
+        return {}
+    if written != STORE_FORMAT:
+        name = f"study.nc of {data.attrs.get('study_name')}"
+        allowed, wrong = f"results in format {STORE_FORMAT}", "is that of another version"
+        raise InputError(name, f"format {written}", allowed, _REMEDY, wrong)
+    warnings.warn(_EARLIER, stacklevel=3)
+    return {NOTICE: _EARLIER}
+
+
+def _study(data: xr.Dataset) -> Study:
+    """Return the study whose file a data set holds; refuse a file that would be read with another meaning."""
+    text = data.attrs.get("study")
+    if not isinstance(text, str):
+        raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
+    written = parse_mapping(text, "stored study file")
+    stored, names = with_present_names(without_former(written)), json.loads(data.attrs.get(NOT_GIVEN, "[]"))
+    study = Study(checked_keys(stored), not_given=tuple(names or former_defaults(written)))
+    if changed := _changed(stored, study.as_dict()):
+        allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"
+        raise InputError("study", str(stored.get("name", "")), allowed, _REMEDY, wrong)
+    return study
+
+
+def _changed(stored: Mapping[str, Any], now: Mapping[str, Any]) -> str:
+    """Return the first key whose value has changed, '' if there is none; keys that are new have their defaults."""
+    for key, value in stored.items():
+        if key not in now:
+            return key
+        if isinstance(value, Mapping) and isinstance(now[key], Mapping):
+            if inner := _changed(value, now[key]):
+                return f"{key}.{inner}"
+        elif value != now[key]:
+            return key
+    return ""

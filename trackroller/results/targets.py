@@ -1,0 +1,244 @@
+"""Probability that a design meets the key `analysis.target`, at each design point and at each level of a factor."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from scipy import stats
+
+from trackroller.methods import Design
+from trackroller.methods.correlation import correlated_pairs
+from trackroller.methods.factor import Factor
+from trackroller.methods.probability import probabilities
+from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.ranking import estimate
+from trackroller.study.design.levels import in_words
+from trackroller.study.outputs import Output, outputs
+
+CLASSES = 4  # of a number with more than `MOST_LEVELS` levels
+ENDS = ("", "_low", "_high")
+Found = tuple[np.ndarray, np.ndarray, np.ndarray]  # probability and its bounds, shape (targets,) each
+
+
+class Level(NamedTuple):
+    """The rows of one level of a factor, or of one class of its values.
+
+    Attributes
+    ----------
+    factor : name of the factor
+    low, high : smallest and largest value of the factor in these rows; NaN if its values are texts
+    text : the level or class in words
+    rows : mask of the rows, shape (n,)
+    """
+
+    factor: str
+    low: float
+    high: float
+    text: str
+    rows: np.ndarray
+
+
+def targets(
+    ds: xr.Dataset,
+    design: Design,
+    wanted: Mapping[str, Mapping[str, float]],
+    deviations: Mapping[str, np.ndarray],
+    allowed: np.ndarray | None = None,
+) -> xr.Dataset:
+    """Estimate the probability of meeting each target, and of meeting all.
+
+    Parameters
+    ----------
+    ds : gathered study
+    design : its design
+    wanted : output -> `min`, `max` or both, in the unit of the output
+    deviations : body -> standard deviation of log10 life of its material [1], shape (n,), see `material_deviations`
+    allowed : cases that count, such as the valid ones, shape (n,)
+
+    Returns
+    -------
+    Dimension `target` (with `all` for several targets). `target_probability` (target, point) of an inner/outer design,
+    else (target,) of all cases; `level_probability` (target, target_level). Both with _low and _high (95 %), NaN in a
+    grid or a table, whose rows are no sample. A case that does not roll, is not allowed or has no value misses each
+    target.
+
+    Notes
+    -----
+    At a level of the outer array the probability is the mean over its design points. Their common sample counts once.
+    If these have different numbers of samples, the bounds are the means of their bounds.
+    """
+    columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
+    hits = np.stack([hits_of(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
+    names = [c.name for c in columns]
+    if len(names) > 1:
+        hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
+    robust = design.method.points
+    levels, estimates = (_of_points if robust else _of_rows)(hits, design)
+    out = xr.Dataset(coords=_coordinates(names, columns, wanted, levels))
+    for end, whole in zip(ENDS, estimates[0], strict=True):
+        out[f"target_probability{end}"] = (("target", "point") if robust else ("target",), whole, {"units": "1"})
+    for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
+        out[f"level_probability{end}"] = (("target", "target_level"), np.stack(part, axis=1), {"units": "1"})
+    return out
+
+
+def body_of(output: str) -> str:
+    """Return the body whose material's scatter counts for a life, '' for another output."""
+    return ("guide" if "guide" in output else "roller") if "life" in output else ""
+
+
+def hits_of(column: Output, limits: Mapping[str, float], deviation: np.ndarray | None) -> np.ndarray:
+    """Return the probability that each case meets a target, shape (n,): 0 or 1 where the material has no scatter."""
+    values, low, high = column.values, limits.get("min", -np.inf), limits.get("max", np.inf)
+    with np.errstate(invalid="ignore"):
+        met = ((values >= low) & (values <= high)).astype(float)
+    if deviation is None or not (deviation > 0).any():
+        return met
+    with np.errstate(divide="ignore", invalid="ignore"):
+        beyond = [
+            stats.norm.cdf(np.log10(values / limits[end]) / np.maximum(deviation, 1e-9)) if end in limits else default
+            for end, default in (("min", 1.0), ("max", 0.0))
+        ]
+    return np.where(np.isnan(values), 0.0, np.where(deviation > 0, beyond[0] - beyond[1], met))
+
+
+def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
+    """Return the probability that a case meets all targets, shape (n,).
+
+    ASSUME: the materials of roller and guide scatter independently of each other.
+    """
+    bodies = np.array([body_of(name) for name in names])
+    return np.asarray(np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0))
+
+
+def _of_points(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
+    """Return the levels of the outer factors, and the probabilities at all points and at each level."""
+    first = [rows.start for rows in design.points]
+    outer = [name for name in design.meta["outer"] if len(design.meta["outer"]) > 1]
+    levels = [level for name in outer for level in _levels(design.factors[name], design.columns[name][first])]
+    p, low, high = whole = at_points(hits, design)
+    return levels, [(p.T, low.T, high.T), *(_at_level(hits, design, level, whole) for level in levels)]
+
+
+def at_points(hits: np.ndarray, design: Design) -> Found:
+    """Return the probability of events and its bounds at each design point of an inner/outer array.
+
+    Parameters
+    ----------
+    hits : share of each event at each case, 0 to 1, shape (n, m)
+    design : the design
+
+    Returns
+    -------
+    Probability, lower and upper bound [1], each of shape (points, m).
+    """
+    sizes, sample = np.array([rows.stop - rows.start for rows in design.points]), inner_sample(design)
+    bounds = np.empty((3, len(sizes), hits.shape[1]))
+    for size in np.unique(sizes):
+        own = np.flatnonzero(sizes == size)
+        cube = np.stack([hits[design.points[point]] for point in own], axis=1)
+        parts = probabilities(cube.reshape(size, -1), *_first(sample, size))
+        bounds[:, own] = [part.reshape(len(own), -1) for part in parts]
+    return bounds[0], bounds[1], bounds[2]
+
+
+def _at_level(hits: np.ndarray, design: Design, level: Level, whole: Found) -> Found:
+    """Return the mean probability of the design points of a level and its bounds.
+
+    Points with different numbers of samples get the mean of their bounds, which is wide enough for any correlation.
+    """
+    own = [rows for rows, chosen in zip(design.points, level.rows, strict=True) if chosen]
+    sizes = {rows.stop - rows.start for rows in own}
+    if len(sizes) > 1:
+        p, low, high = (part[level.rows].mean(axis=0) for part in whole)
+        return p, low, high
+    return probabilities(np.mean([hits[rows] for rows in own], axis=0), *_first(inner_sample(design), sizes.pop()))
+
+
+def _first(sample: tuple[np.ndarray, ...], size: int) -> tuple[np.ndarray, ...]:
+    """Return the first rows of the sample of `inner_sample`."""
+    return (sample[0][:size], sample[1]) if sample else ()
+
+
+def _of_rows(hits: np.ndarray, design: Design) -> tuple[list[Level], list[Found]]:
+    """Return the levels of the factors, and the probabilities over all rows and at each level."""
+    rows = design.method.independent_rows(design)
+    levels = [level for name, f in design.factors.items() for level in _levels(f, design.columns[name][rows])]
+    hits = hits[rows]
+    strata = () if correlated_pairs(design) else (design.places[rows], design.ordered)
+    estimates = [probabilities(hits, *strata)]
+    estimates += [probabilities(hits[level.rows]) for level in levels]
+    if not design.method.sampled:  # shares of such rows are no probabilities
+        estimates = [(p, np.full_like(p, np.nan), np.full_like(p, np.nan)) for p, _, _ in estimates]
+    return levels, estimates
+
+
+def inner_sample(design: Design) -> tuple[np.ndarray, np.ndarray] | tuple[()]:
+    """Return the inner sample of an inner/outer design; nothing if its factors are correlated and so not stratified.
+
+    Returns
+    -------
+    Quantiles (of a list: index of its value), shape (samples, inner factors), and which of them are ordered.
+    """
+    if correlated_pairs(design):
+        return ()
+    names = list(design.factors)
+    chosen = [names.index(name) for name in design.meta["inner"]]
+    longest = max(design.points, key=lambda rows: rows.stop - rows.start)
+    return design.places[longest, chosen], design.ordered[chosen]
+
+
+def _levels(factor: Factor, values: np.ndarray) -> Iterator[Level]:
+    """Yield the levels of a factor, or classes with equally many rows of a number that has more than `MOST_LEVELS`."""
+    if not factor.numeric:
+        texts = np.array([in_words(factor.name, value) for value in values])
+        for text in dict.fromkeys(texts.tolist()):
+            yield Level(factor.name, np.nan, np.nan, text, texts == text)
+        return
+    kinds, index = np.unique(values, return_inverse=True)
+    if len(kinds) > MOST_LEVELS:
+        index = ((stats.rankdata(values, "min") - 1) * CLASSES / len(values)).astype(int)
+    for k in np.unique(index):
+        own = values[index == k]
+        yield Level(factor.name, float(own.min()), float(own.max()), "", index == k)
+
+
+def _coordinates(
+    names: list[str], columns: list[Output], wanted: Mapping[str, Mapping[str, float]], levels: list[Level]
+) -> dict[str, Any]:
+    words = [c.long_name for c in columns] + ["all targets"] * (len(names) - len(columns))
+    units = [c.units for c in columns] + ["1"] * (len(names) - len(columns))
+    limits = [wanted.get(name, {}) for name in names]
+    return {
+        "target": np.array(names, dtype=str),
+        "target_name": ("target", np.array(words, dtype=str)),
+        "target_units": ("target", np.array(units, dtype=str)),
+        "target_min": ("target", np.array([limit.get("min", np.nan) for limit in limits], dtype=float)),
+        "target_max": ("target", np.array([limit.get("max", np.nan) for limit in limits], dtype=float)),
+        **{
+            f"level_{key}": ("target_level", np.array([getattr(level, key) for level in levels], dtype=kind))
+            for key, kind in (("factor", str), ("low", float), ("high", float), ("text", str))
+        },
+        "level_rows": ("target_level", np.array([level.rows.sum() for level in levels], dtype=int)),
+    }
+
+
+def most_apart(part: xr.Dataset) -> tuple[int, int] | None:
+    """Return the levels with the least and the largest probability of the factor whose levels differ most.
+
+    None if their intervals meet, so that the difference may be chance.
+    """
+    best: tuple[float, int, int] | None = None
+    if "level_probability" not in part:
+        return None
+    share, low, high = estimate(part, "level_probability")
+    for name in dict.fromkeys(part["level_factor"].values.tolist()):
+        own = np.flatnonzero(part["level_factor"].values == name)
+        least, most = int(own[np.argmin(share[own])]), int(own[np.argmax(share[own])])
+        apart = share[most] - share[least]
+        if apart > 0 and not high[least] >= low[most] and (best is None or apart > best[0]):
+            best = float(apart), least, most
+    return None if best is None else best[1:]
