@@ -124,7 +124,8 @@ class Case(_Numbers):
     >>> tr.Case(contact_angle=95)
     Traceback (most recent call last):
     trackroller.errors.InputError: contact_angle = 95 is not usable. Allowed: a number for the contact \
-angle [deg], >= 1e-06 deg, < 90 deg, finite
+angle [deg], >= 1e-06 deg, < 90 deg, finite. \
+Write a number that is allowed, such as 30.
     """
 
     not_given: ClassVar[tuple[str, ...]] = ()
