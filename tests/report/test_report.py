@@ -20,8 +20,9 @@ from trackroller.report.figures.study import draw_all
 from trackroller.report.pages.study import contents, models_used, write_report
 from trackroller.report.tables.inputs import Row
 from trackroller.report.words.cases import occurrence, regime_table, validity_table
+from trackroller.study.store.digests import record_digest
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.ownership import MADE_BY, record_digest
+from trackroller.study.store.ownership import MADE_BY
 from trackroller.study.store.seal import put, put_text
 
 FACTORS = {

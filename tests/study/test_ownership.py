@@ -27,9 +27,9 @@ from trackroller.files import sha256
 from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import ownership
+from trackroller.study.store import digests, ownership
+from trackroller.study.store.digests import record_digest
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.ownership import record_digest
 from trackroller.study.store.plan import working_plan
 from trackroller.study.store.seal import put_text
 from trackroller.yaml_file import parse_mapping
@@ -493,6 +493,22 @@ def test_a_run_on_a_copy_with_other_dates_changes_no_byte_of_it(finished, solved
     after = snapshot(ROOT)
     assert [name for name in before if before[name] != after.get(name)] == [] and before.keys() == after.keys()
     assert sum(solved().values()) == 0 and command(("verify", "results/edited"))[0] == 0
+
+
+def test_records_are_read_once_for_all_files(finished, monkeypatch):
+    read: list[Path] = []
+    known = digests.read_record
+
+    def noted(record):
+        read.append(record)
+        return known(record)
+
+    monkeypatch.setattr(digests, "read_record", noted)
+    ownership.free_for_workflow(ROOT, print)
+    assert len(read) == len({*read}) >= 5
+    read.clear()
+    ownership.delete_study(ROOT)
+    assert len(read) == len({*read}) >= 5 and not ROOT.exists()
 
 
 # folders of earlier versions

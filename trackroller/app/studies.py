@@ -33,6 +33,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
 from trackroller.study.store import ownership
+from trackroller.study.store.digests import read_record
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.seal import altered, check_sealed
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
@@ -146,7 +147,7 @@ def _write_text(name: str, text: str, folder: StudyFolder) -> None:
     The page wrote or read what stands in its own record, and what the study was planned from.
     """
     path, record = TEXTS / f"{name}.yaml", WRITTEN / "studies.sha256"
-    known = ownership.read_record(record)[1]
+    known = read_record(record)[1]
     planned = {one["sha256"] for one in folder.record().get("inputs", {}).values()}
     if os.path.lexists(path) and (path.is_symlink() or not path.is_file() or path.read_bytes() != text.encode()):
         if path.is_symlink() or not path.is_file() or sha256(path) not in known.get(path.name, set()) | planned:

@@ -19,8 +19,8 @@ import xarray as xr
 from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
+from trackroller.study.store.digests import sums_up
 from trackroller.study.store.identity import chunk_name
-from trackroller.study.store.ownership import sums_up
 from trackroller.study.store.ownership import write as write_own
 from trackroller.study.store.seal import too_large
 

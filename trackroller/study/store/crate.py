@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import json
 import mimetypes
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -23,9 +23,9 @@ from trackroller.errors import InputError
 from trackroller.files import sha256
 from trackroller.roller.differences import Difference, compare
 from trackroller.study.store import ownership
+from trackroller.study.store.digests import METADATA, crate_graph
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.inputs import study_of_folder
-from trackroller.study.store.ownership import METADATA
 from trackroller.study.store.provenance import versions
 from trackroller.study.store.seal import REPORT, check_sealed, is_sealed, put_text, read_result, recorded
 
@@ -73,11 +73,7 @@ def write_crate(root: Path) -> Path:
 
 def _end_of_run(root: Path) -> str:
     """Return when the run ended that the crate of a folder describes, '' without a crate."""
-    try:
-        graph = json.loads((root / METADATA).read_text(encoding="utf-8"))["@graph"]
-        return next((str(entry["endTime"]) for entry in graph if entry.get("@id") == "#run"), "")
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        return ""
+    return next((str(entry.get("endTime", "")) for entry in crate_graph(root) if entry.get("@id") == "#run"), "")
 
 
 def _text(study: Study, root: Path, inputs: list[str], results: list[str], ended: str) -> str:
@@ -140,6 +136,12 @@ def _graph(study: Study, root: Path, inputs: list[str], results: list[str], ende
     ]
 
 
+def _kinds(entry: Mapping[str, Any]) -> list[Any]:
+    """Return the types of an entry, which states one or a list of them."""
+    kinds = entry.get("@type", [])
+    return kinds if isinstance(kinds, list) else [kinds]
+
+
 def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
     """Return the files that a crate lists, by their path from its root.
 
@@ -151,16 +153,12 @@ def read_crate(root: Path | str) -> dict[str, dict[str, Any]]:
         If the metadata file was altered after it was written.
     """
     ownership.check_readable(Path(root))
-    path = check_sealed(Path(root) / METADATA)
-    try:
-        graph = json.loads(path.read_text(encoding="utf-8"))["@graph"]
-        files = {
-            str(e["@id"]): e for e in graph if "File" in ([e["@type"]] if isinstance(e["@type"], str) else e["@type"])
-        }
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
+    check_sealed(Path(root) / METADATA)
+    files = {str(entry.get("@id")): entry for entry in crate_graph(Path(root)) if "File" in _kinds(entry)}
+    if not files:
         remedy = "Give a folder results/NAME of a study that was run to its end."
         wrong = f"holds no readable {METADATA}"
-        raise InputError("crate", str(root), "a study that was run to its end", remedy, wrong) from None
+        raise InputError("crate", str(root), "a study that was run to its end", remedy, wrong)
     for name in files:
         if Path(name).is_absolute() or ".." in Path(name).parts:
             raise InputError(

@@ -14,8 +14,9 @@ from typing import IO, Any
 
 from trackroller.errors import InputError
 from trackroller.files import check_utf_8, disk_error, open_here, try_lock, why_not
-from trackroller.study.store import ownership
-from trackroller.study.store.ownership import MADE_BY, record_digest
+from trackroller.study.store import digests, ownership
+from trackroller.study.store.digests import record_digest
+from trackroller.study.store.ownership import MADE_BY
 from trackroller.study.store.seal import is_sealed, read_result
 from trackroller.study.store.sources import solver_digest
 from trackroller.yaml_file import parse_mapping
@@ -119,7 +120,7 @@ class StudyFolder:
         Only the sole holder of the lock does so, unless a process of an earlier version holds it.
         """
         for _ in range(100):
-            known = ownership.mark(self.root)
+            known = digests.mark(self.root)
             if MADE_BY.items() <= known.items():
                 return
             with open(self.lock, "rb+") as lock:
@@ -135,7 +136,7 @@ class StudyFolder:
 
     def record(self) -> dict[str, Any]:
         """Return the record of the plan; {} if there is none, it was altered, or its format is not this version's."""
-        record = ownership.mark(self.root)
+        record = digests.mark(self.root)
         return record if record.pop("store_format", None) == STORE_FORMAT else {}
 
     @property

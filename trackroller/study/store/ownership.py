@@ -18,8 +18,6 @@ from __future__ import annotations
 
 import contextlib
 import functools
-import hashlib
-import json
 import os
 import re
 import shutil
@@ -27,7 +25,6 @@ import stat
 import warnings
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 from trackroller.errors import InputError
 from trackroller.files import (
@@ -37,11 +34,24 @@ from trackroller.files import (
     refuse_link,
     refuse_links,
     scratch_name,
-    sha256,
     write_whole,
 )
+from trackroller.study.store.digests import (
+    LONE,
+    MARK,
+    METADATA,
+    OUTDATED,
+    Digests,
+    digest_of_file,
+    listed,
+    mark,
+    of_crate,
+    read_record,
+    record_of,
+    sums_up,
+)
 
-MARK, METADATA, ASIDE, UNFINISHED = "plan.json", "ro-crate-metadata.json", "aside", "unfinished"
+ASIDE, UNFINISHED = "aside", "unfinished"
 MADE_BY = {"made_by": "trackroller"}  # in the mark of each folder whose results have records, also outdated ones
 PAGES = ("sensitivity.nc", "report.html", "figures", "tables", "explorer.html")
 RESULTS = ("design.nc", "study.nc", METADATA, "designs.csv", "inputs", "page.log", *PAGES)
@@ -50,9 +60,6 @@ NAMED = re.compile(rf"plan\.json|{CASES.pattern}|plan/({'|'.join(map(re.escape, 
 _TEMPORARY = r"\.[^/]+\.\d+-[0-9a-f]{16}\.tmp"
 SCRATCH = re.compile(rf"([^/]+/)*{_TEMPORARY}")
 NOTES = "plan/scratch.txt"  # names of the temporary files of processes that run or were killed
-LONE = ".trackroller.sha256"  # record of a folder of figures that lies in no study
-OUTDATED = "# outdated\n"  # first line of the record of a result that is not, or not yet, the newest one
-LINE = re.compile(r"(?P<digest>[0-9a-f]{64})  (?P<name>[^\n]+)\n")
 UNKNOWN = "0" * 64  # stands in a record for a file of an earlier version, which kept no digest of it
 _STAMP = rb"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d,\d{3} "
 FORMS = {  # name -> content
@@ -75,31 +82,6 @@ _noted: dict[str, tuple[int, set[str]]] = {}  # lines that this process has writ
 Tell = Callable[[str], object]
 
 
-def mark(root: Path) -> dict[str, Any]:
-    """Return what `plan.json` of a folder says; {} if there is none, or it does not fit its digest."""
-    path = root / MARK
-    try:
-        state = os.lstat(path)
-        return dict(_mark(path, (state.st_ino, state.st_mtime_ns, state.st_size, state.st_mode)))
-    except OSError:
-        return {}
-
-
-@functools.lru_cache(64)  # each chunk asks for it, and that of a large study has megabytes
-def _mark(path: Path, state: tuple[int, ...]) -> dict[str, Any]:
-    try:
-        with open_here(path, "rb") as stream:
-            record = json.load(stream)
-        return record if record.pop("digest") == record_digest(record) else {}
-    except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
-        return {}
-
-
-def record_digest(record: dict[str, Any]) -> str:
-    """Return the digest of a record, which stands in it as `digest`."""
-    return hashlib.sha256(json.dumps(record, sort_keys=True).encode()).hexdigest()
-
-
 def is_study(root: Path) -> bool:
     """Return whether a folder is that of a study: by its mark, or by what stands in it."""
     return bool(mark(root)) or any(_evidence(root))
@@ -110,7 +92,7 @@ def _evidence(root: Path) -> Iterator[bool]:
     yield any(_proved_alone(root, path) for place in ("plan", "chunks") for path in sorted((root / place).glob("*.nc")))
     yield any(read_record(path)[1] for path in (root / "plan").glob("*.sha256"))
     stored = root / "inputs" / "study.yaml"
-    yield stored.is_file() and _of_crate(root).get("inputs/study.yaml") == _digest(stored)
+    yield stored.is_file() and of_crate(root).get("inputs/study.yaml") == digest_of_file(stored)
     files, scratch = files_below(root), _scratch_of(root)
     begun = {root / "plan" / ".lock", root / ".page.lock"} & {*files}
     names = {file: file.relative_to(root).as_posix() for file in files if scratch.isdisjoint(_within(root, file))}
@@ -176,32 +158,6 @@ def root_of(path: Path) -> Path | None:
     return None
 
 
-def record_of(root: Path, path: Path) -> Path:
-    """Return the file with the digests of a result of a study, in the format of `sha256sum`."""
-    return root / "plan" / f"{path.relative_to(root).as_posix().replace('/', '.')}.sha256"
-
-
-def read_record(record: Path) -> tuple[bool, dict[str, set[str]]]:
-    """Return whether a record of digests is that of the newest result, and the digests by file.
-
-    A file has several digests while it is replaced. Files are named as the record names them, without '../'. A record
-    that names a file outside its folder is not ours.
-    """
-    try:
-        with open_here(record, "rb") as stream:
-            text = stream.read().decode()
-    except (OSError, ValueError):
-        return False, {}
-    lines, names = text.removeprefix(OUTDATED), dict[str, set[str]]()
-    if LINE.sub("", lines):
-        return False, {}
-    for line in LINE.finditer(lines):
-        names.setdefault(line["name"].removeprefix("../"), set()).add(line["digest"])
-    if any(Path(name).is_absolute() or ".." in Path(name).parts for name in names):
-        return False, {}
-    return not text.startswith(OUTDATED), names
-
-
 def write_record(record: Path, names: dict[str, set[str]], current: bool) -> None:
     """Write a record of digests; `current` says whether it is that of the newest result."""
     above = "../" if record.parent.name == "plan" else ""
@@ -209,21 +165,12 @@ def write_record(record: Path, names: dict[str, set[str]], current: bool) -> Non
     write_text(record, "".join(["" if current else OUTDATED, *lines]))
 
 
-def listed(root: Path) -> dict[str, set[str]]:
-    """Return the digests of all files in the records of a study, by their path in its folder."""
-    known: dict[str, set[str]] = {}
-    for record in (*sorted((root / "plan").glob("*.sha256")), root / LONE):
-        for name, digests in read_record(record)[1].items():
-            known.setdefault(name, set()).update(digests)
-    return known
-
-
-def proved(root: Path, path: Path) -> bool:
-    """Return whether a file has the content that this program gave it."""
+def proved(root: Path, path: Path, known: Digests | None = None) -> bool:
+    """Return whether a file has the content that this program gave it; `known` are the digests in the records."""
     if _proved_alone(root, path):
         return True
-    digests = listed(root).get(path.relative_to(root).as_posix(), set())
-    return bool(digests) and _digest(path) in digests
+    digests = (listed(root) if known is None else known).get(path.relative_to(root).as_posix(), set())
+    return bool(digests) and digest_of_file(path) in digests
 
 
 def _proved_alone(root: Path, path: Path) -> bool:
@@ -242,25 +189,12 @@ def _proved_alone(root: Path, path: Path) -> bool:
     return False
 
 
-def sums_up(content: bytes) -> bool:
-    """Return whether the last 32 bytes of a file are the SHA-256 of the bytes before them."""
-    return hashlib.sha256(content[:-32]).digest() == content[-32:]
-
-
-def _digest(path: Path) -> str:
-    """Return the digest of a regular file, '' for anything else."""
-    try:
-        return sha256(path) if stat.S_ISREG(os.lstat(path).st_mode) else ""
-    except OSError:
-        return ""
-
-
 def files_below(root: Path) -> list[Path]:
     """Return all files below a folder, in order."""
     return sorted(Path(place, name) for place, _, names in os.walk(root) for name in names)
 
 
-def standing(path: Path, root: Path | None = None, same: str = "") -> bool:
+def standing(path: Path, root: Path | None = None, same: str = "", known: Digests | None = None) -> bool:
     """Return whether a file of a study may be replaced as it stands, True also if there is none or no study.
 
     Parameters
@@ -271,6 +205,8 @@ def standing(path: Path, root: Path | None = None, same: str = "") -> bool:
         The folder of its study; found if it is not given. Nothing is checked outside of studies.
     same : str
         Digest of the new content; a file that has it already is in nobody's way.
+    known : dict, optional
+        The digests in the records of the study; read if they are not given.
 
     Returns
     -------
@@ -295,10 +231,11 @@ def standing(path: Path, root: Path | None = None, same: str = "") -> bool:
         raise InputError("results folder", str(path.parent), "a folder", "Move the file away.", "is a file") from None
     if stat.S_ISDIR(before.st_mode):
         raise InputError(path.name, str(path), "a file", "Move the folder away.", "is a folder")
-    if ((same and _digest(path) == same) or proved(root, path)) and _unchanged(path, before):
+    known = listed(root) if known is None else known
+    if ((same and digest_of_file(path) == same) or proved(root, path, known)) and _unchanged(path, before):
         return True
     name = path.relative_to(root).as_posix()
-    if not NAMED.fullmatch(name) and name not in listed(root) and not _has_damaged_record(root, path):
+    if not NAMED.fullmatch(name) and name not in known and not _has_damaged_record(root, path):
         remedy, wrong = "Move the file away or rename it, then start again.", "is in no record of this study"
         raise InputError("results folder", str(path), "a file that trackroller wrote", remedy, wrong)
     return False
@@ -311,10 +248,12 @@ def _has_damaged_record(root: Path, path: Path) -> bool:
     return os.path.lexists(record) and not _proved_alone(root, record)
 
 
-def make_way(path: Path, root: Path | None = None, tell: Tell = warnings.warn, same: str = "") -> None:
+def make_way(
+    path: Path, root: Path | None = None, tell: Tell = warnings.warn, same: str = "", known: Digests | None = None
+) -> None:
     """Make sure that a file of a study may be written: what was changed moves to `aside/`, see `standing`."""
     root = root or root_of(path)
-    if root is not None and not standing(path, root, same):
+    if root is not None and not standing(path, root, same, known):
         tell(f"{path} was altered after it was written: it is kept as {set_aside(root, path)}")
 
 
@@ -343,14 +282,14 @@ def set_aside(root: Path, path: Path) -> Path:
     return goal
 
 
-def remove(path: Path, root: Path | None = None) -> bool:
-    """Remove a file of a study if it is ours and unchanged, and return whether it is gone."""
+def remove(path: Path, root: Path | None = None, known: Digests | None = None) -> bool:
+    """Remove a file of a study if it is ours and unchanged, see `proved`, and return whether it is gone."""
     root = root or root_of(path)
     try:
         before = os.lstat(path)
     except OSError:
         return True
-    if root is None or not (proved(root, path) and _unchanged(path, before)):
+    if root is None or not (proved(root, path, known) and _unchanged(path, before)):
         return False
     path.unlink(missing_ok=True)
     return True
@@ -427,7 +366,7 @@ def adopt(root: Path) -> None:
     if MADE_BY.items() <= mark(root).items():
         return
     stored = mark(root).get("inputs", {})
-    known = _of_crate(root) | {f"inputs/{name}": str(one["sha256"]) for name, one in stored.items()}
+    known = of_crate(root) | {f"inputs/{name}": str(one["sha256"]) for name, one in stored.items()}
     for result in (*RESULTS, *(f"{UNFINISHED}/{page}" for page in PAGES)):
         path = root / result
         record = record_of(root, path)
@@ -441,8 +380,8 @@ def adopt(root: Path) -> None:
 
 def _own_digest(root: Path, path: Path) -> str:
     """Return the digest of a page or a crate that an earlier version wrote without a record, otherwise `UNKNOWN`."""
-    ours = is_page(path) or (path.name == METADATA and "inputs/study.yaml" in _of_crate(root))
-    return _digest(path) if ours else UNKNOWN
+    ours = is_page(path) or (path.name == METADATA and "inputs/study.yaml" in of_crate(root))
+    return digest_of_file(path) if ours else UNKNOWN
 
 
 def is_page(path: Path) -> bool:
@@ -451,16 +390,6 @@ def is_page(path: Path) -> bool:
         head = stream.read(4096)
         return head.startswith(b"<!doctype html>") and any(title in head for title in _TITLES)
     return False
-
-
-def _of_crate(root: Path) -> dict[str, str]:
-    """Return the digests of the files that the crate of a folder lists, {} if there is no crate."""
-    try:
-        with open_here(root / METADATA, "rb") as stream:
-            graph = json.load(stream)["@graph"]
-        return {str(entry["@id"]): str(entry["sha256"]) for entry in graph if "sha256" in entry}
-    except (OSError, ValueError, KeyError, TypeError, RecursionError):
-        return {}
 
 
 def free_for_workflow(root: Path, tell: Tell) -> None:
@@ -472,12 +401,13 @@ def free_for_workflow(root: Path, tell: Tell) -> None:
     paths = [root / name for name in ("design.nc", "study.nc", "sensitivity.nc", "report.html", METADATA)]
     paths += [*(root / "plan").glob("*.solved"), *([] if figures.is_dir() else [figures])]
     paths += [file for place in ("figures", "logs", "looks") for file in files_below(root / place)]
-    changed = [path for path in paths if not standing(path, root)]
+    known = listed(root)
+    changed = [path for path in paths if not standing(path, root, known=known)]
     for path in changed:
-        make_way(path, root, tell)
+        make_way(path, root, tell, known=known)
     if any(figures in path.parents for path in changed):  # the other figures must go too, or none is drawn again
         for path in files_below(figures):
-            remove(path, root)
+            remove(path, root, known)
         remove_empty(figures)
 
 
@@ -490,8 +420,8 @@ def delete_study(root: Path) -> None:
         If the folder is not that of a study, or holds a file of somebody else; nothing is deleted then.
     """
     check(root)
-    scratch, files = _scratch_of(root), files_below(root)
-    foreign = [path for path in files if scratch.isdisjoint(_within(root, path)) and not proved(root, path)]
+    scratch, files, known = _scratch_of(root), files_below(root), listed(root)
+    foreign = [path for path in files if scratch.isdisjoint(_within(root, path)) and not proved(root, path, known)]
     if foreign:
         names = ", ".join(str(path.relative_to(root)) for path in foreign[:4])
         more = f" and {len(foreign) - 4} more" if len(foreign) > 4 else ""
@@ -501,7 +431,7 @@ def delete_study(root: Path) -> None:
     sweep(root)
     # the records and the mark prove what the other files are, so they go last
     for path in sorted(files, key=lambda path: (path == root / MARK, path.suffix == ".sha256")):
-        remove(path, root)
+        remove(path, root, known)
     remove_empty(root)
 
 

@@ -32,7 +32,7 @@ from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
 from trackroller.study.file.load import without_former
-from trackroller.study.store import chunks, ownership
+from trackroller.study.store import chunks, digests, ownership
 from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
 from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
 from trackroller.study.store.inputs import store_inputs
@@ -307,7 +307,7 @@ def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    for path in (folder.design, folder.gathered, folder.root / ownership.METADATA):
+    for path in (folder.design, folder.gathered, folder.root / digests.METADATA):
         ownership.make_way(path, folder.root, lambda line: tell(f"{line}, and made anew"))
     inventory = _sound_inventory(folder, tell)
     if rerun_failed:

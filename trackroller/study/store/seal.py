@@ -1,15 +1,13 @@
-"""Record the digests of results, and compare a result with its digest before it is read.
+"""Write results with their digests, and compare a result with its digest before it is read.
 
-The SHA-256 of each result stands in `plan/NAME.sha256`, in the format of `sha256sum`; a folder such as `figures/` has a
-line for each file. The record also says that the result is ours, see `trackroller.study.store.ownership`. A result
-without such a record is compared with the RO-Crate beside it, if there is one. A lone netCDF file has neither and is
-read as it is.
+Each result has a record, see `trackroller.study.store.digests`; a folder such as `figures/` has a line for each file.
+A result without a record is compared with the RO-Crate beside it, if there is one. A lone netCDF file has neither and
+is read as it is.
 """
 
 from __future__ import annotations
 
 import contextlib
-import json
 import math
 import os
 import shutil
@@ -20,9 +18,19 @@ import netCDF4
 import xarray as xr
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import check_place, disk_errors, flush, is_link, memory, scratch_name, sha256, sync_folder
+from trackroller.files import check_place, disk_errors, flush, memory, scratch_name, sha256, sync_folder
 from trackroller.study.store import ownership
-from trackroller.study.store.ownership import METADATA, read_record, write_record
+from trackroller.study.store.digests import (
+    LONE,
+    METADATA,
+    OUTDATED,
+    digest_of_file,
+    listed,
+    of_crate,
+    read_record,
+    record_of,
+)
+from trackroller.study.store.ownership import write_record
 
 ANY_BYTES = 1_000_000_000  # any file may declare so many bytes
 MOST_PACKED = 200  # bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
@@ -33,7 +41,7 @@ REPORT = ("sensitivity.nc", "report.html", "figures", "tables")  # what is made 
 def _place(path: Path) -> tuple[Path, Path]:
     """Return the folder that the record of a result names files from, and the record."""
     root = ownership.root_of(path) or path.parent
-    return root, ownership.record_of(root, path)
+    return root, record_of(root, path)
 
 
 def files_of(path: Path) -> list[Path]:
@@ -85,14 +93,15 @@ def _put(path: Path, beside: Path, root: Path | None) -> None:
         sync_folder(path.parent)
         return
     home = root or path  # a folder of figures in no study keeps its own record
-    record = ownership.record_of(root, path) if root else path / ownership.LONE
+    record = record_of(root, path) if root else path / LONE
     files = ownership.files_below(beside) if folder else [beside]
     made = {path / file.relative_to(beside) if folder else path: file for file in files}
     digests = {goal: sha256(file) for goal, file in made.items()}
+    known = listed(home)
     for goal, digest in digests.items():
-        ownership.standing(goal, home, digest)
+        ownership.standing(goal, home, digest, known)
     new = {goal.relative_to(home).as_posix(): {digest} for goal, digest in digests.items()}
-    if read_record(record) == (True, new) and all(_same(goal, digest) for goal, digest in digests.items()):
+    if read_record(record) == (True, new) and all(digest_of_file(goal) == digest for goal, digest in digests.items()):
         return  # what stands there keeps its date
     ownership.make_way(record, home)
     old = read_record(record)[1]
@@ -101,21 +110,17 @@ def _put(path: Path, beside: Path, root: Path | None) -> None:
         discard(path.parent / METADATA)
     if folder:
         path.mkdir(exist_ok=True)
+    known = listed(home)
     for goal, file in made.items():
         goal.parent.mkdir(parents=True, exist_ok=True)
         flush(file)
-        ownership.make_way(goal, home, same=digests[goal])
+        ownership.make_way(goal, home, same=digests[goal], known=known)
         os.replace(file, goal)
     for name in old.keys() - new.keys():
-        ownership.remove(home / name, home)
+        ownership.remove(home / name, home, known)
     for place in {goal.parent for goal in made}:
         sync_folder(place)
     write_record(record, new, current=True)
-
-
-def _same(path: Path, digest: str) -> bool:
-    """Return whether a file has a digest already."""
-    return path.is_file() and not is_link(path) and sha256(path) == digest
 
 
 def put(path: Path, save: Callable[[Path], object]) -> Path:
@@ -133,7 +138,7 @@ def put_text(path: Path, text: str) -> Path:
 def forget_report(root: Path) -> None:
     """Mark analysis, figures and report as outdated: they were made from earlier results of the study."""
     for name in REPORT:
-        current, names = read_record(record := ownership.record_of(root, root / name))
+        current, names = read_record(record := record_of(root, root / name))
         if current:
             write_record(record, names, current=False)
 
@@ -142,7 +147,7 @@ def discard(path: Path) -> None:
     """Remove a result and its record, if there is one; it does not look lost."""
     ownership.clear(path)
     if (root := ownership.root_of(path)) is not None:
-        ownership.remove(ownership.record_of(root, path), root)
+        ownership.remove(record_of(root, path), root)
 
 
 def recorded(path: Path) -> dict[str, str] | None:
@@ -158,7 +163,7 @@ def recorded(path: Path) -> dict[str, str] | None:
     except (OSError, UnicodeDecodeError):
         return {}
     known = {name: min(digests) for name, digests in read_record(record)[1].items()}
-    return None if text.startswith(ownership.OUTDATED) else known
+    return None if text.startswith(OUTDATED) else known
 
 
 def altered(path: Path) -> str | None:
@@ -220,11 +225,7 @@ def digest_of(path: Path) -> str | None:
     """
     if known := recorded(path):
         return known.get(path.name, "")
-    try:
-        graph = json.loads((path.parent / METADATA).read_text(encoding="utf-8"))["@graph"]
-        return next((str(entry["sha256"]) for entry in graph if entry.get("@id") == path.name), None)
-    except (OSError, ValueError, KeyError, TypeError, AttributeError, RecursionError):
-        return None
+    return of_crate(path.parent).get(path.name)
 
 
 def read_result(path: Path | str) -> xr.Dataset:
