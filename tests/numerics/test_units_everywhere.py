@@ -12,6 +12,7 @@ from trackroller.roller.duty import checked_duty
 from trackroller.roller.options import Options
 from trackroller.roller.point_files import read_points
 from trackroller.roller.stop import parse_condition
+from trackroller.study.file.goals import unit_of
 
 HEAD = {"name": "t", "factors": {"axial_force": {"values": [0, 10]}}, "outputs": ["contact", "peak_stress", "life"]}
 
@@ -99,8 +100,7 @@ def test_a_wrong_unit_of_a_target_is_refused(target, named):
 def test_quantities_in_constraints_become_numbers(text, plain):
     constraint = tr.load_study({**HEAD, "outputs": ["forces", "contact", "peak_stress"], "constraints": []})
     assert constraint.config.constraints == ()
-    units = {"max_pressure": "MPa", "peak_stress": "MPa", "slip": "1", "axial_force": "N"}
-    assert without_units(text, units.get, "constraints") == plain
+    assert without_units(text, unit_of, "constraints") == plain
 
 
 def test_constraints_and_stop_if_take_units():

@@ -430,10 +430,9 @@ def test_outputs_of_a_solved_case_join_contacts_and_bodies():
     np.testing.assert_allclose(found["peak_stress_roller"].values, stress[:, :, 0].max(axis=1))
     (one,) = outputs(ds, ["velocity"], ["peak_stress_guide_2"])
     np.testing.assert_allclose(one.values, stress[:, 1, 1])
-    with pytest.raises(InputError, match="Did you mean 'peak_stress'"):
-        outputs(ds, ["velocity"], ["peak_stres"])
-    with pytest.raises(InputError, match="Choose a contact"):
-        outputs(ds, ["velocity"], ["peak_stress"])
+    for name in ("peak_stres", "peak_stress"):
+        with pytest.raises(InputError, match="peak_stress_roller"):
+            outputs(ds, ["velocity"], [name])
 
 
 def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):

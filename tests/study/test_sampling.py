@@ -175,7 +175,7 @@ def test_expressions_compute_what_they_say():
     [
         ("__import__('os').system('true')", "character 1"),
         ("a.real", "names joined by a point at character 1"),
-        ("a[0]", "subscript"),
+        ("a[0]", "neither arithmetic nor a comparison"),
         ("(lambda: a)()", "character 1"),
         ("[x for x in a]", "neither arithmetic nor a comparison at character 1"),
         ("a if a else a", "if and else at character 1"),
@@ -255,7 +255,7 @@ def test_one_parser_serves_factors_constraints_and_stop_conditions():
     np.testing.assert_array_equal(found, [[True, False, False], [False, False, False]])
     with pytest.raises(InputError, match="joined by 'or'"):
         comparisons("slip > 0.1 and slip < 0.2", "stop_if")
-    with pytest.raises(InputError, match="holds subscript"):
+    with pytest.raises(InputError, match="neither arithmetic nor a comparison"):
         evaluate("(slip + 1)[1]", values)
 
 

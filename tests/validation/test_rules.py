@@ -42,8 +42,8 @@ def test_each_program_has_a_small_instance():
 
 
 def test_rules_name_the_room_in_which_their_result_is_made():
-    assert rooms("workflow/rules/show.smk") == ["analysis", "report", "report", "study"]
+    assert rooms("workflow/rules/show.smk") == ["results", "report", "report", "study"]
     assert rooms("workflow/rules/solve.smk") == ["study", "study"]
-    assert rooms("workflow/rules/until.smk") == ["analysis", "analysis"]
-    assert rooms("workflow/rules/search.smk") == ["analysis"]
-    assert rooms("validation/Snakefile") == ["analysis", "analysis"], "the table of creep forces has a room of its own"
+    assert rooms("workflow/rules/until.smk") == ["results", "results"]
+    assert rooms("workflow/rules/search.smk") == ["results"]
+    assert rooms("validation/Snakefile") == ["results", "results"], "the table of creep forces has a room of its own"

@@ -12,7 +12,6 @@ import numpy as np
 import xarray as xr
 
 from trackroller.methods import METHODS, Method
-from trackroller.parameters import BODIES
 
 ENDS = ("low", "high")
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
@@ -99,13 +98,13 @@ def decisive(sens: xr.Dataset, output: str) -> bool:
     return bool(order(sens, output)) and used_share(sens, output) >= USABLE
 
 
-def ranked_factors(sens: xr.Dataset | None, column: str, among: Sequence[str]) -> dict[str, float]:
+def ranked_factors(sens: xr.Dataset | None, output: str, among: Sequence[str]) -> dict[str, float]:
     """Return the size of the headline index of some factors, the largest first.
 
     Parameters
     ----------
     sens : analysis of the study, None without one
-    column : output by its name in the analysis, or by its column in `Results.table` such as `peak_stress_roller`
+    output : name of an output, such as `peak_stress_roller`
     among : names of the factors, in the order of the study file
 
     Returns
@@ -113,8 +112,6 @@ def ranked_factors(sens: xr.Dataset | None, column: str, among: Sequence[str]) -
     Factor and size [share of variance, or unit of the output]. Without an index of the output: 0 for every factor, in
     the order of the study file, because no factor is known to decide.
     """
-    quantity, _, body = column.rpartition("_")
-    output = f"{body}_{quantity}" if body in BODIES else column
     size = dict.fromkeys(among, 0.0)
     if sens is not None and not robust_design(sens) and output in sens["output"].values:
         size |= {rank.factor: abs(rank.value) for rank in order(sens, output) if rank.factor in size}

@@ -49,7 +49,7 @@ _GROUPS = {
         ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N", LARGEST),
         ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N", LARGEST),
         ("error_over_tolerance", (), "1", "", "largest estimated error over its tolerance, if accuracy is a tolerance"),
-        ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN),
+        ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN | {"label": "longitudinal creepage"}),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
         ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track", _SHOWN),
         ("drive_torque", (), "N mm", "M_xR", "drive torque about the roller's axis, > 0 driving, eq. (10)", _SHOWN),

@@ -56,7 +56,7 @@ class Part:
             words = words.replace("the body", f"the {body}") if "the body" in words else f"{words} of the {body}"
         if contact:
             words += f" in contact {contact}"
-        elif self.variable.joined == "sum" and "contact" in self.variable.dims:
+        elif self.variable.joined == "sum":
             words += " of both contacts"
         return f"{words}: {LIMITS[limit].title}" if limit in LIMITS else words
 
