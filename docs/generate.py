@@ -1,11 +1,14 @@
-"""Write docs/parameters.md, the pages of docs/validation, and the table of the README.
+"""Write docs/parameters.md, the pages of docs/validation, the table of the README, and the nouns of CONTRIBUTING.
 
 `python docs/generate.py` writes; with `--check` it only compares and ends with 1 if a page is not up to date.
 """
 
 from __future__ import annotations
 
+import inspect
 import math
+import pkgutil
+import re
 import sys
 from pathlib import Path
 
@@ -19,6 +22,35 @@ from validation.pages import TEMPLATES
 from validation.pages import render as render_written
 
 FOLDER = Path(__file__).parent
+NOUNS = {  # what a stranger must know: the word, and the class whose docstring explains it
+    "parameter": "numerics.parameter.Parameter",
+    "option": "parameters.options.Option",
+    "output": "numerics.variable.Variable",
+    "part": "roller.output_names.Part",
+    "material": "materials.material.Material",
+    "contact model": "contact.protocol.ContactModel",
+    "limit": "damage.limit.Limit",
+    "method": "methods.method.Method",
+    "case": "roller.case.Case",
+    "study": "study.file.study.Study",
+    "factor": "methods.factor.Factor",
+    "design": "methods.method.Design",
+    "plan": "study.store.plan.Plan",
+    "inventory": "study.store.inventory.Inventory",
+    "spectrum": "study.spectrum.file.Spectrum",
+    "results": "results.results.Results",
+    "candidates": "results.candidates.Candidates",
+    "sentence": "report.words.sentence.Sentence",
+}
+WAY = (  # of a study: what makes the next thing of the one before, and the file that it writes
+    ("study.file.load.load_study", ""),
+    ("study.file.study.Study.drawn", ""),
+    ("study.store.plan.working_plan", ""),
+    ("study.solve.solve_chunk", "chunks/*.nc"),
+    ("study.store.gather.gather", "study.nc"),
+    ("results.stored_study.open_study", ""),
+    ("report.build.build_report", "report.html"),
+)
 USES = {"preview": "a first look", "standard": "studies", "reference": "to check `standard`; single cases"}
 HEAD = """# Parameters, options and results
 
@@ -144,6 +176,30 @@ def presets() -> str:
     return "\n".join(_table(heads, rows))
 
 
+def nouns() -> str:
+    """Return the table of nouns and the way of a study to its report, from docstrings and annotations."""
+    rows = []
+    for noun, place in NOUNS.items():
+        said = inspect.getdoc(pkgutil.resolve_name(f"trackroller.{place}")) or ""
+        sentence = said.partition("\n\n")[0].replace("\n", " ")
+        rows.append((noun, sentence, f"`{place.rpartition('.')[2]}` in `{_file(place)}`"))
+    lines = ["study.yaml"]
+    for place, written in WAY:
+        made = pkgutil.resolve_name(f"trackroller.{place}")
+        kind = inspect.signature(getattr(made, "func", made)).return_annotation
+        thing = written or re.sub(r"^Iterator\[(.*)\]$", r"\1", str(kind))
+        lines += [f"  |  {place.rpartition('.')[2]:<14} {_file(place)}", thing]
+    return "\n".join([*_table(("noun", "what it is", "where"), rows), "```", *lines, "```", ""])
+
+
+def _file(place: str) -> str:
+    """Return the file of a name such as 'study.file.study.Study.drawn'."""
+    parts = place.split(".")
+    while not (FOLDER.parent / "trackroller" / "/".join(parts)).with_suffix(".py").is_file():
+        parts.pop()
+    return "/".join(parts) + ".py"
+
+
 def pages() -> dict[Path, str]:
     """Return the path and the text of each page that this program writes."""
     place = FOLDER / "validation"
@@ -153,13 +209,14 @@ def pages() -> dict[Path, str]:
     before, _, rest = readme.read_text(encoding="utf-8").partition(START)
     table = render_written("readme.md").partition("\n")[2]  # without the remark on its first line
     written[readme] = f"{before}{START}{table}{END}{rest.partition(END)[2]}"
-    return {
-        FOLDER / "parameters.md": render(),
-        **written,
-    }
+    contributing = FOLDER.parent / "CONTRIBUTING.md"
+    before, _, rest = contributing.read_text(encoding="utf-8").partition(WORDS)
+    written[contributing] = f"{before}{WORDS}{nouns()}{END}{rest.partition(END)[2]}"
+    return {FOLDER / "parameters.md": render(), **written}
 
 
 START, END = "<!-- measured -->\n", "<!-- end -->\n"  # of the table in the README
+WORDS = "<!-- nouns -->\n"  # of the nouns in CONTRIBUTING
 
 
 def main(check: bool) -> int:

@@ -126,7 +126,7 @@ def worst(values: np.ndarray) -> np.ndarray:
 
 @dataclass(frozen=True)
 class Limit:
-    """A limit, declared once.
+    """What can end the life of a body, declared once.
 
     Parameters
     ----------

@@ -57,7 +57,7 @@ TAIL = 0.01  # quantile at which an unbounded distribution is cut in designs tha
 
 @dataclass(frozen=True)
 class Factor:
-    """A checked factor.
+    """What varies in a study, checked: a list, a distribution or an expression.
 
     Parameters
     ----------

@@ -13,7 +13,7 @@ LIFE = {"scale": "log10"}
 
 @dataclass(frozen=True)
 class Variable:
-    """A result variable.
+    """A result: its dimensions, unit, symbol and name.
 
     Parameters
     ----------

@@ -162,7 +162,7 @@ def force_error(
 
     The change from elements of twice the size alone is a poor estimate, because the coarse grid hardly resolves a small
     adhesion area. The formula was fitted to random designs; the error of 1 in 100 designs is larger; see
-    `validation.benchmarks.force_errors`.
+    `validation.benchmarks.kalker_errors`.
 
     Parameters
     ----------

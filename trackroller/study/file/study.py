@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Study:
-    """A checked study.
+    """What a study file says, checked.
 
     Parameters
     ----------

@@ -53,7 +53,7 @@ MOST_LEVELS = 3  # that the words for a chunk list
 
 @dataclass(frozen=True)
 class Plan:
-    """Chunks of a study.
+    """The chunks of a study, and which of them are open.
 
     Attributes
     ----------
