@@ -94,7 +94,7 @@ def available(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> 
     ]
 
 
-def _parts(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dict[str, Part]:
+def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dict[str, Part]:
     """Return the parts with one number a case of variables; a variable that is not declared takes its attributes."""
     found: dict[str, Part] = {}
     for name in names:
@@ -112,14 +112,14 @@ def _parts(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dict[
 def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the names of all outputs, those that are analysed by default first."""
     factors = list(factors)
-    names = [*default_names(ds, factors, dims), *_parts(ds, available(ds, factors, dims), dims)]
+    names = [*default_names(ds, factors, dims), *parts_in(ds, available(ds, factors, dims), dims)]
     return list(dict.fromkeys(names))
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the outputs that are analysed by default: those of `USUAL`, otherwise every scalar result."""
     free = available(ds, factors, dims)
-    known = _parts(ds, free, dims)
+    known = parts_in(ds, free, dims)
     names = [name for name in USUAL if name in known and np.isfinite(ds[known[name].variable.name]).any()]
     for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"life_cycles_{body}" in names:
@@ -224,7 +224,7 @@ def outputs(
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
-    known = _parts(ds, available(ds, factors, dims), dims)
+    known = parts_in(ds, available(ds, factors, dims), dims)
     columns = []
     for name in list(names) if names is not None else default_names(ds, factors, dims):
         if name not in known:

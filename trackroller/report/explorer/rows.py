@@ -19,13 +19,11 @@ from trackroller.results.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RES
 from trackroller.results.first_limits import first_limit
 from trackroller.results.groups import spaced_by_ratio
 from trackroller.results.results import Results
-from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.duty import years
-from trackroller.roller.output_names import parts_of
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
-from trackroller.study.outputs import Output, default_names, flat, outputs
+from trackroller.study.outputs import Output, default_names, flat, outputs, parts_in
 
 MOST_DETAILED = 20_000  # cases; a larger study shows only its factors and outputs, so that the file can be sent
 STATES = ("valid", "outside the model", "full slip", "lift-off", "failed", "not converged", "constraints not met")
@@ -157,9 +155,12 @@ def _output(one: Output, role: str, results: Results) -> Column:
 
 def _details(ds: xr.Dataset, dims: tuple[str, ...], known: set[str], results: Results) -> list[Column]:
     """Return figures of each contact and body, under names such as `peak_stress_roller_1`."""
-    there = [VARIABLES[n] for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)]
-    parts = [part for variable in there for part in parts_of(variable)]
-    names = [p.name for p in parts if p.name not in known and ("contact" in p.at or "contact" not in p.variable.dims)]
+    parts = parts_in(ds, [n for n in DETAILS if n in ds and set(ds[n].dims) >= set(dims)], dims)
+    names = [
+        p.name
+        for p in parts.values()
+        if p.name not in known and ("contact" in p.at or "contact" not in p.variable.dims)
+    ]
     return [_output(one, "detail", results) for one in _outputs(ds, dims, names)]
 
 
