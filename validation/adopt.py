@@ -110,8 +110,9 @@ def adopt(target: str, results: Path) -> None:
     data = folder / f"{target}.json"
     shutil.copy(data, DATA)
     if target in PICTURES:
-        copy_figures(folder / "figures", *PICTURES[target])
-        if target != "contact_models":  # its template writes the captions
+        of_study = target == "contact_models"  # a study has a folder of its own; its template writes the captions
+        copy_figures(folder / "study" / "figures" if of_study else folder / "figures", *PICTURES[target])
+        if not of_study:
             shutil.copy(folder / "figures" / "index.json", DATA / f"{target}_figures.json")
     if target == "tradeoff":
         ERRORS.write_text(errors(), encoding="utf-8")

@@ -39,7 +39,7 @@ def measure(rows: int = 100_000) -> dict[str, Any]:
     sys.path.insert(0, str(TESTS))
     browsers, made_up = import_module("browser"), import_module("synthetic_results")
     with tempfile.TemporaryDirectory() as folder, closing(browsers.Browser()) as browser:
-        written = write_explorer(made_up.view_of(made_up.sampled_study(rows)), Path(folder) / "explorer.html")
+        written = write_explorer(made_up.results_of(made_up.sampled_study(rows)), Path(folder) / "explorer.html")
         start = time.perf_counter()
         page = browser.open(written, before=READY)
         wall = time.perf_counter() - start

@@ -1,7 +1,7 @@
 """Solve and report the comparison of the contact models: python -m validation.contact_models FOLDER.
 
-The study is `validation/config/contact_models.yaml`; its name becomes that of the folder, and
-`contact_models.json` in it holds its errors. With `--small`, four designs at accuracy `preview` show that it runs.
+The study is `validation/config/contact_models.yaml`; its results stand in `FOLDER/study`, and
+`contact_models.json` holds its errors. With `--small`, four designs at accuracy `preview` show that it runs.
 """
 
 import json

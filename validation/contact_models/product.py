@@ -17,9 +17,9 @@ from trackroller.study.store.folder import StudyFolder
 
 
 def compare(study: Mapping[str, Any], out: Path) -> dict[str, Any]:
-    """Solve and report a study in the folder `out`; return how far each cheaper model is from the exact theory."""
-    solved = tr.run({**study, "name": out.name}, progress=False, results=out.parent)
-    build_report(StudyFolder(out))
+    """Solve and report a study in `out/study`; return how far each cheaper model is from the exact theory."""
+    solved = tr.run({**study, "name": "study"}, progress=False, results=out)
+    build_report(StudyFolder(out / "study"))
     found = model_errors(solved)
     models = {
         model: {str(name): spread(found[name].sel(contact_model=model).values) for name in found.data_vars}
