@@ -10,9 +10,9 @@ import trackroller as tr
 from trackroller.numerics.units import without_units
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.options import Options
+from trackroller.roller.output_names import unit_of
 from trackroller.roller.point_files import read_points
 from trackroller.roller.stop import parse_condition
-from trackroller.study.file.goals import unit_of
 
 HEAD = {"name": "t", "factors": {"axial_force": {"values": [0, 10]}}, "outputs": ["contact", "peak_stress", "life"]}
 

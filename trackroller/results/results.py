@@ -76,7 +76,7 @@ class Results:
         """Return whether some cases of the study are not solved yet."""
         return "missing_cases" in self.data.attrs
 
-    # what analysis and report make of the results: their files take `Results`, so they are imported by name
+    # The files of analysis and report import `Results`. Importing them here, and not by name, would be a circle.
 
     def indices(self) -> xr.Dataset:
         """Return the sensitivity indices of every output, see `trackroller.results.sensitivity.analyse`.

@@ -19,7 +19,7 @@ from trackroller.parameters.expressions import condition as meets
 from trackroller.parameters.expressions import names
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
-from trackroller.roller.output_names import PARTS
+from trackroller.roller.output_names import PARTS, unit_of
 from trackroller.roller.solver import solve
 
 STEPS = 24  # values tried on either side of the case
@@ -183,7 +183,7 @@ class _Search:
         self, case: Case, name: str, condition: str, database: MaterialDatabase | None, options: Mapping[str, Any]
     ) -> None:
         self.case, self.name, self.database = case, name, database
-        self.plain = without_units(condition, _unit_of, "find")
+        self.plain = without_units(condition, unit_of, "find")
         self.condition = condition
         asked = names(self.plain, "find") - set(REGIMES)
         for one in asked - {"regime"}:
@@ -264,9 +264,3 @@ class _Search:
                 whys[i] = own[stop][1] if stop < len(own) else whys[i]
                 ends[i] = (line[stop], line[stop + 1])
         return Found(self.name, unit, self.condition, start, ends[0][0], ends[1][0], tried, *whys)
-
-
-def _unit_of(name: str) -> str | None:
-    if name in PARTS:
-        return PARTS[name].variable.units
-    return PARAMETERS[name].unit if name in PARAMETERS else None

@@ -19,7 +19,7 @@ import xarray as xr
 
 from trackroller.damage.limit import Limit
 from trackroller.numerics.variable import BODIES, Variable
-from trackroller.parameters import LIMITS
+from trackroller.parameters import LIMITS, PARAMETERS
 from trackroller.roller.dataset import VARIABLES
 
 CONTACTS = ("1", "2")
@@ -121,3 +121,10 @@ def present_names(text: str) -> str:
 PARTS: Mapping[str, Part] = MappingProxyType(
     {part.name: part for variable in VARIABLES.values() for part in parts_of(variable)}
 )
+
+
+def unit_of(name: str) -> str | None:
+    """Return the unit of a result, of its variable, or of a parameter; None for any other name."""
+    if name in PARTS:
+        return PARTS[name].variable.units
+    return VARIABLES[name].units if name in VARIABLES else PARAMETERS[name].unit if name in PARAMETERS else None

@@ -29,7 +29,7 @@ from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity, without_units
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.output_names import PARTS, parts_of
+from trackroller.roller.output_names import PARTS, parts_of, unit_of
 from trackroller.study.design.entries import choice
 
 SCALES = ("natural", "log10")
@@ -76,13 +76,6 @@ def _limit(name: str, given: Any, where: str) -> float:
     if "life" in name and number <= 0:
         raise InputError(where, given, "a life above 0")
     return number
-
-
-def unit_of(name: str) -> str | None:
-    """Return the unit of a result, of its variable, or of a parameter; None for any other name."""
-    if name in PARTS:
-        return PARTS[name].variable.units
-    return VARIABLES[name].units if name in VARIABLES else PARAMETERS[name].unit if name in PARAMETERS else None
 
 
 _ENDS: dict[str, Any] = {"type": "object", "additionalProperties": {"type": "number"}}
