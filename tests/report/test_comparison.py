@@ -253,9 +253,9 @@ def test_the_shipped_study_may_be_edited(tmp_path):
         study = {"base": base, "factors": factors, "outputs": OUTPUTS, "contact_model": MODELS, "accuracy": "preview"}
         found = compare(study, tmp_path / "results" / "contact_models")
         assert set(found["models"]) == {"sliding", "kalker_table"} and found["designs"] > 0
-        text = (tmp_path / "results" / "contact_models" / "report.html").read_text(encoding="utf-8")
+        text = (tmp_path / "results" / "contact_models" / "study" / "report.html").read_text(encoding="utf-8")
         assert "Contact models compared" in text and "200 N radial" not in text
-        drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "figures").glob("*.svg")}
+        drawn = {p.stem for p in (tmp_path / "results" / "contact_models" / "study" / "figures").glob("*.svg")}
         assert drawn >= FIGURES
 
 
