@@ -9,7 +9,7 @@ from scipy.integrate import quad
 
 import trackroller as tr
 from trackroller.contact.common import Ellipse
-from trackroller.damage.wear import deepest, mass_loss, wear_depth
+from trackroller.damage.wear import deepest, mass_loss, sunk_area, wear_depth
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.dataset import validity_bit
 
@@ -176,18 +176,56 @@ def test_scaling():
     assert fast.wear_life_hours.values == pytest.approx(one.wear_life_hours.values * [0.5, 1.0])
 
 
+def sum_of_gaps(depth, guide, groove):
+    """The area between a guide's circle that is sunk by a depth and a groove, by a fine sum [mm2]."""
+    x = np.linspace(-guide, guide, 2_000_001)
+    gap = (guide - np.sqrt(guide**2 - x**2)) - np.sign(groove) * (abs(groove) - np.sqrt(groove**2 - x**2))
+    return np.trapezoid(np.maximum(depth - gap, 0.0), x)
+
+
+@pytest.mark.parametrize(("roller", "groove"), [(-7.0, 7.0), (-6.01, 6.01), (9.0, -9.0), (np.inf, np.inf)])
+@pytest.mark.parametrize("depth", [1e-4, 0.05, 0.3])
+def test_the_sunk_area_is_the_sum_of_the_gaps(roller, groove, depth):
+    """Below the equator of the guide every line across the gap lies in the lens of both circles."""
+    if np.isinf(groove):
+        x = np.linspace(-6.0, 6.0, 2_000_001)
+        expected = np.trapezoid(np.maximum(depth - (6.0 - np.sqrt(36.0 - x**2)), 0.0), x)
+    else:
+        expected = sum_of_gaps(depth, 6.0, groove)
+    assert float(sunk_area(depth, 6.0, roller)) == pytest.approx(expected, rel=2e-5)
+
+
+def test_the_sunk_area_of_a_small_depth_is_that_of_parabolas():
+    """(4/3) h sqrt(2 h/kappa) with the difference kappa of the curvatures."""
+    kappa, h = 1 / 6 - 1 / 7, 1e-5
+    assert float(sunk_area(h, 6.0, -7.0)) == pytest.approx(4 / 3 * h * np.sqrt(2 * h / kappa), rel=1e-3)
+
+
+def test_a_drawn_profile_that_is_the_circle_wears_out_after_the_same_hours():
+    circle, drawn = (
+        solved(normal="halfspace", roller_profile=profile, roller_material=steel(K), guide_material=steel(K))
+        for profile in (None, {"arc": -7.0})
+    )
+    assert drawn.wear_life_hours_high.values == pytest.approx(circle.wear_life_hours_high.values, rel=0.02)
+
+
 def test_rates_life_and_run_in_distance():
     ds = solved(required_travel=20, velocity=90, roller_material=steel(K), guide_material=steel(K))
     radius, depth = 21.75 - 6 * np.cos(np.deg2rad(30)), ds.wear_depth_per_overrolling.values
     hourly = np.array([90 * 60e3 / (2 * np.pi * radius), 60.0])
     per_km = depth * hourly / 5.4
     assert ds.wear_depth_per_km.values == pytest.approx(per_km)
-    assert ds.wear_life_hours.values == pytest.approx(0.05 / depth / hourly)
+    by_depth = 0.05 / depth / hourly
+    lens = sum_of_gaps(0.05, 6.0, 7.0)  # the same area is worn off each overrolling
+    by_area = lens / (1e-6 * ds.wear_volume_per_km.values) / hourly
+    assert ds.wear_life_hours.values == pytest.approx((by_depth + by_area) / 2, rel=1e-4)
+    assert ds.wear_life_hours_low.values == pytest.approx(by_depth) and (by_depth < by_area).all()
+    assert ds.wear_life_hours_high.values == pytest.approx(by_area, rel=1e-4)
     a = ds.semi_axis_lateral.values
     gap = [6 - np.sqrt(36 - a**2), 7 - np.sqrt(49 - a**2)]  # of the two circles
     assert float(ds.run_in_distance) == pytest.approx(np.min((gap[0] - gap[1]) / per_km.max(axis=1)), rel=2e-2)
     of_wear = ds.sel(limit="wear")
-    assert of_wear.utilisation.values == pytest.approx(per_km.max(axis=0) * 20 / 0.05)
+    assert of_wear.utilisation.values == pytest.approx(20 / (5.4 * ds.wear_life_hours.min("contact").values))
     assert of_wear.life_hours_by_limit.values == pytest.approx(ds.wear_life_hours.min("contact").values)
     drawn = solved(normal="halfspace", velocity=90, roller_material=steel(K), guide_material=steel(K))
     assert float(drawn.run_in_distance) == pytest.approx(float(ds.run_in_distance), rel=0.1)

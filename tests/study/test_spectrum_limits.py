@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from trackroller.damage.verdict import ENDS, STATES
 from trackroller.errors import InputError
 from trackroller.report.pages.spectrum import limit_table
 from trackroller.report.words.spectrum import sentences
@@ -70,9 +71,10 @@ def test_a_limit_without_a_life_is_exceeded_at_once_by_the_worst_block():
     ds = solved(EMPTY, jerk, limits=("static",))
     assert (ds.life_to_first_limit_shifts == 0).all() and (ds.utilisation > 1).all()
     assert sentences(ds)[2].text.startswith("The roller exceeds static failure")
+    assert (ds.limit_state == STATES.index("exceeded")).all()
     still = solved(EMPTY, jerk | {"distance": 0, "guide_overrollings": 0}, limits=("static",))
-    assert (still.utilisation < 1).all() and np.isinf(still.life_to_first_limit_shifts).all()
-    assert sentences(still)[2].text.startswith("The roller comes closest to static failure")
+    assert (still.utilisation < 1).all() and np.isnan(still.life_to_first_limit_shifts).all()  # no limit has a life
+    assert (still.limit_state == STATES.index("kept")).all()
 
 
 def test_names_of_limits_are_checked():
@@ -80,4 +82,13 @@ def test_names_of_limits_are_checked():
         solved(LOADED, limits=["fatige"])
     with pytest.raises(InputError, match="limits"):
         Spectrum.from_dict({"blocks": [LOADED], "limits": 3})
-    assert limit_table(solve_spectrum(Spectrum.from_dict({"blocks": [LOADED], "contact_model": "sliding"}))) is None
+
+
+def test_every_limit_is_checked_whose_inputs_are_given():
+    """Without the key `limits`; the ends of the range are those of the wear coefficient."""
+    ds = solve_spectrum(Spectrum.from_dict({"blocks": [LOADED], "base": BASE, "contact_model": "sliding"}))
+    known = [name for name in ds.limit.values if (ds.limit_state.sel(limit=name) > 0).any()]
+    assert known == ["static", "fatigue", "rating", "shakedown", "wear"]
+    value, low, high = (ds[f"life_shifts_by_limit{end}"].sel(limit="wear").values for end in ENDS)
+    assert (low < 0.5 * value).all() and (2.0 * value < high).all()
+    assert float(ds.pair_life_to_first_limit_shifts_low) <= float(ds.pair_life_to_first_limit_shifts)

@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     import xarray as xr
 
 COMPLETE = ("forces", "contact", "peak_stress", "life")
-CHEAP = ("rating", "bearing", "limits")  # limits that cost nothing beside a complete case
 PRINTED = " --json prints the result as text, and --report writes a page."
 # the first bytes of a file, by the end of its name
 KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b""}
@@ -67,6 +66,24 @@ def groups_of(words: str) -> tuple[str, ...]:
     from trackroller import damage  # heavy: numpy and scipy
 
     return damage.groups_of("--limits", [word.strip() for word in words.split(",")])
+
+
+def _left_out(words: str) -> tuple[str, ...]:
+    """Return the limits that a choice of limits leaves out."""
+    from trackroller import damage  # heavy: as above
+
+    return damage.others([word.strip() for word in words.split(",")])
+
+
+def _served(path: Path | None, settings: list[str] | None) -> tuple[str, ...]:
+    """Return the groups of outputs of the limits of the verdict whose inputs a case gives."""
+    from trackroller.roller.case import to_table
+    from trackroller.roller.options import Options
+    from trackroller.roller.stages.case import to_compute  # heavy: as above
+
+    case, options, _ = case_of(path, settings)
+    limits = to_compute(to_table(case), Options(**options | {"outputs": ("limits",)}))
+    return tuple(limit.group for limit in limits)
 
 
 def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Dataset:
@@ -141,13 +158,19 @@ def write_result(dataset: xr.Dataset, target: Path) -> None:
     write_whole(target, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
 
 
-def _groups(limits: str | None, sheet: bool, plain: bool) -> tuple[str, ...]:
-    """Return the groups of outputs of a printed case; () leaves the choice to the case file, for a `plain` result."""
-    if sheet:
-        return (*SHEET_OUTPUTS, *groups_of("all"))
+def _options(
+    path: Path | None, settings: list[str] | None, limits: str | None, sheet: bool, plain: bool
+) -> dict[str, Any]:
+    """Return the outputs of a case that is told with its margins, and the limits that it leaves out.
+
+    A `plain` result, which is not told, has the outputs of the case file.
+    """
+    if plain and not sheet and limits is None:
+        return {}
     if limits is not None:
-        return (*COMPLETE[:2], *groups_of(limits))
-    return () if plain else (*COMPLETE, *CHEAP)
+        return {"outputs": (*COMPLETE[:2], *groups_of(limits)), "not_checked": _left_out(limits)}
+    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(path, settings)))
+    return {"outputs": tuple(own)}
 
 
 def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the command
@@ -174,8 +197,8 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     target = None if out is None else writable_data(out, PRINTED)
     page = None if sheet is None else writable_page(sheet)
     plain = as_json or target is not None or "outputs" in case_of(case, settings)[1]
-    groups, more = _groups(limits, page is not None, plain), {"shortcuts": False} if no_shortcuts else {}
-    dataset = solve_case(case, settings, **more | ({"outputs": groups} if groups else {}))
+    more = {"shortcuts": False} if no_shortcuts else {}
+    dataset = solve_case(case, settings, **more | _options(case, settings, limits, page is not None, plain))
     if target is not None:
         write_result(dataset, target)
     from trackroller.report.pages import sheet_text

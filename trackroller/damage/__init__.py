@@ -18,7 +18,7 @@ from trackroller.damage import (
     verdict,
     wear,
 )
-from trackroller.damage.limit import TRACTIONS, Limit
+from trackroller.damage.limit import Limit
 from trackroller.errors import InputError, check_names
 
 _FILES = (static, fatigue, rating, bearing, catalogue, shakedown, heat, wear, multiaxial)
@@ -71,11 +71,17 @@ def _names(limit: Limit, kind: str) -> set[str]:
     return {declared} if isinstance(declared, str) else {one.name for one in declared}
 
 
-def asked(outputs: Collection[str]) -> tuple[Limit, ...]:
-    """Return the limits that groups of outputs ask for; `limits` asks for all with a verdict unless one is named."""
-    named = [limit for limit in LIMITS.values() if limit.group in outputs]
-    every = verdict.GROUP in outputs and all(limit.verdict is None for limit in named)
-    return tuple(limit for limit in LIMITS.values() if limit in named or (every and limit.verdict is not None))
+def asked(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
+    """Return the limits that groups of outputs ask for: those of single limits, and with `limits` all with a verdict.
+
+    `not_checked` names limits that the verdict leaves out.
+    """
+
+    def wanted(limit: Limit) -> bool:
+        every = verdict.GROUP in outputs and limit.verdict is not None and limit.name not in not_checked
+        return every or limit.group in outputs
+
+    return tuple(limit for limit in LIMITS.values() if wanted(limit))
 
 
 def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
@@ -92,24 +98,21 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
     return (*dict.fromkeys(LIMITS[name].group for name in wanted), verdict.GROUP)
 
 
-def judged(outputs: Collection[str]) -> tuple[Limit, ...]:
-    """Return the limits asked for that belong to the verdict."""
-    return tuple(limit for limit in asked(outputs) if limit.verdict is not None)
+def others(names: Collection[str]) -> tuple[str, ...]:
+    """Return the limits of the verdict that a choice of limits leaves out; `all` leaves none out."""
+    known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
+    return () if "all" in names else tuple(name for name in known if name not in names)
 
 
-def computed(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
-    """Return the limits asked for, and the one whose stress the life needs by its criterion."""
-    wanted = asked(outputs)
+def judged(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
+    """Return the limits of the verdict: all that have one, without those of `not_checked`; none without `limits`."""
+    if verdict.GROUP not in outputs:
+        return ()
+    return tuple(own for own in LIMITS.values() if own.verdict is not None and own.name not in not_checked)
+
+
+def computed(outputs: Collection[str], not_checked: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
+    """Return the limits asked for, after the one whose stress the life needs by its criterion."""
+    wanted = asked(outputs, not_checked)
     paths = fatigue.LIMIT in wanted and life_criterion in fatigue.STRESS_OF
-    return (*wanted, multiaxial.LIMIT) if paths and multiaxial.LIMIT not in wanted else wanted
-
-
-def of_patches(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
-    """Return the limits to compute that need the tractions of each case, not of each mechanics alone."""
-    wanted = computed(outputs, life_criterion)
-    return tuple(limit for limit in wanted if TRACTIONS in limit.needs and limit.shared is None)
-
-
-def of_mechanics(outputs: Collection[str], life_criterion: str) -> tuple[Limit, ...]:
-    """Return the limits to compute of which cases with equal mechanics share a part."""
-    return tuple(limit for limit in computed(outputs, life_criterion) if limit.shared is not None)
+    return (multiaxial.LIMIT, *wanted) if paths and multiaxial.LIMIT not in wanted else wanted

@@ -79,6 +79,7 @@ LIMIT = Limit(
     ),
     mappings=(FIELD,),
     requires=("catalogue",),
+    beside=True,
     bodies=("roller",),
     compares=("catalogue_load_factor", "load factor of the catalogue"),
 )

@@ -165,7 +165,7 @@ LIMIT = Limit(
     ),
     requires=("guide_overrollings_per_hour",),
     requires_by={"life_criterion": dict.fromkeys(("findley", "dang_van"), ("fatigue_limit_torsion",))},
-    ends_at_once=False,
+    bounded=False,
     distribution=SN_SCATTER,
     compares=("fatigue_stress peak_stress", "fatigue limit sigma_D; above it the life is finite"),
     standard="DIN 50100:2016 for the form of the S-N curve",

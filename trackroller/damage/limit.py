@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, REGIMES, Variable
 
 SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
+OF_GUIDE = ("guide_overrollings_per_hour",)  # fields of a case that concern the guide alone
 Results = dict[str, np.ndarray]
 
 
@@ -83,6 +84,9 @@ class SolvedRollers:
         returns the gap of the unworn, undeformed profiles there, (m,) [mm].
     regime : numpy.ndarray, optional
         Number in `REGIMES` of each case, (n,); None before the balance is known.
+    ends : mapping of str to numpy.ndarray
+        By the name of a value that is a placeholder with a range, the worse and the better end of the range over the
+        value, (n, body, 2) [1].
     """
 
     cases: Mapping[str, np.ndarray]
@@ -93,6 +97,12 @@ class SolvedRollers:
     tractions: Callable[[], Tractions] = _no_tractions
     unworn_gap: Callable[[int, int, np.ndarray], np.ndarray] = _no_gap
     regime: np.ndarray | None = None
+    ends: Mapping[str, np.ndarray] = field(default_factory=dict)
+
+    def at_end(self, end: int) -> SolvedRollers:
+        """Return the rollers with the values of `ends` at the worse (0) or the better (1) ends of their ranges."""
+        moved = {name: self.materials[name] * shares[..., end] for name, shares in self.ends.items()}
+        return replace(self, materials=dict(self.materials) | moved, ends={})
 
     @property
     def skids(self) -> np.ndarray:
@@ -111,12 +121,15 @@ class Verdict:
     """How far a limit is used, and the hours until it is reached, (n, body) each; None where a limit has none.
 
     `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a value that is not known.
-    `at_once`, (n, body), marks bodies that break at once, so that the limit is reached without a life.
+    `at_once`, (n, body), marks bodies that break at once, so that the limit is reached without a life. `life_low` and
+    `life_high`, (n, body) [h], are given by a limit whose own formula knows its life within a range.
     """
 
     utilisation: np.ndarray | None
     life_hours: np.ndarray | None
     at_once: np.ndarray | None = None
+    life_low: np.ndarray | None = None
+    life_high: np.ndarray | None = None
 
 
 def worst(values: np.ndarray) -> np.ndarray:
@@ -163,8 +176,10 @@ class Limit:
         By a required value of a material, the mark and the value that takes its place where the mark is 1.
     bodies : tuple of str
         Bodies that the limit concerns.
-    ends_at_once : bool
-        Whether a utilisation of 1 ends the life at once although the limit has hours.
+    bounded : bool
+        Whether a utilisation above 1 exceeds the limit. False where it only makes the life finite.
+    beside : bool
+        Whether the limit is a second model of an end that another limit has. It does not enter the first limit.
     distribution : str
         What the failure probability of the life rests on: "S-N scatter", "Weibull 10/9", "none".
     compares : tuple of str
@@ -192,7 +207,8 @@ class Limit:
     requires_by: Mapping[str, Mapping[str, tuple[str, ...]]] = field(default_factory=dict)
     instead: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     bodies: tuple[str, ...] = BODIES
-    ends_at_once: bool = True
+    bounded: bool = True
+    beside: bool = False
     distribution: str = "none"
     compares: tuple[str, str] = ("", "")
     standard: str = ""
@@ -211,6 +227,29 @@ class Limit:
                 mark, other = self.instead.get(name, (name, ""))
                 marked = (solved.materials[mark] == 1.0) & (other != "")
                 yield from ((name, ~marked), *(((other, marked),) if other else ()))
+
+    def lacking(self, solved: SolvedRollers) -> np.ndarray:
+        """Return where a value that a verdict on a body requires is not given, (n, body) bool."""
+        out = np.zeros((len(solved.rolling_radius), len(BODIES)), dtype=bool)
+        for name in self.required(solved.options):
+            column = solved.cases.get(name)
+            if column is not None:
+                missing = column == "" if column.dtype == object else np.isnan(column)
+                out |= missing[:, None] & [name not in OF_GUIDE, True]
+        for name, concerned in self.required_of(solved):
+            out |= np.isnan(solved.materials[name]) & concerned
+        return out
+
+    def served(self, solved: SolvedRollers) -> bool:
+        """Return whether a case has all that a verdict requires, or gives a field that serves this limit alone."""
+        own = [*(one.name for one in self.parameters if one.allow_missing), *(one.name for one in self.mappings)]
+        columns = [solved.cases[name] for name in own if name in solved.cases]
+        given = any(np.any(c != "" if c.dtype == object else ~np.isnan(c)) for c in columns)
+        return given or not self.lacking(solved).all()
+
+    def moves(self, solved: SolvedRollers) -> bool:
+        """Return whether the verdict rests on a value of a material that is known within a range only."""
+        return any(name in solved.ends for name, _ in self.required_of(solved))
 
 
 def variables(group: str, *rows: tuple[Any, ...]) -> tuple[Variable, ...]:

@@ -94,6 +94,7 @@ LIMIT = Limit(
         optional("yield_strength", "R_e", "MPa", "yield strength", 0.0, 2e5),
     ),
     requires=("hardness", "guide_overrollings_per_hour"),
+    beside=True,
     instead={"hardness": ("surface_hardened", "yield_strength")},
     compares=("max_pressure", "static pressure of the standard"),
     standard="EN 13001-3-3 after a public implementation; its text was not at hand",

@@ -43,25 +43,38 @@ def shears(t: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
     return t.by_patch(of_patch, 2)
 
 
+def of_mechanics(solved: SolvedRollers) -> Results:
+    """Return what does not depend on strength and speed.
+
+    These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], and the largest |tau|/p
+    of each patch, `_traction`, (n, contact) [1].
+    """
+    t = solved.tractions()
+    pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        local = np.hypot(t.shear_lateral, t.shear_rolling) / t.pressure
+    return {
+        "_shaken": shears(t, solved.materials["poisson_ratio"]),
+        "_traction": np.max(np.where(pressed, local, 0.0), axis=(2, 3)),
+    }
+
+
 def evaluate(solved: SolvedRollers) -> Results:
     """Return utilisations, (n, contact, body), and surface fatigue indices, (n, contact) [1].
 
     The indices are mu_used - k/p_max of the weaker body, with mu_used as |F_T, F_A|/F_N of the whole patch and as the
     largest |tau|/p in it; the two differ under spin.
     """
-    v, t = solved.values, solved.tractions()
-    k = solved.materials["yield_strength"] / np.sqrt(3.0)
-    pressed = t.pressure > 0.02 * np.nanmax(t.pressure, axis=(2, 3), keepdims=True, initial=0.0)
+    v, strength = solved.values, solved.materials["yield_strength"]
+    k = strength / np.sqrt(3.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        local = np.hypot(t.shear_lateral, t.shear_rolling) / t.pressure
         used = np.hypot(v["lateral_force"], v["driving_force"]) / v["normal_force"]
-    local = np.max(np.where(pressed, local, 0.0), axis=(2, 3))
     ratio = np.min(k, axis=1)[:, None] / v["max_pressure"]
     return {
-        "elastic_utilisation": v["peak_stress"] / solved.materials["yield_strength"][:, None, :],
-        "shakedown_utilisation": shears(t, solved.materials["poisson_ratio"]) / k[:, None, :],
+        "elastic_utilisation": v["peak_stress"] / strength[:, None, :],
+        "shakedown_utilisation": v["_shaken"] / k[:, None, :],
         "surface_fatigue_index": used - ratio,
-        "surface_fatigue_index_local": np.where(np.isnan(used), np.nan, local) - ratio,
+        "surface_fatigue_index_local": np.where(np.isnan(used), np.nan, v["_traction"]) - ratio,
     }
 
 
@@ -70,6 +83,7 @@ LIMIT = Limit(
     title="elastic shakedown (no ratchetting)",
     group="shakedown",
     meaning="elastic limit, elastic shakedown by Melan's theorem, and surface fatigue index",
+    shared=of_mechanics,
     evaluate=evaluate,
     verdict=lambda solved, results: Verdict(worst(results["shakedown_utilisation"]), None),
     needs=("peak_stress", TRACTIONS),

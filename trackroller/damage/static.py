@@ -6,8 +6,9 @@ from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, wor
 
 
 def verdict(solved: SolvedRollers, results: Results) -> Verdict:
-    """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time."""
-    return Verdict(worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"], None)
+    """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time, and a body above it breaks."""
+    used = worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"]
+    return Verdict(used, None, used > 1.0)
 
 
 LIMIT = Limit(

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
@@ -12,118 +14,137 @@ from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, LIFE
 
 GROUP = "limits"
-MEANING = "how far each limit asked for is used, hours to each, and the first; alone it asks for all limits"
+MEANING = "how far each limit is used whose inputs are given, hours to each with their range, and the first one"
 POSITION = Parameter(
     "placeholder_position",
     "f_P",
     "-",
-    0.0,
-    "place of all placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end",
+    math.nan,
+    "place of all placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end; if it is "
+    "not given, lives have the range between the ends",
     -1.0,
     1.0,
+    allow_missing=True,
     role="condition",
     label="place of the placeholders of materials in their ranges",
 )
+ENDS = ("", "_low", "_high")  # a life, and the ends of its range
+STATES = ("unknown", "kept", "open", "exceeded")
 _LB = ("limit", "body")
+_FIRST = "hours to the first limit that is known"
+
+
+def _life(
+    name: str, dims: tuple[str, ...], meaning: str, label: str
+) -> tuple[tuple[str, Any, str, str, str, Any], ...]:
+    """Return the rows of a life and of the ends of its range."""
+    ends = (("", "", ""), ("_low", "low end of the ", ", low end"), ("_high", "high end of the ", ", high end"))
+    return tuple(
+        (name + end, dims, "h", "", head + meaning, LIFE | {"label": label + tail}) for end, head, tail in ends
+    )
+
+
 RESULTS = variables(
     GROUP,
     ("utilisation", _LB, "1", "", "load over the load at which the limit is reached", {"label": "utilisation"}),
-    ("life_hours_by_limit", _LB, "h", "", "hours to the limit at the failure probability", LIFE | {"label": "life"}),
-    (
-        "life_to_first_limit_hours",
-        ("body",),
-        "h",
-        "",
-        "hours to the first limit that is known",
-        LIFE | {"label": "life to the first limit"},
-    ),
-    (
-        "pair_life_to_first_limit_hours",
-        (),
-        "h",
-        "",
-        "hours to the first limit of roller or guide that is known",
-        LIFE | {"label": "life to the first limit"},
-    ),
+    *_life("life_hours_by_limit", _LB, "hours to the limit at the failure probability", "life"),
+    *_life("life_to_first_limit_hours", ("body",), _FIRST, "life to the first limit"),
+    *_life("pair_life_to_first_limit_hours", (), f"{_FIRST}, of roller or guide", "life to the first limit"),
 )
 
 
-def until_reached(
-    used: np.ndarray, life: np.ndarray, timed: np.ndarray, limits: Sequence[Limit], broken: np.ndarray | None = None
-) -> np.ndarray:
-    """Return when limits are reached, (..., limit, body), in the unit of `life`; NaN where it is not known.
+def breaking(breaks: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
+    """Return the limits that a body reaches at once because it breaks, (..., limit, body) bool.
+
+    It is the static limit; without it fatigue counts, because a body above its tensile strength has no life by the S-N
+    curve.
 
     Parameters
     ----------
-    used, life : numpy.ndarray
-        Utilisation [1] and life in hours or shifts, (..., limit, body), NaN where they are not known.
-    timed : numpy.ndarray of bool
-        Whether a limit has a life, (limit,). A limit without a life is reached at once or never.
-    limits : sequence of Limit
-        The limits, some of which a utilisation of 1 ends at once although they have a life.
-    broken : numpy.ndarray of bool, optional
-        Where a body breaks at once, so that a limit is reached without a life, (..., limit, body).
-    """
-    at_once = ~timed | np.array([limit.ends_at_once for limit in limits], dtype=bool)
-    never = np.where(np.isnan(used), np.nan, np.inf)
-    now = (used >= 1.0) & at_once[:, None]
-    return np.where(now if broken is None else now | broken, 0.0, np.where(timed[:, None], life, never))
-
-
-def reached_by_breaking(breaks: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
-    """Return which limits are reached at once because a body breaks, (..., limit, body).
-
-    A body that is loaded above its tensile strength has no life by the S-N curve: fatigue counts as reached at once.
-
-    Parameters
-    ----------
-    breaks : numpy.ndarray of bool
-        Where a body is loaded above its tensile strength, (..., body).
+    breaks : numpy.ndarray
+        Whether a body is loaded above its tensile strength, (..., body) bool.
     limits : sequence of Limit
         The limits.
     """
-    of_fatigue = np.array([limit.name == "fatigue" for limit in limits], dtype=bool)
-    return np.asarray(breaks[..., None, :] & of_fatigue[:, None])
+    names = [limit.name for limit in limits]
+    own = "static" if "static" in names else "fatigue"
+    return np.asarray(breaks[..., None, :] & np.array([name == own for name in names])[:, None])
 
 
 def first_of(
-    reached: np.ndarray, used: np.ndarray, limits: Sequence[Limit], broken: np.ndarray | None = None
+    life: np.ndarray,
+    used: np.ndarray,
+    ends: np.ndarray,
+    limits: Sequence[Limit],
+    broken: np.ndarray,
+    lacking: np.ndarray | None = None,
 ) -> tuple[np.ndarray, np.ndarray]:
     """Return when the first limit is reached, and which one it is.
 
     Parameters
     ----------
-    reached : numpy.ndarray
+    life : numpy.ndarray
         When each limit is reached, in hours or shifts, (n, limit, body); NaN where it is not known.
     used : numpy.ndarray
         Utilisation, (n, limit, body) [1], which ranks limits that are reached together.
+    ends : numpy.ndarray of bool
+        Whether a limit has a life, (limit,). Limits that have none, and limits beside others, end nothing.
     limits : sequence of Limit
         The limits; a body that a limit does not concern does not lack it.
-    broken : numpy.ndarray of bool, optional
-        Limits that are reached because the body breaks at once, (n, limit, body). Its strength comes first.
+    broken : numpy.ndarray of bool
+        Limits that a body reaches at once because it breaks, (n, limit, body), see `breaking`.
+    lacking : numpy.ndarray of bool, optional
+        Where a limit is not checked because a value is not given, (n, limit, body).
 
     Returns
     -------
     tuple of numpy.ndarray
-        The first one, (n, body), NaN where no known limit is ever reached and another one is not known; and the place
-        of its limit, (n, body), -1 where no limit is known.
+        The first one, (n, body), NaN where no limit is known, or where no known limit is ever reached and another one
+        that is checked is not known; and the place of its limit, (n, body), -1 where no limit is known.
     """
-    known, concerned = ~np.isnan(reached), np.array([[body in limit.bodies for body in BODIES] for limit in limits])
-    first = np.min(np.where(known, reached, np.inf), axis=1)
-    rank = np.where(known & (reached == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
-    rank = rank if broken is None else np.where(broken & (rank >= 0.0), -0.5, rank)
-    missing = (~known & concerned).any(axis=1)
-    place = np.where(known.any(axis=1), np.argmax(rank, axis=1), -1)
-    return np.where(np.isinf(first) & missing, np.nan, first), place
+    counted = (ends & ~np.array([limit.beside for limit in limits], dtype=bool))[:, None]
+    concerned = counted & [[body in limit.bodies for body in BODIES] for limit in limits]
+    life, known = np.where(broken, 0.0, life), (counted & ~np.isnan(life)) | broken
+    first = np.min(np.where(known, life, np.inf), axis=1)
+    rank = np.where(known & (life == first[:, None, :]), np.nan_to_num(used, nan=0.0), -1.0)
+    unknown = concerned & ~known if lacking is None else concerned & ~known & ~lacking
+    some = known.any(axis=1)
+    never = np.isinf(first) & unknown.any(axis=1)
+    return np.where(never | ~some, np.nan, first), np.where(some, np.argmax(rank, axis=1), -1)
 
 
-def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
-    """Return utilisation and hours of each limit, the hours to the first limit, and its number.
+def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
+    """Return the number in `STATES` of each limit, (n, limit, body).
 
     Parameters
     ----------
-    solved : SolvedRollers
-        Cases with the results that the limits need, and with the results of the limits themselves.
+    used : numpy.ndarray
+        Utilisation at the values of materials and at both ends of their placeholders, (place, n, limit, body) [1].
+    life, broken : numpy.ndarray
+        Life [h], and whether the body breaks at once, (n, limit, body).
+    limits : sequence of Limit
+        The limits; one that is not bounded is kept as long as the body does not break.
+
+    Notes
+    -----
+    A limit is exceeded if its utilisation is above 1 wherever the placeholders lie in their ranges, and open if it is
+    above 1 at one end only.
+    """
+    bounded = np.array([limit.bounded for limit in limits], dtype=bool)[:, None]
+    least, most = used.min(axis=0), used.max(axis=0)
+    state = np.where(np.isnan(used[0]) & np.isnan(life), STATES.index("unknown"), STATES.index("kept"))
+    state = np.where(bounded & (most > 1.0), STATES.index("open"), state)
+    return np.where((bounded & (least > 1.0)) | broken, STATES.index("exceeded"), state)
+
+
+def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
+    """Return how far each limit is used, hours to each and to the first, their ranges, and which one is first.
+
+    Parameters
+    ----------
+    places : sequence of SolvedRollers
+        Cases with the results of the solver and of the limits: at the values of the materials, and if some of these are
+        placeholders with a range, at their worse and at their better ends.
     limits : sequence of Limit
         The limits that count.
     numbers : sequence of int
@@ -134,31 +155,41 @@ def verdict(solved: SolvedRollers, limits: Sequence[Limit], numbers: Sequence[in
     Returns
     -------
     dict of str to numpy.ndarray
-        `utilisation` [1], `life_hours_by_limit` [h], (n, limit, body); `life_to_first_limit_hours` [h] and
-        `limiting_mechanism`, (n, body); `pair_life_to_first_limit_hours` [h], (n,).
+        `utilisation` [1], `life_hours_by_limit` [h] and `limit_state`, (n, limit, body); `life_to_first_limit_hours`
+        [h] and `limiting_mechanism`, (n, body); `pair_life_to_first_limit_hours` [h], (n,). Each life also has the ends
+        of its range, with `_low` and `_high` in its name.
 
     Notes
     -----
-    A limit that has no time counts as reached at once where its utilisation is at least 1, and otherwise never. Fatigue
-    counts as reached at once where a body is loaded above its tensile strength. A limit that lacks a value is left out.
+    A limit without hours ends no life; `limit_state` says whether it is exceeded. A body that is loaded above its
+    tensile strength breaks at once.
     """
-    shape = len(solved.rolling_radius), len(limits), 2
-    used, hours, broken = np.full(shape, np.nan), np.full(shape, np.nan), np.zeros(shape, dtype=bool)
+    shape = len(places), len(places[0].rolling_radius), len(limits), len(BODIES)
+    used, broken = np.full(shape, np.nan), np.zeros(shape[1:], dtype=bool)
+    lives = {end: np.full(shape, np.nan) for end in ENDS}
     timed = np.zeros(len(limits), dtype=bool)
+    lacking = np.stack([limit.lacking(places[0]) for limit in limits], axis=1) if limits else broken
     for i, limit in enumerate(limits):
         assert limit.verdict is not None
-        own = limit.verdict(solved, dict(solved.values))
-        timed[i] = own.life_hours is not None
-        for values, given in ((used, own.utilisation), (hours, own.life_hours)):
-            if given is not None:
-                values[:, i] = np.where([body in limit.bodies for body in BODIES], given, np.nan)
-        if own.at_once is not None:
-            broken[:, i] = own.at_once
-    lives, first = first_of(until_reached(used, hours, timed, limits, broken), used, limits, broken)
-    return {
-        "utilisation": used,
-        "life_hours_by_limit": hours,
-        "life_to_first_limit_hours": lives,
-        "pair_life_to_first_limit_hours": first_failure(*lives.T)[0],
-        "limiting_mechanism": np.array([*numbers, unknown])[first],  # the place -1 is that of the last one
-    }
+        concerned = [body in limit.bodies for body in BODIES]
+        for place, solved in enumerate(places):
+            own = limit.verdict(solved, dict(solved.values))
+            if own.utilisation is not None:
+                used[place, :, i] = np.where(concerned, own.utilisation, np.nan)
+            if own.life_hours is not None:
+                timed[i] = True
+                for end, hours in zip(ENDS, (None, own.life_low, own.life_high), strict=True):
+                    lives[end][place, :, i] = np.where(concerned, own.life_hours if hours is None else hours, np.nan)
+            if own.at_once is not None:
+                broken[:, i] = own.at_once
+    at_once = breaking(np.asarray(broken.any(axis=1)), limits)
+    out: Results = {"utilisation": used[0], "limit_state": states(used, lives[""][0], at_once, limits)}
+    # the worse and the better place are the last but one and the last one; without placeholders there is one place
+    for end, place in zip(ENDS, (0, min(1, len(places) - 1), len(places) - 1), strict=True):
+        life = lives[end][place]
+        first, which = first_of(life, used[0], timed, limits, at_once, lacking)
+        out |= {f"life_hours_by_limit{end}": life, f"life_to_first_limit_hours{end}": first}
+        out[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
+        if not end:
+            out["limiting_mechanism"] = np.array([*numbers, unknown])[which]  # the place -1 is that of the last one
+    return out

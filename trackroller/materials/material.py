@@ -155,6 +155,17 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             if r.placeholder and name in OF_LIMITS
         }
 
+    @property
+    def ends_of_limits(self) -> dict[str, tuple[float, float]]:
+        """Return the worse and the better end of each placeholder of a limit that has a range, over its value."""
+        ends = {name: r.range if name not in LESS_IS_BETTER else r.range[::-1] for name, r in self._spans().items()}
+        values = {name: float(getattr(self, name)) for name in ends}
+        return {name: (ends[name][0] / v, ends[name][1] / v) for name, v in values.items() if v}
+
+    def _spans(self) -> dict[str, Any]:
+        """Return the records of the placeholders of limits that have a range."""
+        return {n: r for n, r in self.records.items() if r.placeholder and r.range is not None and n in OF_LIMITS}
+
     def moved(self, position: float) -> Material:
         """Return the material with its placeholders of limits at another place in their ranges.
 
@@ -173,10 +184,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         ASSUME: more is better, but for loss and wear.
         """
         values: dict[str, Any] = {}
-        for name, record in self.records.items():
-            if record.placeholder and record.range is not None and name in OF_LIMITS:
-                worse, better = record.range if name not in LESS_IS_BETTER else record.range[::-1]
-                values[name] = record.value + abs(position) * ((better if position > 0 else worse) - record.value)
+        for name, record in self._spans().items():
+            worse, better = record.range if name not in LESS_IS_BETTER else record.range[::-1]
+            values[name] = record.value + abs(position) * ((better if position > 0 else worse) - record.value)
         return dataclasses.replace(self, **values) if position else self
 
     def at(self, temperature: float) -> Material:

@@ -166,7 +166,7 @@ class Option:
 _OPTIONS = (
     Option(
         "outputs",
-        ("forces", "contact", "peak_stress", "life"),
+        ("forces", "contact", "peak_stress", "life", verdict.GROUP),
         "groups of results; a group is computed only if it is asked for",
         {
             "forces": "forces, moments and longitudinal creepage",
@@ -267,6 +267,13 @@ _OPTIONS = (
         0.5,
         "failure probability at which the group limits states each life",
         kind="number",
+    ),
+    Option(
+        "not_checked",
+        (),
+        "limits that the group limits leaves out",
+        {own.name: own.title for own in LIMITS.values() if own.verdict is not None},
+        kind="words",
     ),
     Option(
         "normal",

@@ -117,6 +117,17 @@ def lasting(value: float, unit: str = "", beyond: bool = False) -> str:
     return f"{rounded(value)} {life_unit(unit, value)}".strip() + (f" ({BEYOND})" if beyond else "")
 
 
+def between(low: float, high: float, beyond: bool = False) -> str:
+    """Write a life in hours that is known within a range: '26 to 860 h'; one number where the ends round alike."""
+    if rounded(low) == rounded(high) or math.isinf(low):
+        return lasting(low, "h", beyond)
+    if math.isinf(high):
+        return f"{lasting(low, 'h')} or more ({BEYOND})"
+    duty = _duty.get()
+    in_years = f" ({rounded(years(low, duty), 2)} to {rounded(years(high, duty), 2)} years)" if duty else ""
+    return f"{rounded(low)} to {rounded(high)} h{in_years}" + (f" ({BEYOND})" if beyond else "")
+
+
 class Life(float):
     """A life for a table: a number that is written with the remark that it lies beyond the S-N data."""
 

@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import LIMITS
-from trackroller.damage.verdict import reached_by_breaking, until_reached
+from trackroller.damage.verdict import breaking
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.results.candidates import Candidates
 from trackroller.results.groups import MOST_LEVELS
@@ -88,11 +88,11 @@ def turn(candidates: Candidates) -> Turn | None:
 
 def reached_hours(results: Results) -> np.ndarray:
     """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
-    used, hours = (flat(results.data, name, results.dims) for name in ("utilisation", "life_hours_by_limit"))
-    timed = results.data["life_hours_by_limit"].notnull().any([*results.dims, "body"]).values
+    hours = flat(results.data, "life_hours_by_limit", results.dims)
     limits = [LIMITS[name] for name in results.data["limit"].values.tolist()]
     breaks = np.stack([results.flagged("static", body if results.by_body else "") for body in BODIES], axis=1)
-    reached = until_reached(used, hours, timed, limits, reached_by_breaking(breaks, limits))
+    counted = np.array([not limit.beside for limit in limits])[:, None]
+    reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, hours, np.nan))
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
 
 

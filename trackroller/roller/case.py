@@ -97,9 +97,11 @@ class Case(_Numbers):
     travel : float
         Travel after which the case is solved with the profiles worn until then, >= 0 [km]; needs normal="halfspace".
     required_travel, wear_coefficient_factor : float or None
-        Travel that the limit `wear` has to allow [km], and a factor on the wear coefficients [1].
-    placeholder_position : float
+        Travel that the limit `wear` has to allow [km], and a factor on the wear coefficients [1], which replaces the
+        ranges of their placeholders.
+    placeholder_position : float or None
         Place of the placeholders of materials in their ranges: -1 the worse end, 0 the value, 1 the better end [1].
+        Without it, lives have the range between the ends.
     bearing, catalogue, wear_table : mapping or None
         Bearing inside the roller, limits of a maker's catalogue, and table of the energy law of wear; see "Parameters,
         options and results".
@@ -422,9 +424,13 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
         level = level if isinstance(level, str) else "typical"
         friction[i] = database.friction(roller[i], guide[i], level=level).value
     numbers["friction_coefficient"] = friction
-    keys = list(zip(map(id, roller), map(id, guide), numbers["placeholder_position"].tolist(), strict=True))
+    positions = numbers["placeholder_position"].tolist()
+    places = [None if math.isnan(position) else position for position in positions]  # NaN is no key
+    keys = list(zip(map(id, roller), map(id, guide), places, strict=True))
     pairs = dict(zip(keys, zip(roller, guide, strict=True), strict=True))  # each combination once
-    bodies = {key: [database.on(*way).moved(key[2]) for way in (pair, pair[::-1])] for key, pair in pairs.items()}
+    bodies = {
+        key: [database.on(*way).moved(key[2] or 0.0) for way in (pair, pair[::-1])] for key, pair in pairs.items()
+    }
     roller, guide = ([bodies[key][i] for key in keys] for i in (0, 1))
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
     return CaseTable(**numbers, **texts, roller=MaterialArrays.of(roller), guide=MaterialArrays.of(guide))

@@ -188,6 +188,10 @@ FLAGS: dict[str, tuple[str, Sequence[str]]] = {
     "accuracy_used": ("accuracy whose result the case has, if a tolerance was asked for", RUNGS),
     "first_to_fail": ("body that fails first, in hours", FIRST_TO_FAIL),
     "limiting_mechanism": ("limit of the body that is reached first", (*LIMITS, "unknown")),
+    "limit_state": (
+        "whether a limit is kept; open: exceeded at one end of a range of placeholders",
+        verdict.STATES,
+    ),
     "stopped": ("the condition of stop_if holds: no peak stress is searched for", ("no", "yes")),
 }
 
@@ -277,7 +281,7 @@ def _labelled(data: Mapping[str, np.ndarray], attrs: Mapping[str, Any]) -> xr.Da
 
     made = {}
     for name, array in data.items():
-        dims = VARIABLES[name].dims if name in VARIABLES else ("body",)[: array.ndim - 1]
+        dims = VARIABLES[name].dims if name in VARIABLES else ("limit", "body")[3 - array.ndim :]
         made[name] = xr.Variable(("case", *dims), array, _attributes(name))
     ds = xr.Dataset(made, coords=_sides().copy(), attrs=dict(attrs))
     further: dict[str, Any] = {}

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numba.core.registry import cpu_target
 
-from trackroller.damage import computed, fatigue, judged, of_mechanics, of_patches, verdict
+from trackroller.damage import asked, fatigue, judged, verdict
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
@@ -62,6 +62,7 @@ def solve(
     credit_pressure: bool | None = None,
     wear_law: str | None = None,
     failure_probability: float | None = None,
+    not_checked: Collection[str] | str | None = None,
     normal: str | None = None,
     stop_if: str | None = None,
     shortcuts: bool | None = None,
@@ -79,8 +80,9 @@ def solve(
         along `case`. Parameters of a data set are variables or coordinates; any other name is refused. The results of
         a study's design can be analysed and reported: see `trackroller.open_study`.
     outputs : str or iterable of str
-        Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life" (by
-        default these four), "friction_work", "tractions", "subsurface", "limits", one a limit.
+        Groups of results; a group is computed only if it is asked for: "forces", "contact", "peak_stress", "life",
+        "limits" (by default these five), "friction_work", "tractions", "subsurface", one a limit. "limits" stands for
+        the use and the life of every limit whose inputs the case gives.
     contact_model : str
         How friction is distributed over a patch: "kalker" (exact theory), "kalker_table" (table of exact solutions),
         or "sliding" (full slip everywhere, as published). "kalker" uses its table at accuracy "preview".
@@ -105,6 +107,8 @@ def solve(
         Law of wear: "archard" with the wear coefficient of the pair, or "energy" with the `wear_table` of the case.
     failure_probability : float
         Failure probability in (0, 1) at which the group "limits" states each life.
+    not_checked : str or collection of str
+        Limits that the group "limits" leaves out.
     normal : str
         "hertz" for Hertzian patches, "halfspace" for non-Hertzian ones by boundary elements, which drawn profiles need.
     stop_if : str, optional
@@ -183,7 +187,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     tell_errors(ds, table, options)
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(table, block)
-    if checks_limits or warm or of_mechanics(options.outputs, options.life_criterion):
+    if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
         ds.attrs[NOTES] = "\n".join([*stages_case.notes_on_limits(table, options), *warm])
     return ds
 
@@ -217,7 +221,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 
     distinct, number = table, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not of_patches(options.outputs, options.life_criterion):
+    if options.shortcuts and len(table) > 1 and not stages_case.of_patches(stages_case.to_compute(table, options)):
         rows, number = requirements.distinct_mechanics(table)
         distinct = table.take(rows)
     table, block = temperature.settle(table, solve_all(distinct).take(number), options, solve_all)
@@ -263,7 +267,8 @@ def block_of(results: Results, options: Options) -> Block:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
     wanted = set(options.outputs)
-    wanted |= {need for limit in computed(wanted, options.life_criterion) for need in limit.needs}
+    limits = stages_case.to_compute(scene.table, options)
+    wanted |= {need for limit in limits for need in limit.needs}
     stages.forces(results)
     stages.force_error(results, options)
     stages.contact(results, options)
@@ -279,7 +284,7 @@ def block_of(results: Results, options: Options) -> Block:
         stages_stress.subsurface(results, options)
     stages.settle(results)
     results.values |= {name: results.in_mm(name) for name in results.values}  # the limits take N and mm
-    stages_case.patch_limits(results, options)
+    stages_case.patch_limits(results, options, limits)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     settings = options.settings.name
     rung = np.full(scene.n, RUNGS.index(settings) if settings in RUNGS else 0, dtype=np.int8)
@@ -307,10 +312,10 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     flags["contact_model_used"] = block.model
     if options.tolerance is not None:
         flags["accuracy_used"] = block.rung
-    grouped = {"first_to_fail": "life", "limiting_mechanism": verdict.GROUP}
+    grouped = {"first_to_fail": "life", "limiting_mechanism": verdict.GROUP, "limit_state": verdict.GROUP}
     flags |= {name: block.values[name] for name, group in grouped.items() if group in options.outputs}
     if verdict.GROUP in options.outputs:
-        attrs["limits"] = " ".join(limit.name for limit in judged(options.outputs))
+        attrs["limits"] = " ".join(limit.name for limit in judged(options.outputs, options.not_checked))
     if options.stop_if is not None:
         flags["stopped"] = block.stopped
     return build({name: block.values[name] for name in keep}, flags, attrs, single)

@@ -21,7 +21,7 @@ _Fields: Any = make_dataclass(
 )
 
 
-TEXTS = ("name", "guesses", "temperature_dependence")  # columns of `MaterialArrays` that hold no numbers
+TEXTS = ("name", "guesses", "ends", "temperature_dependence")  # columns of `MaterialArrays` that hold no numbers
 
 
 @dataclass(frozen=True)
@@ -29,8 +29,8 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1].
 
     The base class adds the optional values of a material, NaN where they are not given. `guesses` holds the values of
-    limits that are placeholders, a mapping of names to words for each material. `temperature_dependence` holds the
-    tables over temperature as JSON, "" for none.
+    limits that are placeholders, a mapping of names to words for each material, and `ends` the ends of their ranges
+    over the values. `temperature_dependence` holds the tables over temperature as JSON, "" for none.
     """
 
     name: np.ndarray
@@ -41,6 +41,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     cycles_at_tensile_strength: np.ndarray
     cycles_at_fatigue_limit: np.ndarray
     guesses: np.ndarray
+    ends: np.ndarray
     temperature_dependence: np.ndarray
 
     @classmethod
@@ -57,6 +58,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
         return cls(
             name=np.array([m.name for m in distinct.values()], dtype=object)[index],
             guesses=np.array([m.guesses_of_limits for m in distinct.values()], dtype=object)[index],
+            ends=np.array([m.ends_of_limits for m in distinct.values()], dtype=object)[index],
             temperature_dependence=np.array(
                 ["" if (own := m.temperature_dependence) is None else own.text for m in distinct.values()], dtype=object
             )[index],

@@ -63,7 +63,7 @@ def settle(
         Their results, with `unsettled`, (n,), if a case was solved again. Cases without a table keep theirs.
     """
     rows = np.flatnonzero((table.roller.temperature_dependence != "") | (table.guide.temperature_dependence != ""))
-    if heat.LIMIT not in asked(options.outputs) or not rows.size:
+    if heat.LIMIT not in asked(options.outputs, options.not_checked) or not rows.size:
         return table, block
     reached = temperatures(table, block)
     used, warm = np.full_like(reached, np.nan), table

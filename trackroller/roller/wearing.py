@@ -293,4 +293,4 @@ def _rates(table: CaseTable, options: Options, per_km: np.ndarray) -> np.ndarray
     if np.isnan(k).all():
         remedy = f"Give it: roller_material: {{like: NAME, {name}: NUMBER}}."
         raise InputError(name, None, f"{what} of roller or guide", remedy)
-    return np.nan_to_num(1e-3 * table.wear_coefficient_factor[0] * k * per_km)
+    return np.nan_to_num(1e-3 * np.nan_to_num(table.wear_coefficient_factor[0], nan=1.0) * k * per_km)

@@ -21,7 +21,6 @@ from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import BEYOND, listing, lives_in_years, number, plain, rounded, row_unit
 from trackroller.report.tables.inputs import Row, as_material, input_rows, material_rows, material_source
 from trackroller.report.tables.limits import (
-    GUESSED,
     OVERLOADED,
     Margin,
     at_temperature,
@@ -29,6 +28,8 @@ from trackroller.report.tables.limits import (
     margins,
     not_checked,
     placeholders,
+    unchecked,
+    what_ends,
 )
 from trackroller.report.tables.lives import life_rows
 from trackroller.report.words.accuracy import flags_of
@@ -228,9 +229,11 @@ def _verdict(
     regime: str, ds: xr.Dataset, lives: list[Row], lifeless: Mapping[str, str], own: list[Margin], **values: Any
 ) -> str:
     """Return the summary of the sheet: what rules (lift-off, overload, skidding, life) and the distance to lift-off."""
-    passed: dict[str, list[str]] = {}
-    for margin in (m for m in own if m.reached == 0.0):
-        passed.setdefault(f"{margin.title}{GUESSED * margin.guessed}", []).append(margin.body)
+    states: dict[str, dict[str, list[str]]] = {"exceeded": {}, "open": {}}
+    for margin in (m for m in own if m.state in states and not m.breaks):
+        states[margin.state].setdefault(margin.short, []).append(margin.body)
+    texts = {state: [f"{title} ({listing(bodies)})" for title, bodies in s.items()] for state, s in states.items()}
+    ends = what_ends(own)
     of_roller = [row for row in lives if row.words.startswith(("roller, until", "roller, median"))]
     known = of_roller and not any(lifeless.values()) and math.isfinite(float(ds["roller_life_hours"]))
     first = FIRST_TO_FAIL[int(ds["first_to_fail"])] if known else ""
@@ -239,10 +242,12 @@ def _verdict(
         "verdict",
         regime=regime,
         overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if OVERLOADED in why],
-        exceeded=[f"{title} ({listing(bodies)})" for title, bodies in passed.items()],
-        lives=list(map(_hours, of_roller[:2])) if known else [],
-        contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known else None,
-        guide=_hours(lives[-1]) if first == "guide" else "",
+        **texts,
+        ends=ends,
+        unchecked=unchecked(ds),
+        lives=list(map(_hours, of_roller[:2])) if known and not ends else [],
+        contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known and first != "guide" else None,
+        guide=_hours(lives[-1]) if first == "guide" and not ends else "",
         **values,
     )
 

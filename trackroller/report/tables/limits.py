@@ -11,9 +11,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, heat
-from trackroller.damage.limit import SN_SCATTER
+from trackroller.damage.limit import OF_GUIDE, SN_SCATTER
+from trackroller.damage.verdict import ENDS, STATES
 from trackroller.materials import Material
-from trackroller.report.numbers import lasting, listing, number, rounded, row_unit
+from trackroller.parameters import BODIES
+from trackroller.report.numbers import between, capital, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
@@ -41,12 +43,14 @@ class Margin:
         The value, and the value that it must not exceed.
     used : float
         Load over the load at the limit [1]; NaN if it is not known.
-    hours : float
-        Life to the limit [h]; NaN if the limit has no life, or if the life is not known.
-    at_once : bool
-        Whether the limit is reached at once where `used` is at least 1.
-    timed : bool
-        Whether the limit has a life, known or not.
+    hours, low, high : float
+        Life to the limit and the ends of its range [h]; NaN if the limit has no life, or if the life is not known.
+    state : str
+        One of `trackroller.damage.verdict.STATES`.
+    breaks : bool
+        Whether the body breaks at once by this limit.
+    timed, beside : bool
+        Whether the limit has a life, known or not, and whether it is a second model of an end that another limit has.
     beyond, guessed : bool
         Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a material.
     """
@@ -57,10 +61,19 @@ class Margin:
     required: str
     used: float = math.nan
     hours: float = math.nan
-    at_once: bool = True
+    low: float = math.nan
+    high: float = math.nan
+    state: str = "unknown"
+    breaks: bool = False
     timed: bool = False
+    beside: bool = False
     beyond: bool = False
     guessed: bool = False
+
+    @property
+    def short(self) -> str:
+        """Return the words of the limit without the remark in brackets."""
+        return self.title.partition(" (")[0]
 
     @property
     def words(self) -> str:
@@ -69,9 +82,14 @@ class Margin:
         return f"{self.title}{of}{GUESSED * self.guessed}"
 
     @property
+    def ends(self) -> bool:
+        """Return whether the limit ends a life: it has known hours and stands beside no other, or the body breaks."""
+        return self.breaks or (self.timed and not self.beside and not math.isnan(self.hours))
+
+    @property
     def reached(self) -> float:
-        """Return the hours until the limit is reached: 0 if it is exceeded now, infinity if it never is."""
-        if self.at_once and self.used >= 1.0:
+        """Return the hours until the limit is reached: 0 if the body breaks, infinity if they are not known."""
+        if self.breaks:
             return 0.0
         return math.inf if math.isnan(self.hours) else self.hours
 
@@ -87,24 +105,19 @@ class Margin:
 
     @property
     def life(self) -> str:
-        """Return the hours to the limit, with the remark that they lie beyond the S-N data."""
-        if self.reached == 0.0:
+        """Return the hours to the limit with their range, or whether a limit without hours is kept."""
+        if self.breaks:
             return "exceeded now"
         if math.isnan(self.hours):
-            return "not known" if self.timed else ""
-        return lasting(self.hours, "h", self.beyond)
+            return "not known" if self.timed else {"unknown": ""}.get(self.state, self.state)
+        return between(self.low, self.high, self.beyond)
 
     @property
     def when(self) -> str:
         """Say when the limit is reached."""
-        if self.reached == 0.0:
+        if self.breaks:
             return self.life
-        if self.timed and math.isnan(self.hours):
-            return "after unknown hours"
-        if not self.at_once and self.used >= 1.0 and math.isnan(self.hours):
-            return f"{self.share} used, and no life is stated"
-        otherwise = f"not reached, {self.share} used" if self.share else "not reached"
-        return f"after {self.life}" if math.isfinite(self.reached) else otherwise
+        return f"after {self.life}" if math.isfinite(self.reached) else self.life
 
 
 def margins(
@@ -135,11 +148,11 @@ def margins(
         *_of_pressure(ds, materials),
         *_of_loads(ranges, inputs),
     ):
-        if out and margin == replace(out[-1], body=margin.body):
+        if out and str(margin) == str(replace(out[-1], body=margin.body)):  # as texts, because NaN equals nothing
             out[-1] = replace(margin, body=BOTH)
         else:
             out.append(margin)
-    return sorted(out, key=lambda m: (m.reached, 0.0 if math.isnan(m.used) else -m.used))
+    return sorted(out, key=lambda m: (m.state != "exceeded", m.reached, 0.0 if math.isnan(m.used) else -m.used))
 
 
 def _of_limits(
@@ -149,6 +162,7 @@ def _of_limits(
     out = []
     places = {dim: ds[dim].values.tolist() for dim in ("limit", "body") if dim in ds}
     notes = _notes(ds)
+    broken = {body: OVERLOADED in lifeless[body] for body in lifeless}
     for name in places["limit"] if "utilisation" in ds else ():
         limit = LIMITS[name]
         variable = next((one for one in limit.compares[0].split() if one in ds), "utilisation")
@@ -157,24 +171,27 @@ def _of_limits(
         timed = bool(np.any(~np.isnan(_at(ds, "life_hours_by_limit", places, limit=name))))
         for body in limit.bodies:
             here = {"limit": name, "body": body}
-            used, hours = (float(_at(ds, one, places, **here)) for one in ("utilisation", "life_hours_by_limit"))
+            used = float(_at(ds, "utilisation", places, **here))
+            hours, low, high = (float(_at(ds, f"life_hours_by_limit{end}", places, **here)) for end in ENDS)
             if math.isnan(used) and math.isnan(hours):
                 continue
-            # a body that breaks at once breaks by its strength, unless this limit is not asked for
-            breaks = name == "fatigue" and OVERLOADED in lifeless[body] and "static" not in places["limit"]
+            # a body that breaks at once breaks by its strength, unless that limit is left out
+            breaks = broken[body] and name == ("static" if "static" in places["limit"] else "fatigue")
+            state = STATES[int(_at(ds, "limit_state", places, **here))]
             values = np.asarray(_at(ds, variable, places, **here), dtype=float)
             value = float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
             bound = f"{rounded(value / used if used > 0 else math.nan)} {unit}".strip()
-            bound = "not given" if math.isnan(used) else bound
-            texts = f"{rounded(value)} {unit}".strip(), bound + words
+            bound = bound + words if not math.isnan(used) else "–" if math.isfinite(hours) else f"not given{words}"
+            texts = f"{rounded(value)} {unit}".strip(), bound
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
             # both bodies share the heat of a contact
             own = "" if limit is heat.LIMIT else f" '{materials[body].name}'"
             guessed = any(note.startswith(f"{name}{GUESSES}{own}") for note in notes)
             of_life = timed and not (name == "fatigue" and lifeless[body])
-            at_once = limit.ends_at_once or breaks
-            out.append(Margin(limit.title, body, *texts, used, hours, at_once, of_life, beyond, guessed))
+            numbers = used, hours, low, high
+            kind = of_life, limit.beside, beyond, guessed
+            out.append(Margin(limit.title, body, *texts, *numbers, state, breaks, *kind))
     return out
 
 
@@ -192,10 +209,21 @@ def _of_pressure(ds: xr.Dataset, materials: Mapping[str, Material]) -> list[Marg
     bounds = {body: YIELD * material.tensile_strength for body, material in materials.items()}
     words = f"{YIELD:g} R_m; R_m stands for the yield strength"
     return [
-        Margin("pressure limit (yield below the surface)", body, f"{rounded(pressure)} MPa", text, pressure / bound)
+        Margin(
+            "pressure limit (yield below the surface)",
+            body,
+            f"{rounded(pressure)} MPa",
+            f"{rounded(bound)} MPa: {words}",
+            pressure / bound,
+            state=_state(pressure / bound),
+        )
         for body, bound in bounds.items()
-        for text in [f"{rounded(bound)} MPa: {words}"]
     ]
+
+
+def _state(used: float) -> str:
+    """Return the state of a limit without placeholders."""
+    return "unknown" if math.isnan(used) else STATES[1 if used < 1.0 else 3]
 
 
 def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
@@ -210,45 +238,82 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
             bound = high if value >= 0 else low
             used = value / bound if bound else math.inf
             span = f"{rounded(low)} to {rounded(high)} N"
-            out.append(Margin(title, "pair", f"{number(value)} N", span, used if math.isfinite(bound) else math.nan))
+            used = used if math.isfinite(bound) else math.nan
+            out.append(Margin(title, "pair", f"{number(value)} N", span, used, state=_state(used)))
     now, friction = float(inputs["friction_coefficient"]), number(inputs["friction_coefficient"])
     for title, bound in (
         ("self-locking (friction coefficient)", ranges.self_locking_friction),
         ("lift-off of a contact (friction coefficient)", ranges.lift_off_friction),
     ):
         if math.isfinite(bound):
-            out.append(Margin(title, "pair", friction, f"{rounded(bound)}", now / bound if bound else math.inf))
+            used = now / bound if bound else math.inf
+            out.append(Margin(title, "pair", friction, f"{rounded(bound)}", used, state=_state(used)))
         elif math.isinf(bound):
             out.append(Margin(title, "pair", friction, "none up to 2"))
     return out
 
 
 def first_limits(listed: list[Margin]) -> list[str]:
-    """Return one sentence for roller, guide and pair each: the limit that comes first, and when."""
+    """Return one sentence for roller, guide and pair each on what ends its life first, and those on kept limits."""
+    ending = sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached)
     out = []
-    for body, further in (("roller", "pair"), ("guide", "")):
-        own = [margin for margin in listed if margin.body in (body, further, BOTH)]
+    for body in BODIES:
+        own = [margin for margin in ending if margin.body in (body, BOTH)]
         out += [f"First limit of the {body}: {m.title}{GUESSED * m.guessed}, {m.when}." for m in own[:1]]
-    if listed:
-        unknown = any(m.timed and math.isnan(m.hours) and m.body == "guide" for m in listed) and listed[0].reached > 0
-        remark = "; the guide's hours are not known" if unknown else ""
-        out.append(f"First limit of the pair: {listed[0].words}, {listed[0].when}{remark}.")
+    if ending:
+        out.append(f"First limit of the pair: {ending[0].words}, {ending[0].when}{_guide_alone(listed)}.")
     return out
 
 
+def _guide_alone(listed: list[Margin]) -> str:
+    """Say that the guide's hours are not known; an empty text if they are, or if a body breaks at once."""
+    unknown = any(m.timed and not m.beside and math.isnan(m.hours) and m.body == "guide" for m in listed)
+    return "; the guide's hours are not known" if unknown and not any(m.breaks for m in listed) else ""
+
+
+def what_ends(listed: list[Margin]) -> str:
+    """Say what ends the life of the pair, after how many hours, and what would end it next, as a part of a sentence.
+
+    The text is empty where no life is known, or where a body breaks at once.
+    """
+    ending = sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached)
+    if not ending or ending[0].breaks or math.isinf(ending[0].reached):
+        return ""
+    first, others = ending[0], dict[str, str]()
+    for margin in ending[1:]:
+        if margin.short != first.short:
+            others.setdefault(margin.short, f"{margin.short} would after {margin.life}")
+    unmeasured = ", by values that nobody has measured" if first.guessed and first.low < first.high else ""
+    further = "".join(f"; {text}" for text in others.values())
+    head = f"{capital(first.short)} ends the {'pair' if first.body == BOTH else first.body}"
+    return f"{head} after {first.life}{unmeasured}{further}{_guide_alone(listed)}"
+
+
+def unchecked(ds: xr.Dataset) -> list[str]:
+    """Return the names of the limits of which nothing is known for either body."""
+    if "limit_state" not in ds:
+        return []
+    state = ds.variables["limit_state"]
+    known = (state != STATES.index("unknown")).any([dim for dim in state.dims if dim != "limit"]).values
+    return ds["limit"].values[~known].tolist()
+
+
 def not_checked(ds: xr.Dataset) -> list[str]:
-    """Return what was not checked: limits without a value, and limits that the user did not choose."""
-    asked = str(ds.attrs.get("limits", "")).split()
-    missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
+    """Return what was not checked and what it lacks, and the limits that the user left out."""
     lacking: dict[str, list[str]] = {}
     for note in _notes(ds):
         if GUESSES not in note and not note.startswith(temperature.HEAD):
             name, _, text = note.partition(": ")
-            lacking.setdefault(text, []).append(name)
-    out = [f"Not checked, or in part: {listing(names)}; {text}" for text, names in lacking.items()]
-    if missing:
-        out.append(f"Not asked for: {listing(missing)}. `trackroller solve --limits all` checks them.")
-    return out
+            what = text.partition(". ")[0].removeprefix("the case gives no ")
+            given = not text.startswith("the case gives no ")
+            lacking.setdefault(name, []).append(what if given else f"give {what}")
+    for_guide = [name for name, texts in lacking.items() if texts == [f"give {OF_GUIDE[0]}"]]
+    parts = [f"{name} ({', '.join(texts)})" for name, texts in lacking.items() if name not in for_guide]
+    parts += [f"{listing(for_guide)} of the guide (give {OF_GUIDE[0]})"] if for_guide else []
+    out = [f"Not checked: {'; '.join(parts)}."] if parts else []
+    asked = str(ds.attrs.get("limits", "")).split()
+    missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
+    return out + ([f"Left out: {listing(missing)}."] if missing else [])
 
 
 def guessed_values(ds: xr.Dataset) -> list[tuple[str, str, str]]:

@@ -3,17 +3,17 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, judged, of_mechanics, of_patches, verdict
+from trackroller.damage import LIMITS, asked, computed, judged, verdict
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers
+from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers, Verdict
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.materials.material import UNNAMED
 from trackroller.parameters import BODIES, CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -57,7 +57,42 @@ def solved_of(
         vars(options),
         regime=regime,
         unworn_gap=partial(_unworn_gap, table),
+        ends=_ends(table),
     )
+
+
+def _ends(table: CaseTable) -> dict[str, np.ndarray]:
+    """Return the ends of the ranges of placeholders as `SolvedRollers` has them.
+
+    A value whose place in its range is given has no range, and a given factor replaces that of the wear coefficient.
+    """
+    given, out = ~np.isnan(table.placeholder_position), {}
+    bodies = [_distinct(own.ends) for own in (table.roller, table.guide)]
+    for name in sorted({name for materials, _ in bodies for ends in materials for name in ends}):
+        held = given | ~np.isnan(table.wear_coefficient_factor) if name == "wear_coefficient" else given
+        columns = [np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place] for materials, place in bodies]
+        out[name] = np.where(held[:, None, None], 1.0, np.stack(columns, axis=1))
+    return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}
+
+
+def _distinct(column: np.ndarray) -> tuple[list[Any], np.ndarray]:
+    """Return the different objects of a column, and the place of each row's object among them, (n,)."""
+    keys = list(map(id, column))
+    objects = dict(zip(keys, column, strict=True))
+    places = {key: place for place, key in enumerate(objects)}
+    return list(objects.values()), np.fromiter(map(places.__getitem__, keys), int, len(keys))
+
+
+def to_compute(table: CaseTable, options: Options) -> tuple[Limit, ...]:
+    """Return the limits to compute: those named among the outputs, and those of the verdict that a case serves."""
+    solved = solved_of(table, {}, options)
+    wanted = computed(options.outputs, options.not_checked, options.life_criterion)
+    return tuple(own for own in wanted if own.group in options.outputs or own.verdict is None or own.served(solved))
+
+
+def of_patches(limits: Iterable[Limit]) -> tuple[Limit, ...]:
+    """Return the limits that need the tractions of each case, not of each mechanics alone."""
+    return tuple(limit for limit in limits if TRACTIONS in limit.needs and limit.shared is None)
 
 
 def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) -> np.ndarray:
@@ -79,21 +114,50 @@ def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) 
 
 def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray) -> None:
     """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
-    wanted, solved = asked(options.outputs), solved_of(table, v, options, regime)
+    wanted, solved = to_compute(table, options), solved_of(table, v, options, regime)
+    there = of_patches(wanted)  # see `patch_limits`
     for limit in wanted:
-        if TRACTIONS not in limit.needs or limit.shared is not None:  # the others are there: `patch_limits`
+        if limit not in there:
             v |= limit.evaluate(solved)
+    places = [solved]
+    if any(limit.moves(solved) for limit in wanted):
+        places += [_at_end(solved, wanted, end) for end in (0, 1)]
+        for end, place in zip(("_low", "_high"), places[1:], strict=True):
+            names = [one.name for limit in wanted for one in limit.results if one.name.endswith(end)]
+            v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
-        names, counted = list(LIMITS), judged(options.outputs)
-        v |= verdict.verdict(solved, counted, [names.index(limit.name) for limit in counted], len(names))
+        names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
+        known = [_nothing(limit) if limit not in wanted else limit for limit in counted]
+        v |= verdict.verdict(places, known, [names.index(limit.name) for limit in counted], len(names))
     for name in [name for name in v if name.startswith("_")]:
         del v[name]
 
 
-def patch_limits(results: Results, options: Options) -> None:
-    """Add the results of the limits that need the tractions of the patches, or what these limits share."""
+def _nothing(limit: Limit) -> Limit:
+    """Return a limit that no case serves, with a verdict that knows nothing."""
+    return dataclasses.replace(limit, verdict=lambda solved, results: Verdict(None, None))
+
+
+def _at_end(solved: SolvedRollers, wanted: tuple[Limit, ...], end: int) -> SolvedRollers:
+    """Return the rollers and their results with the placeholders at the worse (0) or the better (1) end."""
+    values, moved = dict(solved.values), solved.at_end(end)
+    there = of_patches(wanted)
+    for limit in (limit for limit in wanted if limit.moves(solved)):
+        if limit in there:
+            own = {one.name: values[f"_{end}_{one.name}"] for one in limit.results}
+        else:
+            own = limit.evaluate(dataclasses.replace(moved, values=values))
+        values |= own
+    return dataclasses.replace(moved, values=values)
+
+
+def patch_limits(results: Results, options: Options, wanted: tuple[Limit, ...]) -> None:
+    """Add the results of the limits that need the tractions of the patches, or what these limits share.
+
+    Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME` and `_1_NAME`.
+    """
     scene = results.scene
-    own, shared = (limits(options.outputs, options.life_criterion) for limits in (of_patches, of_mechanics))
+    own, shared = of_patches(wanted), [limit for limit in wanted if limit.shared is not None]
     if not own and not shared:
         return
 
@@ -106,6 +170,10 @@ def patch_limits(results: Results, options: Options) -> None:
 
     solved = dataclasses.replace(solved_of(scene.table, results.values, options, results.regime), tractions=fields)
     for limit in own:
+        if limit.moves(solved):
+            for end in (0, 1):
+                at_end = limit.evaluate(solved.at_end(end))
+                results.values |= {f"_{end}_{one.name}": at_end[one.name] for one in limit.results}
         results.values |= limit.evaluate(solved)
     for limit in shared:
         assert limit.shared is not None
@@ -163,10 +231,10 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
         for body in bodies.values()
         for name, own in zip(body.name, body.guesses, strict=True)
     )
-    out = []
-    for limit in asked(options.outputs):
+    out, served = [], to_compute(table, options)
+    for limit in asked(options.outputs, options.not_checked):
         out += _lacks(limit, solved, names)
-        required = dict(limit.required_of(solved))
+        required = dict(limit.required_of(solved)) if limit in served else {}
         for material, placeholders in guesses:
             of = np.stack([own.name == material for own in bodies.values()], axis=1)
             guessed = [f"{n} ({words})" for n, words in placeholders if n in required and np.any(required[n] & of)]
@@ -193,15 +261,13 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
-    """Return True where a life of a body, in travel of the roller, exceeds the run-in distance, (n, 2)."""
+    """Return True where the first life of a body, in travel of the roller, exceeds the run-in distance, (n, 2)."""
     v = block.values
-    solved, out = solved_of(table, v, options, block.regime), np.zeros((len(table), 2), bool)
+    solved = solved_of(table, v, options, block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
-    for limit in judged(options.outputs):
-        assert limit.verdict is not None
-        hours = limit.verdict(solved, v).life_hours
-        out |= False if hours is None else hours > run_in[:, None]
-    return out
+    lives = [own.verdict(solved, v).life_hours for own in to_compute(table, options) if own.verdict is not None]
+    shortest = np.fmin.reduce([hours for hours in lives if hours is not None])
+    return np.asarray(shortest > run_in[:, None])
 
 
 def validity(table: CaseTable, block: Block, options: Options) -> None:

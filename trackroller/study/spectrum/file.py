@@ -26,7 +26,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage import groups_of
+from trackroller.damage import groups_of, others
 from trackroller.damage.sn_curve import PROBABILITIES
 from trackroller.errors import Collector, InputError, check_names, nearest
 from trackroller.files import files_beside, find_beside, read_text
@@ -106,7 +106,7 @@ class Spectrum:
     duty : mapping, optional
         `hours_per_day` and `days_per_year` of travel, for lives in years.
     groups : tuple of str
-        Groups of outputs of the limits asked for by the key `limits`; empty without it.
+        Groups of outputs of the limits that the key `limits` names; without it, all whose inputs are given are checked.
     """
 
     name: str
@@ -157,10 +157,12 @@ class Spectrum:
             found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
         with wrong.part():
             found["duty"] = checked_duty(values["duty"]) if values.get("duty") is not None else None
+            left_out = {}
             if "limits" in values:
                 found["groups"] = _groups(values["limits"])
+                left_out = {"not_checked": others([*np.atleast_1d(values["limits"])])}
         with wrong.part():
-            found["options"] = {key: values[key] for key in OPTIONS if key in values}
+            found["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
             Options(**found["options"])  # checked before any case is solved
         wrong.check()
         return cls(name=str(values.get("name", "spectrum")), description=str(values.get("description", "")), **found)

@@ -15,11 +15,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, fatigue, miner
+from trackroller.damage import LIMITS, fatigue, miner, verdict
 from trackroller.damage.limit import skidding
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import CONVENTIONS, SNCurve
-from trackroller.damage.verdict import first_of, reached_by_breaking, until_reached
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.roller.case import Case, to_table
@@ -63,7 +62,7 @@ def solve_spectrum(
         stress [MPa], damage per shift [1], life in shifts of each track and to the first failure of each body. A block
         that cannot be solved, in which a contact lifts off or the roller skids, or whose peak stress exceeds R_m, makes
         the lives that depend on it NaN; `regime` and `validity_body` state why. The life of the guide is NaN where its
-        overrollings are not known. The key `limits` of the spectrum adds the results of `by_limit`.
+        overrollings are not known. The results of `by_limit` say which limit comes first.
 
     Notes
     -----
@@ -77,12 +76,8 @@ def solve_spectrum(
     database = load_database() if database is None else database
     overrollings = overrollings_per_shift(spectrum)
     cases = cases_of(spectrum, overrollings)
-    options = {key: value for key, value in spectrum.options.items() if key != "life_rule" or spectrum.groups}
-    wanted = dict.fromkeys(("forces", "peak_stress", "life", *spectrum.groups))
-    solved = solve_cases(cases, outputs=tuple(wanted), database=database, **options)
-    if spectrum.groups:  # the life brings fatigue even where it was not asked for
-        names = solved["limit"].values.tolist()
-        solved = solved.sel(limit=[name for name in names if LIMITS[name].group in spectrum.groups])
+    wanted = dict.fromkeys(("forces", "peak_stress", "life", verdict.GROUP, *spectrum.groups))
+    solved = solve_cases(cases, outputs=tuple(wanted), database=database, **spectrum.options)
     return _damage(spectrum, solved, database, overrollings)
 
 
@@ -158,7 +153,7 @@ def _damage(spectrum: Spectrum, solved: xr.Dataset, database: MaterialDatabase, 
             meta = _attrs(unit, f"{words} {to}", f"L_{name[0].upper() if name == 'shifts' else name[0]},{index}")
             variables[f"{body}_life_{name}"] = ((), first[i] * scale, meta)
     variables |= _loads(spectrum, database)
-    if spectrum.groups:
+    if "limit" in solved.coords:
         chance = spectrum.options.get("failure_probability", 0.5)
         variables |= by_limit(spectrum, solved, damage_per_shift(stress, cycles, bodies, living, chance)[1], breaks)
     if "fatigue_stress" in solved:
@@ -268,39 +263,56 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
         limits the worse contact of each block counts.
     """
     limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
-    used, hours = (
-        solved[name].transpose("case", "limit", "body").values for name in ("utilisation", "life_hours_by_limit")
+    used, *lives_of_blocks = (
+        solved[name].transpose("case", "limit", "body").values
+        for name in ("utilisation", *(f"life_hours_by_limit{end}" for end in verdict.ENDS))
     )
     travel = np.array([block.hours for block in spectrum.blocks])[:, None, None]
-    damage = miner.block_damage(travel, hours)
     worst = np.argmax(np.nan_to_num(by_curve.sum(axis=0), nan=np.inf), axis=0)
-    for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
-        damage[:, i] = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
+    of_fatigue = np.take_along_axis(by_curve, worst[None, None], axis=1)[:, 0]
     most = np.max(np.where(travel > 0, used, 0.0), axis=0)
     # D_crit belongs to Miner's rule of the S-N curve; other limits are reached at a sum of 1
     critical = np.array([spectrum.critical_damage if limit.name == "fatigue" else 1.0 for limit in limits])[:, None]
-    shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
     timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
-    broken = reached_by_breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
-    reached = until_reached(most, shifts, timed, limits, broken)
-    first, which = (one[0] for one in first_of(reached[None], most[None], limits, broken[None]))
+    broken = verdict.breaking(np.any(breaks & (travel[:, 0] > 0), axis=0), limits)
     words = (*LIMITS, "unknown")
-    names = np.array([words.index(name) for name in (*(limit.name for limit in limits), "unknown")])[which]
     flag = {"long_name": "limit that the body reaches first", "flag_meanings": " ".join(words)}
-    return {
-        "damage_by_limit": (
-            ("block", "limit", "body"),
-            damage,
-            _attrs("1", "damage of the block per shift by a limit"),
-        ),
-        "damage_sum_by_limit": (("limit", "body"), damage.sum(axis=0), _attrs("1", "damage per shift by a limit")),
+    state = np.where(travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0).max(axis=0)
+    out: dict[str, Any] = {
         "utilisation": (("limit", "body"), most, _attrs("1", "largest utilisation of a limit in a block")),
-        "life_shifts_by_limit": (("limit", "body"), shifts, _attrs("1", "shifts until a limit with a life is reached")),
-        "life_to_first_limit_shifts": ("body", first, _attrs("1", "shifts until the first known limit is reached")),
-        "pair_life_to_first_limit_shifts": (
-            (),
-            float(first_failure(*first)[0]),
-            _attrs("1", "shifts until roller or guide reaches its first known limit"),
-        ),
-        "limiting_mechanism": ("body", names.astype(np.int8), flag),
+        "limit_state": (("limit", "body"), state, dict(solved["limit_state"].attrs)),
     }
+    for end, lives in zip(verdict.ENDS, lives_of_blocks, strict=True):
+        damage = miner.block_damage(travel, lives)
+        for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue"):
+            damage[:, i] = of_fatigue
+        shifts = critical * miner.repetitions_to_failure(damage.sum(axis=0))
+        first, which = (one[0] for one in verdict.first_of(shifts[None], most[None], timed, limits, broken[None]))
+        head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
+        for name, dims, values, meaning in (
+            ("life_shifts_by_limit", ("limit", "body"), shifts, "shifts until a limit with a life is reached"),
+            ("life_to_first_limit_shifts", "body", first, "shifts until the first known limit is reached"),
+            (
+                "pair_life_to_first_limit_shifts",
+                (),
+                float(first_failure(*first)[0]),
+                "shifts until roller or guide reaches its first known limit",
+            ),
+        ):
+            out[name + end] = (dims, values, _attrs("1", head + meaning))
+        if not end:
+            names = np.array([words.index(name) for name in (*(limit.name for limit in limits), "unknown")])[which]
+            out |= {
+                "damage_by_limit": (
+                    ("block", "limit", "body"),
+                    damage,
+                    _attrs("1", "damage of the block per shift by a limit"),
+                ),
+                "damage_sum_by_limit": (
+                    ("limit", "body"),
+                    damage.sum(axis=0),
+                    _attrs("1", "damage per shift by a limit"),
+                ),
+                "limiting_mechanism": ("body", names.astype(np.int8), flag),
+            }
+    return out
