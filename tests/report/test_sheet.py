@@ -17,7 +17,7 @@ from reference_cases import solve_sliding
 from typer.testing import CliRunner
 
 import trackroller as tr
-from trackroller.cli.case import CHEAP, COMPLETE, SHEET_OUTPUTS, groups_of
+from trackroller.cli.case import COMPLETE, SHEET_OUTPUTS, groups_of
 from trackroller.cli.main import app
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
@@ -260,7 +260,7 @@ def test_margins_are_the_utilisations_ranked_by_what_comes_first(complete):
             used = float(ds.utilisation.sel(limit=name, body=body))
             own = [m for m in facts.margins if m.title == LIMITS[name].title and m.body in (body, "roller and guide")]
             assert (own == []) == np.isnan(used) if np.isnan(used) else own[0].used == used
-    reached = [margin.reached for margin in facts.margins]
+    reached = [(margin.state != "exceeded", margin.reached) for margin in facts.margins]
     assert reached == sorted(reached) and len(facts.margins) > 8
     hours = [float(h) for h in ds.life_hours_by_limit.sel(limit="fatigue")]
     told = [m.hours for m in facts.margins if m.title == LIMITS["fatigue"].title]
@@ -299,13 +299,13 @@ def test_the_body_that_fails_first_ends_the_pair(complete):
     facts, ds = complete
     pair = facts.lives[-1]
     assert "the guide fails first" in pair.words and float(ds.guide_life_hours) < float(ds.roller_life_hours)
-    assert "The guide fails first, after" in facts.verdict
+    assert "ends the guide after" in facts.verdict
 
 
 def test_a_life_beyond_the_data_says_so():
     steel = {"roller_material": "1.7225-quenched-tempered", "guide_material": "1.7225-quenched-tempered"}
     case = tr.Case(radial_force=-20, axial_force=0, motor_force=0, **steel)
-    facts = collect(tr.solve(case, (*COMPLETE, *CHEAP), contact_model="sliding"))
+    facts = collect(tr.solve(case, (*COMPLETE, "limits"), contact_model="sliding"))
     assert "beyond the S-N data" in facts.verdict
     lives = [row.value for row in facts.lives if row.words.startswith(("roller, median", "pair"))]
     assert len(lives) == 2 and all("beyond the S-N data" in value for value in lives)
@@ -323,7 +323,7 @@ def test_the_sheet_names_what_it_rests_on(complete):
         "Signature",
         "Dry contact",
         "Isothermal",
-        "Wear: the rate of the new",
+        "Wear: the life lies between",
         "mean stress",
     ):
         assert text in page, text

@@ -55,4 +55,8 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
 
             Options(**options)  # refuses wrong options before the solver is imported
     wrong.check()
+    if "outputs" in options:
+        from trackroller.damage import check_used  # heavy: scipy
+
+        check_used((n for n in FIELDS if n not in case.not_given), options["outputs"], options.get("not_checked", ()))
     return case, options, duty

@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.damage import check_used
 from trackroller.errors import Collector, InputError, listing, raise_all, unknown_name
 from trackroller.methods import those_with
 from trackroller.methods.correlation import copula
 from trackroller.methods.factor import UNBOUNDED
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
+from trackroller.roller.fields import FIELDS
 from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
@@ -40,6 +42,8 @@ _GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "
 def _check_options(study: Study) -> None:
     """Refuse options that exclude each other, in any combination of the levels that are factors."""
 
+    config = study.config
+
     def levels(name: str) -> list[str]:
         return list(study.factors.get(name, {}).get("values", [getattr(study.config, name)]))
 
@@ -54,6 +58,8 @@ def _check_options(study: Study) -> None:
     if shaped and "hertz" in levels("normal"):
         allowed = f"halfspace, because {' and '.join(shaped)} may leave no circle"
         raise InputError("normal", "hertz", allowed, "Write normal: halfspace.")
+    for where, names in (("base.", set(config.base) - set(study.not_given)), ("factors.", study.factors)):
+        check_used([name for name in FIELDS if name in names], config.outputs, config.not_checked, where)
     for model in levels("contact_model"):
         check_accuracy(study.config.accuracy, model, study.config.outputs)
 

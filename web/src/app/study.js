@@ -174,7 +174,7 @@ export function studyView(state, offered, { started }) {
     samples.node.hidden = !SAMPLED.includes(design.field.value);
     if (typeof (study.contact_model ?? "kalker") === "string") model.field.value = study.contact_model ?? "kalker";
     accuracy.field.value = study.accuracy ?? "standard";
-    const chosen = Array.isArray(study.outputs) ? study.outputs : ["forces", "contact", "peak_stress", "life"];
+    const chosen = Array.isArray(study.outputs) ? study.outputs : offered.options.find((o) => o.name === "outputs").value;
     for (const { group, box } of outputs) box.checked = chosen.includes(group);
     for (const key of [...saidOf.keys()]) if (key.startsWith("factors.")) saidOf.delete(key);
     replace(factors, Object.keys(study.factors).length ? Object.keys(study.factors).map(factor) : el("p", { class: "soft" }, "Choose factors with + beside a field of the roller, or here."));

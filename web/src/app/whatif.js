@@ -85,7 +85,7 @@ export function whatIf(state, offered, { rows }) {
   const said = el("p", { class: "soft", role: "status" });
   const values = el("details", {}, el("summary", {}, "The 21 values"));
   let found = null;
-  let wanted = "pair_life_hours";
+  let wanted = "pair_life_to_first_limit_hours";
   for (const field of [from, to]) field.addEventListener("change", () => solveCurve());
   const write_ = (ends) => ([from.value, to.value] = ends.map((end) => String(Number(end.toPrecision(4)))));
 
