@@ -266,9 +266,10 @@ def run_wear(
     """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
     target = None if out is None else writable_data(out)
     page = None if report is None else writable_page(report)
-    new, options, _ = case_of(case, settings)
+    new, options, duty = case_of(case, settings)
     tell_doubts(new)
 
+    from trackroller.report.numbers import on_duty
     from trackroller.report.pages.wear import write_wear
     from trackroller.report.words.wear import sentences
     from trackroller.roller.wear import wear
@@ -291,10 +292,11 @@ def run_wear(
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    if page is not None:
-        write_wear(dataset, page)
-    for sentence in sentences(dataset):
-        print(sentence.text)
+    with on_duty(duty):
+        if page is not None:
+            write_wear(dataset, page)
+        for sentence in sentences(dataset):
+            print(sentence.text)
 
 
 def is_failed(dataset: xr.Dataset) -> bool:

@@ -5,8 +5,11 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
+from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
+from trackroller.report.numbers import lasting
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.roller.record import inputs_of
 from trackroller.roller.wearing import ENDS
 
 
@@ -37,7 +40,9 @@ def _worn(depth: xr.DataArray) -> dict[str, float]:
 def _end(ds: xr.Dataset) -> Sentence:
     why = ENDS.get(str(ds.attrs["end"]), "it is not finished")
     depths = _worn(ds["groove_depth"].isel(travel=-1))
-    return say("wear", "wear_end", travel=float(ds["travel"][-1]), depths=depths, why=why)
+    travel = float(ds["travel"][-1])
+    hours = travel / (KM_PER_HOUR * float(inputs_of(ds)["velocity"]))
+    return say("wear", "wear_end", travel=travel, life=lasting(hours, "h"), depths=depths, why=why)
 
 
 def _pressure(ds: xr.Dataset) -> Sentence:
