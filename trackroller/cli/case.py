@@ -49,6 +49,8 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
 
 def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return the case, the options and the duty of a case file and of --set words."""
+    if path is not None and "=" in path.name and not path.exists():
+        raise InputError("CASE", str(path), "the path of a case file", f"Write --set {path}.", "is no file")
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = {} if path is None else parse_mapping(text, "case file")
     named = {*given, *(ALIASES.get(name, name) for name in given)}

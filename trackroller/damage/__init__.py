@@ -98,31 +98,34 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
     return (*dict.fromkeys(LIMITS[name].group for name in wanted), verdict.GROUP)
 
 
-def unused(names: Iterable[str], outputs: Collection[str], not_checked: Collection[str]) -> dict[str, list[str]]:
-    """Return the given fields of a case that only limits use which the outputs do not ask for, with these limits.
+def check_used(
+    given: Mapping[str, Any], outputs: Collection[str], not_checked: Collection[str], where: str = ""
+) -> None:
+    """Refuse a field of a case that only limits use which the outputs do not ask for.
 
     A field of a limit that `not_checked` leaves out is left out on purpose. `travel` also changes the profiles.
-    """
-    asked_for = asked(outputs, not_checked)
-    found: dict[str, list[str]] = {}
-    for name in (name for name in names if name != "travel"):
-        users = [limit for limit in LIMITS.values() if limit.verdict is not None and name in _fields(limit)]
-        if users and not any(limit in asked_for or limit.name in not_checked for limit in users):
-            found[name] = [limit.name for limit in users]
-    return found
 
-
-def check_used(names: Iterable[str], outputs: Collection[str], not_checked: Collection[str], where: str = "") -> None:
-    """Refuse a field of a case that no output uses; `where` stands before its name in the message.
+    Parameters
+    ----------
+    given : mapping
+        Fields that were given with a value other than the default.
+    outputs, not_checked : collection of str
+        Values of these options.
+    where : str
+        What stands before a field in the message.
 
     Raises
     ------
     InputError
         For the first such field.
     """
-    for name, users in unused(names, outputs, not_checked).items():
-        wrong = f"is given, and no output uses it: it belongs to {', '.join(users)}"
-        raise InputError(f"{where}{name}", "", "", f"Add limits to outputs, or remove {name}.", wrong)
+    asked_for = asked(outputs, not_checked)
+    for name in (name for name in given if name != "travel"):
+        users = [limit for limit in LIMITS.values() if limit.verdict is not None and name in _fields(limit)]
+        if users and not any(limit in asked_for or limit.name in not_checked for limit in users):
+            wrong = f"is used by no output: it belongs to {', '.join(limit.name for limit in users)}"
+            remedy = f"Add limits to outputs, or remove {name}."
+            raise InputError(f"{where}{name}", given[name], "", remedy, wrong)
 
 
 def _fields(limit: Limit) -> set[str]:

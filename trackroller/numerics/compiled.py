@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import re
 import warnings
 from pathlib import Path
 from typing import Any
@@ -23,6 +24,7 @@ from numba.misc.appdirs import AppDirs
 
 from trackroller.environment import is_writable, temporary_cache
 
+COMPILES = re.compile(rf"^\s*(?:import|from) (?:numba|{re.escape(__name__)})\b", re.MULTILINE)  # in a source file
 FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keeps NaN and inf
 _PLAIN: dict[str, Any] = {"error_model": "numpy", "fastmath": False}
 _FAST: dict[str, Any] = {"error_model": "numpy", "fastmath": FAST}
@@ -39,7 +41,7 @@ def forget_stale(package: Path) -> None:
         oldest = min(kept.values(), default=float("inf"))
         changed = [path for path in package.glob("**/*.py") if path.stat().st_mtime > oldest]
         texts = {path: path.read_text(encoding="utf-8") for path in changed}
-        newest = max((p.stat().st_mtime for p, text in texts.items() if "numba" in text or __name__ in text), default=0)
+        newest = max((p.stat().st_mtime for p, text in texts.items() if COMPILES.search(text)), default=0)
         for path, time in kept.items():
             if time < newest:
                 path.unlink(missing_ok=True)

@@ -22,6 +22,12 @@ FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 _OF_LIMITS = {own.name: own for limit in LIMITS.values() for own in limit.mappings}
 
 
+def other_than_default(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return those values of a case that are given, and are not the default of their parameter."""
+    usual = {name: parameter.default for name, parameter in PARAMETERS.items()}
+    return {name: value for name, value in values.items() if value is not None and value != usual.get(name)}
+
+
 def mapping_text(name: str, value: Any) -> str:
     """Return the canonical JSON of a field that is a mapping.
 

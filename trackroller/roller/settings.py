@@ -11,6 +11,7 @@ from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
+from trackroller.roller.fields import other_than_default
 
 
 def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
@@ -58,5 +59,6 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     if "outputs" in options:
         from trackroller.damage import check_used  # heavy: scipy
 
-        check_used((n for n in FIELDS if n not in case.not_given), options["outputs"], options.get("not_checked", ()))
+        given = {name: getattr(case, name) for name in FIELDS if name not in case.not_given}
+        check_used(other_than_default(given), options["outputs"], options.get("not_checked", ()))
     return case, options, duty

@@ -16,7 +16,7 @@ from trackroller.methods.correlation import copula
 from trackroller.methods.factor import UNBOUNDED
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS
-from trackroller.roller.fields import FIELDS
+from trackroller.roller.fields import FIELDS, other_than_default
 from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
@@ -58,8 +58,9 @@ def _check_options(study: Study) -> None:
     if shaped and "hertz" in levels("normal"):
         allowed = f"halfspace, because {' and '.join(shaped)} may leave no circle"
         raise InputError("normal", "hertz", allowed, "Write normal: halfspace.")
-    for where, names in (("base.", set(config.base) - set(study.not_given)), ("factors.", study.factors)):
-        check_used([name for name in FIELDS if name in names], config.outputs, config.not_checked, where)
+    given = {name: value for name, value in config.base.items() if name in FIELDS and name not in study.not_given}
+    for where, values in (("base.", given), ("factors.", study.factors)):
+        check_used(other_than_default(values), config.outputs, config.not_checked, where)
     for model in levels("contact_model"):
         check_accuracy(study.config.accuracy, model, study.config.outputs)
 
