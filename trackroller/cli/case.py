@@ -43,6 +43,8 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
             raise InputError(
                 "--set", word, "key=value", f"Give a value, or leave --set {key.strip()} out.", "has no value"
             )
+        if key.strip() in settings:
+            raise InputError("--set", word, "each key once", "Remove one of the two.", f"gives {key.strip()} twice")
         settings[key.strip()] = parse_yaml(value, f"--set {key}")
     return settings
 
@@ -50,7 +52,8 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
 def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
     """Return the case, the options and the duty of a case file and of --set words."""
     if path is not None and "=" in path.name and not path.exists():
-        raise InputError("CASE", str(path), "the path of a case file", f"Write --set {path}.", "is no file")
+        remedy = f"Write --set {path}: each key has a --set of its own."
+        raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
     values = {} if path is None else parse_mapping(text, "case file")
     named = {*given, *(ALIASES.get(name, name) for name in given)}

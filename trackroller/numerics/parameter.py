@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.errors import nearest
 from trackroller.numerics.cells import plain_quantity
 
 SMALLEST = 1e-6  # least size of a number that must not be 0
@@ -32,6 +33,8 @@ class Parameter:
         numbers that are smaller than `SMALLEST`.
     label : str
         Name for figures and reports, if it differs from `name`.
+    words : tuple of str
+        Words that stand for a number of a database.
     role : str
         Who sets the value: the designer (`choice`) or the use of the roller (`condition`).
     """
@@ -49,6 +52,7 @@ class Parameter:
     allow_missing: bool = False
     nonzero: bool = False
     label: str = ""
+    words: tuple[str, ...] = ()
     role: str = "choice"
 
     @property
@@ -72,7 +76,8 @@ class Parameter:
         if self.nonzero:
             parts.append(f"not 0 (at least {SMALLEST:g}{unit} in size)")
         parts.append("finite or inf" if self.allow_infinite else "finite")
-        return f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
+        number = f"a number for the {self.long_name} [{self.unit}], " + ", ".join(parts)
+        return f"{number}; or {', '.join(self.words[:-1])} or {self.words[-1]}" if self.words else number
 
     def remedy(self, value: float, written: object = None) -> str:
         """Return what to write instead of a value that is not allowed.
@@ -86,9 +91,11 @@ class Parameter:
         """
         if math.isfinite(value) and self.accepts(-value):
             return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
-        plain = plain_quantity(written) if isinstance(written, str) else ""
-        if plain:
-            return f"Write {plain}."
+        if isinstance(written, str):
+            if close := nearest(written, self.words):
+                return f"Did you mean '{close}'?"
+            if plain := plain_quantity(written):
+                return f"Write {plain}."
         example = "" if math.isnan(self.default) else f", such as {self.default:g}"
         left_out = "" if not self.allow_missing else ", or leave it out"
         return f"Write a number that is allowed{example}{left_out}."

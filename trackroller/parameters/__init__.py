@@ -57,4 +57,4 @@ ROLE_OF = {name: parameter.role for name, parameter in PARAMETERS.items()} | {
     **dict.fromkeys((*MATERIAL_FIELDS, "material_pair", *MAPPING_FIELDS), "choice"),
     "friction_law": "condition",
 }
-FRICTION_LEVELS = ("typical", "upper", "lower")
+FRICTION_LEVELS = PARAMETERS["friction_coefficient"].words

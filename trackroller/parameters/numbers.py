@@ -69,6 +69,7 @@ _ALL = (
         0.0,
         2.0,
         allow_missing=True,
+        words=("typical", "upper", "lower"),
         **_USE,
     ),
     Parameter(

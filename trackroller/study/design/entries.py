@@ -8,7 +8,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
-from trackroller.errors import InputError, listing, nearest, unknown_name
+from trackroller.errors import InputError, listing, unknown_name
 from trackroller.methods.factor import LISTS, parse
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
@@ -169,8 +169,6 @@ def _number(name: str, value: Any, where: str) -> Any:
         remedy = parameter.remedy(number, value)
         if isinstance(value, list):
             remedy = f"Give several values under factors: {{{name}: {{values: {value}}}}}."
-        if name == "friction_coefficient" and isinstance(value, str) and (close := nearest(value, FRICTION_LEVELS)):
-            remedy = f"Did you mean '{close}'?"
         raise InputError(where, value, parameter.allowed(), remedy)
     return number
 
