@@ -45,6 +45,27 @@ def test_specks_and_lost_points_are_named(length, off):
     assert "point 41 (-2.5, 0.454356)" in told and "lies 5 mm off its neighbours" in told and "Leave out lost" in told
 
 
+@pytest.mark.parametrize("length", [2, 3, 4, 5])
+@pytest.mark.parametrize(("off", "noise"), [(1e-3, 0.0), (-5e-3, 0.0), (-5e-3, 1e-6)])
+def test_specks_at_the_ends_are_asked_about(length, off, noise):
+    """A speck on the outermost points, whole or cut off; a chamfer or a rounding of the same size is shape."""
+    scatter = noise * np.random.default_rng(5).standard_normal(X.size)
+    along = np.arange(1, length + 1)
+    for speck in (np.ones(length), np.sin(np.pi * along / (length + 1))):
+        for places, bump in ((slice(-length, None), speck), (slice(0, length), speck[::-1])):
+            z = changed(places, off * bump) + scatter
+            [run] = examined(X, z).at_ends
+            first = range(X.size)[places][0]
+            assert (run.first, run.last) == (first, first + length - 1)
+            assert run.off == pytest.approx(abs(off) * bump.max(), rel=0.4)
+            if length == 5 and bump.min() == 1.0:  # long enough for a step
+                assert "have a step between them" in refusal(X, z)
+            else:
+                assert "µm off the curve of the points beside them; if they are a speck, leave" in asked(X, z)
+    for shape in (along, along**2 / length):
+        assert not examined(X, changed(slice(-length, None), -abs(off) * shape) + scatter).at_ends
+
+
 @pytest.mark.parametrize("places", [slice(0, 1), slice(0, 5), slice(178, 181), slice(179, 180), slice(60, 90)])
 @pytest.mark.parametrize("mark", [0.0, -9999.0, 9999.0])
 def test_lost_points_at_the_ends_and_long_runs_are_jumps(places, mark):
@@ -87,7 +108,7 @@ def test_clean_curves_with_edges_pass(seed):
     for count in (45, 181, 901):
         x = np.linspace(-half, half, count)
         found = examined(x, curve(x))
-        assert not found.runs and not found.jumps and found.roughness < TOLD
+        assert not found.at_ends and not found.runs and not found.jumps and found.roughness < TOLD
 
 
 def test_circles_with_few_points_and_up_to_the_equator_pass():

@@ -406,6 +406,9 @@ def test_marks_of_lost_points_are_no_remarks(mark, read):
         ("x [mm];z [mm] (10:1)", "10:1"),
         ("# 10-fold\nx;z", "10"),
         ("x;-z", "-1"),
+        ("V=1000\nx;z", "1000"),
+        ("# Vv: 2000x, Vh = 20x\nx;z", "2000"),
+        ("Lt=4.8 mm V = 500:1\nx;z", "500"),
     ],
 )
 def test_a_scale_that_a_head_states_is_a_question(head, scale, read):
@@ -414,7 +417,16 @@ def test_a_scale_that_a_head_states_is_a_question(head, scale, read):
 
 
 @pytest.mark.parametrize(
-    "head", ["scale 1:1\nx;z", "# Maßstab: 1\nx;z", "X2;Z2", "# measured 3 times on 2026-03-01 01:10\nx;z"]
+    "head",
+    [
+        "scale 1:1\nx;z",
+        "# Maßstab: 1\nx;z",
+        "X2;Z2",
+        "# measured 3 times on 2026-03-01 01:10\nx;z",
+        "# V=1, v=500\nx;z",
+        "# V=50 mm/s\nx;z",
+        "# Software V: 2.1\nx;z",
+    ],
 )
 def test_a_head_without_a_scale_is_read(head, read):
     assert is_right(read(lines_of("{x};{z}", head)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -27,6 +28,7 @@ STEEP = 2.75  # tangent of 70 degrees; an instrument does not follow such a wall
 LONGEST_MARK = 12  # points of the height 0 in a row that are lost ones
 LARGE = 2.5  # smallest step to lost points of the height 0 over the three steps beside it
 FEWEST = 9  # points from which on points off the curve are sought
+FEWEST_AT_END, HIGHEST_AT_END = 30, 0.05  # points from which on a speck is sought at an end; its largest height [mm]
 FARTHEST = 1e7  # mm; a longer length is a mark of lost points
 
 # Degree and number of points of the polynomials beside a run; few points see details, many points average noise.
@@ -62,12 +64,15 @@ class Findings(NamedTuple):
         Standard deviation of random scatter and of rounding [mm]; 0 where neighbours follow one curve.
     spacing : float
         Median distance of neighbours [mm].
+    at_ends : tuple of Run
+        Outermost points that may be off the curve, or shape: no points beyond them confirm the curve.
     """
 
     runs: tuple[Run, ...]
     jumps: tuple[int, ...]
     scatter: float
     spacing: float
+    at_ends: tuple[Run, ...] = ()
 
     @property
     def roughness(self) -> float:
@@ -191,7 +196,8 @@ def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
     runs += tuple(mark for mark in _marks(x, z) if all(mark.last < run.first or mark.first > run.last for run in runs))
     inside = {place for run in runs for place in range(run.first - 1, run.last + 1)}
     jumps = {*_jumps(x, z, noise), *(place for place in _steps(x, z, noise, fits) if place not in inside)}
-    return Findings(tuple(sorted(runs)), tuple(sorted(jumps)), max(_random_scatter(x, z), grain), spacing)
+    scatter = max(_random_scatter(x, z), grain)
+    return Findings(tuple(sorted(runs)), tuple(sorted(jumps)), scatter, spacing, _runs_at_ends(x, z, noise))
 
 
 def noise_of(u: np.ndarray, height: np.ndarray) -> float:
@@ -398,6 +404,44 @@ def _runs(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits]) 
         if all(run.last < other.first or run.first > other.last for other in kept):
             kept.append(run)
     return tuple(sorted(kept))
+
+
+def _runs_at_ends(x: np.ndarray, z: np.ndarray, noise: float) -> tuple[Run, ...]:
+    """Return the runs of 2 to `LONGEST_RUN` outermost points that leave the curve and turn back to its direction.
+
+    Nothing beyond the end confirms the curve there. A chamfer, a rounding or another curvature leaves the curve ever
+    faster, so that only points whose distance from the curve grows more slowly again are taken for a speck.
+    """
+    if x.size < FEWEST_AT_END:
+        return ()
+    last = x.size - 1
+    found = [(_run_at_end(x, z, noise), False), (_run_at_end(-x[::-1], z[::-1], noise), True)]
+    return tuple(Run(0, last - run.first, run.off) if is_first else run for run, is_first in found if run is not None)
+
+
+def _run_at_end(x: np.ndarray, z: np.ndarray, noise: float) -> Run | None:
+    """Return the run of the last points that is a speck, see `_runs_at_ends`."""
+    for length in range(LONGEST_RUN, 1, -1):
+        first, sizes = x.size - length, []
+        widths = np.diff(x[first - 1 :])
+        least = max(_NOISE * noise, MISLEADING * float(np.median(widths)))
+        for degree, count in _FITS:
+            near = slice(first - count, first)
+            fits, windows = _Fits(x[near], z[near], degree, count), np.zeros(length, dtype=int)
+            off = z[first:] - fits.height(windows, x[first:])
+            off *= np.sign(off[np.abs(off).argmax()])
+            error = fits.error(windows, x[first:], noise)
+            slopes = np.diff(off, prepend=0.0) / widths
+            back = (slopes[:-1] - slopes[1:]) * np.minimum(widths[1:], widths[:-1])
+            turn = int(back.argmax())
+            is_off = least < off.max() < HIGHEST_AT_END and np.all(off > _CERTAIN * error)
+            if is_off and back[turn] > max(least, _CERTAIN * error[turn + 1]):
+                sizes.append(float(off.max()))
+        sizes.sort()
+        # a single polynomial may miss by chance
+        if any(larger - size < _ALIKE * size for size, larger in pairwise(sizes)):
+            return Run(first, x.size - 1, float(np.median(sizes)))
+    return None
 
 
 def _steps(x: np.ndarray, z: np.ndarray, noise: float, polynomials: list[_Fits]) -> tuple[int, ...]:

@@ -179,6 +179,12 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         way = "run from large to small x" if np.all(steps <= 0) else "do not run in one direction"
         sentences.append(f"{name}: its points {way}; they were sorted by x.")
     sentences += [f"{name}: {text}" for text in _gaps_and_waves(points[order], found)]
+    for run in found.at_ends:
+        ends = " to ".join(f"({px:.4g}, {pz:.4g})" for px, pz in points[order][[run.first, run.last]])
+        sentences.append(
+            f"{name}: its outermost points {ends} lie {1e3 * run.off:.2g} µm off the curve of the points beside them; "
+            "if they are a speck, leave them out."
+        )
     if profile.get("smooth"):
         if found.error_if_smoothed >= UNSURE:
             sentences.append(

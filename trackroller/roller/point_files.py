@@ -51,7 +51,8 @@ _SCALE = re.compile(
     r"|überhöh\w*|ueberhoeh\w*|vergrößer\w*|vergroesser\w*|verstärk\w*|verstaerk\w*)(?:\W+[xyz])?"
     r"\W+([-+\d.,eE]+(?:\s*[:/]\s*[\d.,]+)?)"
     r"|(?<![\d:.,])((?:[125]|25)0*\s*:\s*1|1\s*:\s*(?:[125]|25)0*)(?![\d:.,])"
-    r"|(\d[\d.,]*)\s*-?\s*(?:fold|fach)\b",
+    r"|(\d[\d.,]*)\s*-?\s*(?:fold|fach)\b"
+    r"|\b(?-i:V[vhxyz]?)\s*[:=]\s*(\d+)(?![\d.,])(?!\s*[^\W\dx_:])",  # V=1000, but no speed and no version
     re.IGNORECASE,
 )
 _TIMES = re.compile(  # in the cell of a name: `10*z`, `10z`, `z x10`, `z * 10`, `-z`
