@@ -7,6 +7,9 @@ CI_STAMP := $(VENV)/.ci-ready
 STUDY ?= config/studies/default.yaml
 CORES ?= all
 SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile
+# what another version of Python may change: syntax trees, files, processes, imports; a solution, a study, the workflow
+INTERPRETER := tests/numerics tests/parameters tests/study/file tests/cli/test_cli.py tests/cli/test_file_names.py \
+	tests/study/test_resume.py tests/roller/test_solver.py tests/test_environment.py tests/workflow/test_workflow.py
 PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
 # Snakemake needs a home that can be written and the name of a user; a container or a cluster may give neither
@@ -19,7 +22,7 @@ export USER := $(or $(USER),$(LOGNAME),$(shell id -u))
 # an environment that forbids bytecode would have each process compile each module anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: env env-ci lock study validate test test-quick test-browser lint docs explorer explorer-check test-slurm test-long clean-results
+.PHONY: env env-ci lock study validate test test-quick test-python test-browser lint docs explorer explorer-check test-slurm test-long clean-results
 
 env: $(STAMP)
 
@@ -61,6 +64,10 @@ test: $(CI_STAMP)
 # without the studies of accuracy and the whole processes, which make test runs
 test-quick: $(STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m "not long and not slow and not slurm" $(wildcard $(PHYSICS))
+
+# another version of Python runs these tests, which depend on it
+test-python: $(STAMP)
+	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m "not long and not slow and not slurm" $(wildcard $(INTERPRETER))
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
