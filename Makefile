@@ -99,7 +99,7 @@ test-slurm: $(STAMP)
 
 # the slow tests, with 200 interrupted and 200 killed commands, 600 extremes and 10,000 generated inputs
 test-long: $(STAMP)
-	EDITS=10000 INTERRUPT_TRIES=200 EXTREME_HUNDREDS=6 $(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m slow
+	EDITS=10000 INTERRUPT_TRIES=200 EXTREME_FIFTIES=12 $(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m slow
 	TRACKROLLER_EXAMPLES=10000 $(BIN)/python -m pytest -q -n 2 tests/cli/test_refusals.py tests/cli/test_fuzz.py
 
 clean-results:
