@@ -1,6 +1,6 @@
 """A random edit of any file of a finished study: each reading command gives the untouched study's result, or names it.
 
-`EDITS` sets the number of edits, `EDITS_SEED` which ones; continuous integration tries 200, `make test-long` 10,000.
+`EDITS` sets the number of edits, `EDITS_SEED` which ones; continuous integration tries 100, `make test-long` 10,000.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 
-EDITS, SEED = (int(os.environ.get(name, given)) for name, given in (("EDITS", "200"), ("EDITS_SEED", "2")))
+EDITS, SEED = (int(os.environ.get(name, given)) for name, given in (("EDITS", "100"), ("EDITS_SEED", "2")))
 STUDY = """
 name: edited
 design: lhs
