@@ -40,6 +40,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "spectrum": "study.spectrum.file.Spectrum",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
+    "verdict": "results.verdict.Verdict",
     "sentence": "report.words.sentence.Sentence",
 }
 WAY = (  # of a study: what makes the next thing of the one before, and the file that it writes

@@ -21,6 +21,7 @@ from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.roles import roles_of
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
+STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")  # compared in a study without lives
 TIED = 1e-9  # relative difference of lives that count as equal
 
 
@@ -94,9 +95,14 @@ class Candidates:
         results : the solved study
         free : conditions that count as choices here, because a goal names them
         """
-        goal = results.life or ("peak_stress_roller", "peak stress of the roller", "MPa")
+        goal = results.life or STRESS
         if not (results.valid & ~np.isnan(results.column(goal[0]))).any():
             return None
+        return cls.grouped(results, goal, free)
+
+    @classmethod
+    def grouped(cls, results: Results, goal: tuple[str, str, str], free: tuple[str, ...] = ()) -> Candidates:
+        """Return the designs of a study, whether a case is valid or not; `goal` is what is compared."""
         roles = factor_roles(results) | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
         own = np.ones(len(results.table), dtype=bool)
@@ -141,6 +147,14 @@ class Candidates:
         return len(np.unique(codes(self.results.table, self.conditions)[self.usable])) if self.matched else 0
 
     @cached_property
+    def members(self) -> pd.DataFrame:
+        """Return the choices of each design, in the order of their numbers."""
+        numbers, first = np.unique(self.place, return_index=True)
+        rows = first[numbers >= 0]
+        own = {name: self.results.table[name].to_numpy()[rows] for name in self.choices}
+        return pd.DataFrame(own, index=range(len(rows)))
+
+    @cached_property
     def table(self) -> pd.DataFrame:
         """Return one row a design, the best first; designs without a valid case come last.
 
@@ -150,9 +164,8 @@ class Candidates:
         of the rolling cases; with random conditions `b10`, the life that nine of ten cases reach if cases that are not
         valid count as 0, with its 95 % interval; `rank`, equal for ties.
         """
-        results, count = self.results, len(self.size)
-        members = {name: results.table[name].to_numpy()[self._first] for name in self.choices}
-        table = pd.DataFrame(members, index=range(count))
+        results = self.results
+        table = self.members.copy()
         table["cases"] = self.size
         for name, rows in (("rolls", results.rolling), ("valid", self.usable)):
             table[name] = self._count(rows)
@@ -198,12 +211,6 @@ class Candidates:
         way : `max` if more is better, otherwise `min`
         """
         return self._least(values if way == "max" else -values, self.usable)
-
-    @cached_property
-    def _first(self) -> np.ndarray:
-        """Return the row of the first case of each design."""
-        numbers, first = np.unique(self.place, return_index=True)
-        return first[numbers >= 0]
 
     def _count(self, rows: np.ndarray) -> np.ndarray:
         return np.bincount(self.place[rows & (self.place >= 0)], minlength=len(self.size))

@@ -164,6 +164,17 @@ class Results:
     def _candidates(self) -> dict[tuple[str, ...], Any]:
         return {}
 
+    @cached_property
+    def verdict(self) -> Any:
+        """Return which candidate to build, or why the study cannot say so.
+
+        Returns
+        -------
+        Verdict or None
+            See `trackroller.results.verdict.Verdict`; None for a search and without a life or a stress.
+        """
+        return _of("results.verdict", "verdict_of")(self)
+
     def best(self, count: int = 5) -> pd.DataFrame:
         """Return the best designs over all their conditions, the best one first.
 

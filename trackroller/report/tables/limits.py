@@ -17,15 +17,14 @@ from trackroller.materials import Material
 from trackroller.parameters import BODIES
 from trackroller.report.numbers import between, capital, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
+from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
-from trackroller.roller.dataset import NOTES
 from trackroller.roller.limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
 YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface
 BOTH = "roller and guide"
-GUESSES = ": placeholders of material"  # in a note on a limit that rests on values without a source
 
 
 GUESSED = " (rests on placeholders)"
@@ -161,7 +160,7 @@ def _of_limits(
     """Return the margins of the limits of a result, for the bodies that they concern."""
     out = []
     places = {dim: ds[dim].values.tolist() for dim in ("limit", "body") if dim in ds}
-    notes = _notes(ds)
+    notes = notes_of(ds)
     broken = {body: OVERLOADED in lifeless[body] for body in lifeless}
     for name in places["limit"] if "utilisation" in ds else ():
         limit = LIMITS[name]
@@ -301,7 +300,7 @@ def unchecked(ds: xr.Dataset) -> list[str]:
 def not_checked(ds: xr.Dataset) -> list[str]:
     """Return what was not checked and what it lacks, and the limits that the user left out."""
     lacking: dict[str, list[str]] = {}
-    for note in _notes(ds):
+    for note in notes_of(ds):
         if GUESSES not in note and not note.startswith(temperature.HEAD):
             name, _, text = note.partition(": ")
             what = text.partition(". ")[0].removeprefix("the case gives no ")
@@ -316,13 +315,6 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     return out + ([f"Left out: {listing(missing)}."] if missing else [])
 
 
-def guessed_values(ds: xr.Dataset) -> list[tuple[str, str, str]]:
-    """Return the limits that rest on placeholders of a material: limit, material, and its values with their ranges."""
-    notes = [note.partition(GUESSES) for note in _notes(ds)]
-    parts = [(limit, *rest.strip(" .").partition(": ")) for limit, found, rest in notes if found]
-    return [(limit, material, values) for limit, material, _, values in parts]
-
-
 def placeholders(ds: xr.Dataset) -> list[str]:
     """Return the placeholders of materials on which the limits rest, one sentence for a material."""
     by_material: dict[str, list[str]] = {}
@@ -333,8 +325,4 @@ def placeholders(ds: xr.Dataset) -> list[str]:
 
 def at_temperature(ds: xr.Dataset) -> list[str]:
     """Return one sentence for each table over temperature that the results rest on."""
-    return [note for note in _notes(ds) if note.startswith(temperature.HEAD)]
-
-
-def _notes(ds: xr.Dataset) -> list[str]:
-    return [note for note in str(ds.attrs.get(NOTES, "")).split("\n") if note]
+    return [note for note in notes_of(ds) if note.startswith(temperature.HEAD)]

@@ -7,12 +7,12 @@ import numpy as np
 from trackroller.damage import LIMITS
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.report.numbers import capital, count, level_text, long_name, rounded
-from trackroller.report.tables.limits import guessed_values
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.candidates import Candidates
 from trackroller.results.first_limits import Turn, deciding, first_limit, turn, without_first
+from trackroller.results.limit_notes import guessed_values
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
 from trackroller.results.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied

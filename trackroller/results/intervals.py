@@ -1,0 +1,224 @@
+"""The interval of each case of a study: both ends of its life, or why it is not met or not judged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from trackroller.damage import LIMITS
+from trackroller.methods.b10 import b10
+from trackroller.parameters import FIRST_TO_FAIL, REGIMES
+from trackroller.results.candidates import FEWEST, Candidates
+from trackroller.results.columns import codes
+from trackroller.results.first_limits import first_limit
+from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.results import Results
+from trackroller.results.unsure import UNSURE
+from trackroller.study.outputs import flat
+
+BESIDE = ("rating", "catalogue", "multiaxial")  # limits that stand beside the verdict: second models of the same end
+NOT_JUDGED = ("life not known", "steep friction", "conformal", "outside the half-space", "not converged")
+
+
+@dataclass(frozen=True)
+class Cases:
+    """The cases of a study with the interval of each.
+
+    The interval is [0, 0] where a case is not met: it skids, lifts off, breaks, yields, misses a constraint, or exceeds
+    a limit without hours on values that were given. It is [0, inf] where the model does not judge the case. Otherwise
+    it holds the life at both ends of the ranges of the placeholders, or twice the same life where it rests on none.
+
+    Attributes
+    ----------
+    candidates : the designs of the study
+    """
+
+    candidates: Candidates
+
+    @property
+    def results(self) -> Results:
+        """Return the solved study."""
+        return self.candidates.results
+
+    @property
+    def own(self) -> np.ndarray:
+        """Return the cases that are compared, shape (n,); not those of a less exact contact model."""
+        return np.asarray(self.candidates.place >= 0)
+
+    @cached_property
+    def spans(self) -> tuple[str, ...]:
+        """Return the conditions that span the ranges of placeholders, and so are none."""
+        few = (n for n in UNSURE if n in self.candidates.conditions and len(self.results.levels(n)) <= MOST_LEVELS)
+        return tuple(few) if self.candidates.matched else ()
+
+    @cached_property
+    def conditions(self) -> tuple[str, ...]:
+        """Return the conditions of the use."""
+        return tuple(n for n in self.candidates.conditions if n not in self.spans)
+
+    @cached_property
+    def use(self) -> np.ndarray:
+        """Return the number of the condition of each case, shape (n,)."""
+        return codes(self.results.table, self.conditions)
+
+    @cached_property
+    def level(self) -> np.ndarray:
+        """Return the number of the place in the ranges of the placeholders of each case, shape (n,)."""
+        return codes(self.results.table, self.spans)
+
+    @property
+    def sampled(self) -> bool:
+        """Return whether the conditions are a random sample, large enough for the life that nine of ten reach."""
+        own = self.candidates
+        return own.drawn and own.rising and bool(self.conditions) and bool(own.size.min() >= FEWEST)
+
+    @cached_property
+    def reason(self) -> np.ndarray:
+        """Return why a case is not met or not judged, shape (n,); '' where it is judged."""
+        results = self.results
+        life = self._column("")
+        out = np.full(len(life), "", dtype=object)
+        missed = np.zeros(len(life), dtype=bool) if results.allowed is None else ~results.allowed
+        masks = [
+            ("life not known", np.isnan(life)),
+            *((f"limit {name}", rows) for name, rows in self._limits("exceeded").items()),
+            ("yields", results.flagged("yield")),
+            ("breaks", results.flagged("static")),
+            ("steep friction", results.flagged("steep_friction")),
+            ("conformal", results.flagged("conformal")),
+            ("outside the half-space", results.flagged("half_space")),
+            ("misses a constraint", missed),
+            ("not converged", (results.column("converged", 1.0) != 1) | (results.regime == REGIMES.index("failed"))),
+            ("lifts off", results.regime == REGIMES.index("lift_off")),
+            ("skids", results.regime == REGIMES.index("full_slip")),
+        ]
+        for word, rows in masks:  # the last one counts
+            out[rows] = word
+        return out
+
+    @cached_property
+    def judged(self) -> np.ndarray:
+        """Return the cases that the model judges, shape (n,)."""
+        return np.asarray(~np.isin(self.reason.astype(str), NOT_JUDGED))
+
+    @cached_property
+    def ends(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return both ends of the goal of each case, as a life or as 1/stress, shape (n,) each."""
+        low, high = self._column("_low"), self._column("_high")
+        if not self.candidates.rising:
+            low, high = 1.0 / low, 1.0 / high
+        met = self.reason == ""
+        return np.where(met, low, 0.0), np.where(met, high, np.where(self.judged, 0.0, np.inf))
+
+    def _column(self, end: str) -> np.ndarray:
+        """Return the goal or an end of its range, shape (n,); the goal itself where no range is stored."""
+        name = self.candidates.goal[0]
+        value: np.ndarray = self.results.column(name)
+        if not end:
+            return value
+        if f"{name}{end}" not in self.results.data:
+            return value
+        found = flat(self.results.data, f"{name}{end}", self.results.dims).astype(float)
+        return np.asarray(np.where(np.isnan(found), value, found))
+
+    def _limits(self, state: str) -> dict[str, np.ndarray]:
+        """Return the cases in which each limit without hours is `exceeded` or `open`, shape (n,) by limit."""
+        data = self.results.data
+        if "limit_state" not in data:
+            return {}
+        words = str(data["limit_state"].attrs["flag_meanings"]).split()
+        values = flat(data, "limit_state", self.results.dims)  # (n, limit, body)
+        hit = (values == words.index(state)).any(axis=2)
+        names = data["limit"].values.tolist()
+        return {name: hit[:, i] for i, name in enumerate(names) if name not in (*self.timed, *BESIDE)}
+
+    @cached_property
+    def timed(self) -> tuple[str, ...]:
+        """Return the limits that have hours and end a life after them."""
+        data = self.results.data
+        if "life_hours_by_limit" not in data:
+            return ()
+        known = data["life_hours_by_limit"].notnull().any([d for d in data["life_hours_by_limit"].dims if d != "limit"])
+        names = [str(name) for name, has in zip(data["limit"].values, known.values, strict=True) if has]
+        return tuple(name for name in names if name not in LIMITS or not LIMITS[name].ends_at_once)
+
+    @cached_property
+    def open_limits(self) -> dict[str, np.ndarray]:
+        """Return the cases in which a limit is exceeded at one end of the range of a placeholder only."""
+        return {name: rows & (self.reason == "") for name, rows in self._limits("open").items()}
+
+    @cached_property
+    def error(self) -> np.ndarray:
+        """Return the relative error of the goal of each case by the solution, shape (n,) [1]; 0 if it is not known."""
+        results = self.results
+        if not self.candidates.rising:
+            return np.asarray(np.nan_to_num(results.column("error_estimate_roller")))
+        if "life_error_estimate" not in results.data:
+            return np.zeros(len(results.table))
+        data = results.data.transpose(..., "contact", "body", missing_dims="ignore")
+        errors, lives = (flat(data, name, results.dims) for name in ("life_error_estimate", "life_cycles"))
+        place = np.argmin(np.where(np.isnan(lives), np.inf, lives), axis=1)[:, None, :]
+        own = np.nan_to_num(np.take_along_axis(errors, place, axis=1)[:, 0, :])
+        by_fatigue = np.isin(self.first.astype(str), ("fatigue", ""))
+        return np.asarray(np.where(by_fatigue, np.where(self.guide, own[:, 1], own[:, 0]), 0.0))
+
+    @cached_property
+    def guide(self) -> np.ndarray:
+        """Return the cases in which the guide fails first, shape (n,)."""
+        return np.asarray(self.results.first_failing(self.candidates.goal[0]) == FIRST_TO_FAIL.index("guide"))
+
+    @cached_property
+    def beyond(self) -> np.ndarray:
+        """Return the cases whose life lies beyond the S-N data, shape (n,)."""
+        return np.asarray(self.results.beyond_data(self.candidates.goal[0]))
+
+    @cached_property
+    def first(self) -> np.ndarray:
+        """Return the limit that ends each case, shape (n,); '' where it is not known."""
+        if self.candidates.goal == FIRST_LIMIT:
+            return first_limit(self.results)
+        return np.full(len(self.results.table), "fatigue" if self.candidates.rising else "", dtype=object)
+
+    @cached_property
+    def out_of_reach(self) -> np.ndarray:
+        """Return the cases of the conditions that no candidate meets, shape (n,)."""
+        high = self.ends[1]
+        if not self.conditions:
+            return np.zeros(len(high), dtype=bool)
+        if not self.candidates.matched:
+            fails = self.own & np.isin(self.reason.astype(str), ("lifts off", "skids"))
+            return np.asarray(fails & (not self._any_reaches(self.own)))
+        most = np.zeros(self.use.max() + 1)
+        np.maximum.at(most, self.use[self.own], high[self.own])
+        hopeless = self.own & (most[self.use] == 0.0)
+        # nine of ten conditions: those without any candidate count as 0, unless no candidate is left
+        return hopeless if not (self.sampled and self._any_reaches(self.own)) else np.zeros(len(high), dtype=bool)
+
+    def _any_reaches(self, rows: np.ndarray) -> bool:
+        """Return whether nine of ten of these conditions are met by some candidate."""
+        high = self.ends[1]
+        groups = (high[rows & (self.candidates.place == i)] for i in range(len(self.candidates.size)))
+        return any(len(own) and b10(own)[0] > 0.0 for own in groups)
+
+    def conditions_in(self, rows: np.ndarray) -> np.ndarray:
+        """Return the number of conditions of each candidate that have one of these cases, shape (candidates,)."""
+        place, many = self.candidates.place, len(self.candidates.size)
+        pairs = np.unique(place[rows] * (int(self.use.max()) + 1) + self.use[rows])
+        return np.bincount(pairs // (int(self.use.max()) + 1), minlength=many)
+
+    def worst(self, kept: np.ndarray) -> np.ndarray:
+        """Return the case of each candidate with the smallest low end, shape (candidates,); -1 without a case.
+
+        Of sampled conditions it is the case whose low end nine of ten reach.
+        """
+        candidates, (low, high) = self.candidates, self.ends
+        out = np.full(len(candidates.size), -1)
+        rows = np.flatnonzero(kept & self.own)
+        rows = rows[np.lexsort((high[rows], low[rows], candidates.place[rows]))]
+        numbers, start, size = np.unique(candidates.place[rows], return_index=True, return_counts=True)
+        step = np.ceil(0.1 * size).astype(int) - 1 if self.sampled else np.zeros(len(size), dtype=int)
+        out[numbers] = rows[start + step]
+        return out

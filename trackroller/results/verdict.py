@@ -1,0 +1,735 @@
+"""The verdict of a study: which candidate to build, or why the study cannot say so.
+
+A candidate is a combination of choices, judged over the conditions of the study. Each case has an interval of its life:
+`[0, 0]` where the candidate does not meet its condition, `[0, inf]` where the model cannot judge it, otherwise the life
+at both ends of the ranges of the placeholders.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.damage import LIMITS
+from trackroller.methods.b10 import b10
+from trackroller.parameters import BODIES, MATERIAL_FIELDS
+from trackroller.results.candidates import STRESS, TIED, Candidates
+from trackroller.results.intervals import BESIDE, Cases
+from trackroller.results.limit_notes import guessed_values
+from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.pareto import end_places, goals_of, study_pareto
+from trackroller.results.results import Results
+from trackroller.results.unsure import COEFFICIENT
+from trackroller.roller.record import names_not_given
+from trackroller.study.outputs import flat
+
+OF_PAIR = (FIRST_LIMIT[0], "pair_life_hours", "roller_life_hours")  # lives that a target in hours may name
+OF_MATERIALS = ("material_pair", *MATERIAL_FIELDS)
+CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}  # input that brings a condition out of reach
+MANY = 0.5  # share of conditions out of reach by an input that was not given, from which on the input is asked for
+RESAMPLES = 400  # of the sampled conditions, for the error of a difference of B10
+TAIL = 0.025  # share of the resamples below the 95 % interval
+GAP = 10.0  # ratio of neighbouring Pareto-optimal designs in the first goal, from which on the gap is named
+STRONGEST = 50  # candidates of each pair of materials by each measure that may beat others
+
+
+@dataclass(frozen=True)
+class Candidate:
+    """A combination of choices with the interval of its life, or of its stress, over the conditions.
+
+    Attributes
+    ----------
+    number : index in `Candidates.table`
+    choices : levels by factor
+    low, high, median : of the goal: the two ends over the conditions, and the median of the conditions [goal's unit]
+    error : relative error of `low` by the solution [1]
+    interval : 95 % interval of `low` where it is the life that nine of ten sampled conditions reach, else NaN
+    case : row of the worst condition
+    ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; and the body
+    met, conditions : number of conditions that it meets, and of all conditions that count
+    status : `met`, `open` or `missed` of the target; '' without a target
+    judged : whether the model judges it in all conditions
+    holds : life at the worst condition if the model held outside its range; equals `low` where it is judged
+    beyond : whether `low` lies beyond the S-N data
+    open_limits : limits without hours that are exceeded only at one end of the range of a placeholder
+    unchecked : limits that were checked for other candidates only
+    edges : choices that stand at the end of their levels
+    """
+
+    number: int
+    choices: Mapping[str, Any]
+    low: float
+    high: float
+    median: float
+    error: float
+    interval: tuple[float, float]
+    case: int
+    ends: str
+    body: str
+    met: int
+    conditions: int
+    status: str
+    judged: bool
+    holds: float
+    beyond: bool
+    open_limits: tuple[str, ...] = ()
+    unchecked: tuple[str, ...] = ()
+    edges: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Misses:
+    """Conditions that are not met.
+
+    Attributes
+    ----------
+    count, of : number of these conditions, and of all conditions
+    reasons : why, each with the number of its cases, the most frequent first
+    where : levels of one or more factors that hold together exactly in these conditions; empty if no levels do, and for
+        sampled conditions, whose values coincide by chance
+    not_given : inputs among the causes that were not given, with the values that were used
+    """
+
+    count: int
+    of: int
+    reasons: Mapping[str, int]
+    where: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
+    not_given: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Turn:
+    """What to measure or to give, and the value at which the decision turns.
+
+    Attributes
+    ----------
+    what : value of a material, field of a case, or `requirement`
+    of, on : its material, and the material that it runs on; '' otherwise
+    value : at which the decision turns, NaN if it is not known
+    until : for two candidates: from which on the other one is better for certain, NaN otherwise
+    low, high : range of the placeholder, NaN if there is none
+    units : of these numbers
+    candidate : number of the candidate that it belongs to, -1 without one
+    """
+
+    what: str
+    of: str = ""
+    on: str = ""
+    value: float = np.nan
+    until: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    units: str = ""
+    candidate: int = -1
+
+
+@dataclass(frozen=True)
+class Tradeoff:
+    """The ends of a Pareto set, and its widest gap in the first goal.
+
+    Attributes
+    ----------
+    goals : words, units and direction of each goal
+    ends : for each goal the choices and the values of the design that is best in it
+    designs : number of Pareto-optimal designs
+    gap : values of the first goal between which no design lies; empty without a gap
+    """
+
+    goals: tuple[tuple[str, str, str], ...]
+    ends: tuple[tuple[Mapping[str, Any], tuple[float, ...]], ...]
+    designs: int
+    gap: tuple[float, ...] = ()
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What a study answers: which candidate to build, or why it cannot say so.
+
+    Attributes
+    ----------
+    kind : `build`, `a_or_b`, `none`, `measure`, `give`, `cannot_tell`, or `lasts` for a study with one candidate
+    goal : column, words and unit of what is compared
+    required : smallest life that the target asks for [h], NaN without one
+    target : targets of the study; empty without them
+    candidates : all candidates, the best first
+    named : number of the first candidates that the verdict names: one, or all that the study cannot tell apart
+    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions` or `model`
+    next : the next best candidate, None without one
+    out_of_reach : conditions that no candidate meets, None without one
+    fails : where the first candidate misses the target, or its conditions; None if it does not
+    turns : what to measure or to give
+    rest : verdict over the conditions that remain, of the kind `give`
+    tradeoff : of several goals without a target
+    tried : number of candidates of a study whose candidates do not repeat; 0 otherwise
+    sampled : whether a life is the one that nine of ten sampled conditions reach
+    not_checked : limits that were not checked, and `guide` if its hours are not known
+    """
+
+    kind: str
+    goal: tuple[str, str, str]
+    candidates: tuple[Candidate, ...]
+    required: float = np.nan
+    target: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    named: int = 1
+    why: str = ""
+    next: Candidate | None = None
+    out_of_reach: Misses | None = None
+    fails: Misses | None = None
+    turns: tuple[Turn, ...] = ()
+    rest: Verdict | None = None
+    tradeoff: Tradeoff | None = None
+    tried: int = 0
+    sampled: bool = False
+    not_checked: tuple[str, ...] = ()
+
+    @property
+    def best(self) -> tuple[Candidate, ...]:
+        """Return the candidates that the verdict names."""
+        return self.candidates[: self.named]
+
+    @property
+    def not_judged(self) -> tuple[Candidate, ...]:
+        """Return the candidates that the model does not judge, and that may be better than the first one."""
+        first = self.candidates[0].low if self.candidates else 0.0
+        return tuple(c for c in self.candidates if not c.judged and (c.high > first or not self.goal_rises))
+
+    @property
+    def goal_rises(self) -> bool:
+        """Return whether more of the goal is better."""
+        return "life" in self.goal[0]
+
+
+def verdict_of(results: Results) -> Verdict | None:
+    """Return the verdict of a study; None for a search, and for a study without lives and stresses.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study.
+
+    Returns
+    -------
+    Verdict or None
+        A search recommends its own design, see `trackroller.results.judging.recommended`.
+
+    Notes
+    -----
+    Candidates of the same materials are compared at equal places of the placeholders: a candidate is beaten if another
+    one is nowhere worse, and better beyond the error somewhere. Other candidates are beaten if their high end lies
+    below the low end of another one by more than the error. The error is the root of the squares of the errors of both
+    solutions and of the sample of conditions.
+    """
+    lives = (FIRST_LIMIT, *results.fatigue_lives)
+    goal = results.life or next((life for life in lives if life[0] in results.table), STRESS)
+    if results.config.method.proposes or goal[0] not in results.table or not len(results.table):
+        return None
+    candidates = Candidates.grouped(results, goal)
+    cases = Cases(candidates)
+    if not candidates.comparable:
+        reach: np.ndarray = np.zeros(len(results.table), dtype=bool)
+        turns = _given(cases, reach)
+        unknown = Verdict("cannot_tell", goal, (), why="conditions", **_shared(cases))
+        return replace(unknown, kind="give", turns=turns, rest=unknown) if turns else unknown
+    reach = cases.out_of_reach
+    turns = _given(cases, reach)
+    traded = _tradeoff(results)
+    if turns:
+        rest = _decided(cases, cases.own & ~reach, reach)
+        out = _misses(cases, reach, cases.own, cases.reason)
+        return replace(rest, kind="give", turns=turns, rest=replace(rest, out_of_reach=None), out_of_reach=out)
+    found = _decided(cases, cases.own, reach)
+    if traded is not None and found.kind in ("build", "a_or_b", "measure"):
+        return replace(found, kind="give", turns=(Turn("requirement"),), rest=found, tradeoff=traded)
+    return found
+
+
+@dataclass(frozen=True)
+class Scores:
+    """Both ends of each candidate over its conditions, and what comparing them needs.
+
+    Attributes
+    ----------
+    low, high : shape (m,), as a life or as 1/stress
+    places : both ends at each place of the placeholders, shape (m, places)
+    judged : shape (m,)
+    error : relative errors of the solutions, shape (m,)
+    draws : logarithms of B10 of resampled conditions, shape (m, resamples); no columns without a sample
+    materials : names of the materials, shape (m,)
+    case : row of the worst condition, shape (m,); -1 without one
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    places: np.ndarray
+    judged: np.ndarray
+    error: np.ndarray
+    draws: np.ndarray
+    materials: np.ndarray
+    case: np.ndarray
+
+    def beaten_by(self, i: int, others: np.ndarray, exact: bool = False) -> np.ndarray:
+        """Return which of the other candidates beat a candidate, shape (k,); `exact` leaves the errors out."""
+        error = 0.0 * self.error[others] if exact else self.spread(i, others)
+        alike = (self.materials[others] == self.materials[i]) & self.judged[others] & self.judged[i]
+        mine, theirs = self.places[i], self.places[others]
+        at_equal = (theirs >= mine * (1 - TIED)).all(axis=1) & (theirs > mine * (1 + TIED + error[:, None])).any(axis=1)
+        apart = self.low[others] > self.high[i] * (1 + TIED + error)
+        return np.asarray(np.where(alike, at_equal, apart))
+
+    def spread(self, i: int, others: np.ndarray) -> np.ndarray:
+        """Return the relative errors of the leads of others over a candidate, shape (k,)."""
+        numerical = self.error[others] ** 2 + self.error[i] ** 2
+        if not self.draws.shape[1]:
+            return np.asarray(np.sqrt(numerical))
+        least = np.quantile(self.draws[others] - self.draws[i], TAIL, axis=1, method="lower")
+        lead = _logarithm(self.low[others]) - _logarithm(self.low[i])
+        return np.asarray(np.sqrt(numerical + np.clip(lead - least, 0.0, None) ** 2))
+
+    def unbeaten(self, among: np.ndarray, exact: bool = False) -> np.ndarray:
+        """Return which of some candidates no other one of them beats, as numbers."""
+        rivals = self._strongest(among)
+        return np.array([i for i in among if not self.beaten_by(i, rivals[rivals != i], exact).any()], dtype=int)
+
+    def _strongest(self, among: np.ndarray) -> np.ndarray:
+        """Return the candidates that may beat others: the strongest of each pair of materials by each measure."""
+        kept: set[int] = set()
+        for pair in np.unique(self.materials[among]):
+            own = among[self.materials[among] == pair]
+            for measure in self.places[own].T:
+                kept |= set(own[np.argsort(-measure, kind="stable")[:STRONGEST]].tolist())
+        return np.array(sorted(kept), dtype=int)
+
+
+def _scores(cases: Cases, kept: np.ndarray) -> Scores:
+    """Return the ends of each candidate over the cases that are kept."""
+    candidates = cases.candidates
+    many, levels = len(candidates.size), int(cases.level.max()) + 1
+    low, high = cases.ends
+    ends = np.full((2, many, levels), np.nan)
+    draws = np.zeros((many, 0))
+    if cases.sampled:
+        for i in range(many):
+            for level in range(levels):
+                rows = kept & (candidates.place == i) & (cases.level == level)
+                if rows.any():
+                    ends[:, i, level] = b10(low[rows])[0], b10(high[rows])[0]
+        draws = _resampled(cases, kept)
+    else:
+        ends[:] = np.inf
+        for end, values in zip(ends, (low, high), strict=True):
+            np.minimum.at(end, (candidates.place[kept], cases.level[kept]), values[kept])
+        ends[:, np.bincount(candidates.place[kept], minlength=many) == 0] = 0.0  # no condition is left
+    judged = np.bincount(candidates.place[kept & ~cases.judged], minlength=many) == 0
+    case = cases.worst(kept)
+    error = np.where(case < 0, 0.0, cases.error[case])
+    table = candidates.members
+    named = [name for name in OF_MATERIALS if name in candidates.choices]
+    pairs = table[named].astype(str).agg(" / ".join, axis=1).to_numpy(dtype=str) if named else np.full(many, "")
+    lowest, highest = np.nanmin(ends[0], axis=1), np.nanmax(ends[1], axis=1)
+    return Scores(lowest, highest, np.concatenate([*ends], axis=1), judged, error, draws, pairs, case)
+
+
+def _resampled(cases: Cases, kept: np.ndarray) -> np.ndarray:
+    """Return the logarithm of B10 of each candidate in resamples of its conditions, shape (m, resamples).
+
+    Candidates that share their conditions share the resamples, so that their common scatter cancels.
+    """
+    candidates, low = cases.candidates, cases.ends[0]
+    out = np.empty((len(candidates.size), RESAMPLES))
+    for i in range(len(out)):
+        rows = np.flatnonzero(kept & (candidates.place == i))
+        rows = rows[np.argsort(cases.use[rows], kind="stable")]
+        random = np.random.default_rng(0 if candidates.matched else i)
+        drawn = random.multinomial(len(rows), np.full(len(rows), 1 / max(len(rows), 1)), RESAMPLES)
+        order = np.argsort(low[rows], kind="stable")
+        reached = drawn[:, order].cumsum(axis=1) >= 0.1 * len(rows)
+        out[i] = _logarithm(low[rows][order][np.argmax(reached, axis=1)]) if len(rows) else _logarithm(0.0)
+    return out
+
+
+def _logarithm(lives: np.ndarray | float) -> np.ndarray:
+    """Return the logarithm of lives; that of 0 and of infinity is a finite number beyond all others."""
+    with np.errstate(divide="ignore"):
+        return np.asarray(np.clip(np.log(lives), -100.0, 100.0))
+
+
+def _targeted(cases: Cases) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return the required hours, and the cases that meet the target for certain, and those that may meet it.
+
+    A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one limit
+    is of no use if another limit comes first.
+    """
+    results = cases.results
+    low, high = cases.ends
+    required, others = np.nan, np.ones(len(low), dtype=bool)
+    for name, ends in results.config.analysis.target.items():
+        if name in OF_PAIR and cases.candidates.goal[2] == "h" and set(ends) == {"min"}:
+            required = float(np.fmax(required, ends["min"]))
+        else:
+            others &= results.meets(name)
+    least = 0.0 if np.isnan(required) else required
+    uncertain = np.any([np.zeros(len(low), dtype=bool), *cases.open_limits.values()], axis=0)
+    judged = cases.judged
+    sure = judged & (cases.reason == "") & (low >= least) & others & ~uncertain
+    may = np.where(judged, (cases.reason == "") & (high >= least) & others, True)
+    return required, sure, np.asarray(may)
+
+
+def _status(cases: Cases, rows: np.ndarray, sure: np.ndarray, may: np.ndarray) -> str:
+    """Return whether a candidate meets a target in its cases: `met`, `missed`, or `open`.
+
+    All conditions count, or nine of ten of a sample, at each place of the placeholders.
+    """
+
+    def enough(level: int, hits: np.ndarray) -> bool:
+        own = rows[cases.level[rows] == level]
+        return bool(hits[own].sum() >= len(own) - (int(np.ceil(0.1 * len(own))) - 1 if cases.sampled else 0))
+
+    levels = np.unique(cases.level[rows])
+    if all(enough(level, sure) for level in levels):
+        return "met"
+    return "open" if any(enough(level, may) for level in levels) else "missed"
+
+
+def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
+    """Return the verdict over the cases `wanted`; those out of reach are left out of the ranking, not of the target."""
+    candidates, target = cases.candidates, cases.results.config.analysis.target
+    kept = wanted & ~reach
+    scores = _scores(cases, kept)
+    required, sure, may = _targeted(cases)
+    counted, good = (wanted, sure) if target else (kept, cases.ends[0] > 0)
+    size = cases.conditions_in(counted)
+    met = size - cases.conditions_in(counted & ~good)
+    rows = [np.flatnonzero(counted & (candidates.place == i)) for i in range(len(size))]
+    status = np.array([_status(cases, own, sure, may) if target else "" for own in rows])
+    order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
+    kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
+    order = np.array([*first, *(i for i in order if i not in first)])
+    facts = {"met": met, "conditions": size, "status": status}
+    listed = tuple(_candidate(cases, scores, kept, int(i), facts) for i in order)
+    named = len(first) or min(1, len(listed))
+    left = [one for one in listed[named:] if one.judged and scores.high[one.number] > 0]
+    found = Verdict(
+        kind,
+        candidates.goal,
+        listed,
+        required=required,
+        named=named,
+        why=why,
+        next=left[0] if left and first else None,
+        out_of_reach=_misses(cases, wanted & reach, wanted, cases.reason) if (wanted & reach).any() else None,
+        **_shared(cases),
+    )
+    if kind == "none":
+        own = rows_of(candidates, listed[0], counted)
+        reason = np.where(cases.reason == "", cases.first, cases.reason)
+        return replace(found, fails=_misses(cases, own & ~good, own, reason))
+    return replace(found, turns=_turns(cases, found)) if kind == "measure" else found
+
+
+def rows_of(candidates: Candidates, one: Candidate, kept: np.ndarray) -> np.ndarray:
+    """Return the cases of a candidate among those that are kept, shape (n,)."""
+    return np.asarray(kept & (candidates.place == one.number))
+
+
+def _order(scores: Scores, status: np.ndarray, share: np.ndarray, life: np.ndarray) -> np.ndarray:
+    """Return the numbers of the candidates, the best first.
+
+    Those that meet the target come first, by the low end; then open ones; then by the share of conditions that are met.
+    """
+    rank = np.array([("met", "open", "missed").index(word) if word else 0 for word in status])
+    low = np.where(rank < 2, scores.low, 0.0)
+    return np.lexsort((-scores.high, -life, -share, -low, rank))
+
+
+def _least_met(cases: Cases, rows: np.ndarray) -> np.ndarray:
+    """Return the smallest low end of each candidate among some cases, shape (m,); 0 without one."""
+    out = np.full(len(cases.candidates.size), np.inf)
+    np.minimum.at(out, cases.candidates.place[rows], cases.ends[0][rows])
+    some = np.bincount(cases.candidates.place[rows], minlength=len(out)) > 0
+    return np.where(some, out, 0.0)
+
+
+Found = tuple[str, list[int], str]  # kind, numbers of the named candidates, and why
+
+
+def _by_target(scores: Scores, order: np.ndarray, status: np.ndarray) -> Found:
+    """Return the verdict with a target: the best that meet it, else what is open, else none."""
+    met = order[status[order] == "met"]
+    if len(met):
+        rivals = [i for i in met[1:] if scores.low[met[0]] <= scores.low[i] * (1 + TIED + _error(scores, met[0], i))]
+        return _together(scores, [int(met[0]), *map(int, rivals)], len(scores.low) == 1)
+    maybe = order[status[order] == "open"]
+    judged = maybe[scores.judged[maybe]]
+    if len(judged):
+        return "measure", [int(judged[0])], "range"
+    return ("cannot_tell", [], "model") if len(maybe) else ("none", [], "")
+
+
+def _error(scores: Scores, i: int, j: int) -> float:
+    """Return the relative error of the lead of the first candidate over the second one."""
+    return float(scores.spread(j, np.array([i]))[0])
+
+
+def _together(scores: Scores, named: list[int], alone: bool) -> Found:
+    """Return `build` for one candidate, otherwise that they tie or lie within the error."""
+    if len(named) == 1:
+        return "lasts" if alone else "build", named, ""
+    first = scores.places[named[0]]
+    tie = all(np.isclose(scores.places[i], first, rtol=2 * TIED, atol=0).all() for i in named)
+    return "a_or_b", named, "tie" if tie else "error"
+
+
+def _by_rank(scores: Scores, order: np.ndarray) -> Found:
+    """Return the verdict without a target: the unbeaten candidates."""
+    pool = order[scores.judged[order] & (scores.high[order] > 0)]
+    if not len(pool):
+        unknown = (~scores.judged & (scores.high > 0)).any()
+        return ("cannot_tell", [], "model") if unknown else ("none", [], "")
+    best = scores.unbeaten(pool)
+    certain = scores.unbeaten(pool, exact=True)
+    places = scores.places[certain]
+    if len(certain) > 1 and not np.isclose(places, places[0], rtol=2 * TIED, atol=0).all():
+        return "measure", [int(i) for i in best], "range"
+    return _together(scores, [int(i) for i in best], len(scores.low) == 1)
+
+
+def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Mapping[str, np.ndarray]) -> Candidate:
+    """Return a candidate as data."""
+    candidates, results = cases.candidates, cases.results
+    own = candidates.place == i
+    rows = np.flatnonzero(kept & own) if (kept & own).any() else np.flatnonzero(own)
+    case = int(scores.case[i]) if scores.case[i] >= 0 else int(rows[0])
+    goal, judged, met = results.column(candidates.goal[0]), cases.judged, cases.reason == ""
+    known = goal[rows[(met | ~judged)[rows] & ~np.isnan(goal[rows])]]
+    never = 0.0 if candidates.rising else np.inf
+    middle = np.where(met, goal, never)[rows[judged[rows]]]
+    interval = b10(cases.ends[0][rows])[1:] if cases.sampled else (np.nan, np.nan)
+    return Candidate(
+        number=i,
+        choices={name: _plain(results.table[name].iloc[rows[0]]) for name in candidates.choices},
+        low=_as_goal(candidates, scores.low[i]),
+        high=_as_goal(candidates, scores.high[i]),
+        median=float(np.median(middle)) if middle.size else np.nan,
+        error=float(scores.error[i]),
+        interval=(float(interval[0]), float(interval[1])),
+        case=case,
+        ends=str(cases.reason[case] or cases.first[case]),
+        body="guide" if cases.guide[case] else "roller",
+        met=int(facts["met"][i]),
+        conditions=int(facts["conditions"][i]),
+        status=str(facts["status"][i]),
+        judged=bool(scores.judged[i]),
+        holds=float(known.min() if candidates.rising else known.max()) if known.size else np.nan,
+        beyond=bool(cases.beyond[case] and met[case]),
+        open_limits=tuple(name for name, there in cases.open_limits.items() if there[rows].any()),
+        unchecked=_unchecked(cases, rows),
+        edges=_edges(candidates, results.table.iloc[rows[0]]),
+    )
+
+
+def _as_goal(candidates: Candidates, score: float) -> float:
+    """Return a score in the unit of the goal: a life as it is, a stress from 1/stress."""
+    if candidates.rising:
+        return float(score)
+    return float(1.0 / score) if score > 0 else np.inf
+
+
+def _edges(candidates: Candidates, row: pd.Series) -> tuple[str, ...]:
+    """Return the choices of a candidate that stand at the smallest or largest of at least three numbers."""
+    results = candidates.results
+    numbers = [name for name in candidates.choices if results.numeric(name) and len(results.levels(name)) > 2]
+    return tuple(n for n in numbers if row[n] in (results.levels(n)[0], results.levels(n)[-1]))
+
+
+def _unchecked(cases: Cases, rows: np.ndarray) -> tuple[str, ...]:
+    """Return the limits with hours that are known for some candidates and in none of these cases."""
+    data = cases.results.data
+    if "life_hours_by_limit" not in data:
+        return ()
+    known = ~np.isnan(flat(data, "life_hours_by_limit", cases.results.dims)).all(axis=2)
+    names = data["limit"].values.tolist()
+    return tuple(
+        name for i, name in enumerate(names) if name not in BESIDE and known[:, i].any() and not known[rows, i].any()
+    )
+
+
+def _shared(cases: Cases) -> dict[str, Any]:
+    """Return what every verdict of a study says."""
+    candidates = cases.candidates
+    return {
+        "target": cases.results.config.analysis.target,
+        "tried": 0 if cases.conditions else len(candidates.size),
+        "sampled": cases.sampled,
+        "not_checked": not_checked(cases.results, candidates.rising),
+    }
+
+
+def not_checked(results: Results, lives: bool = True) -> tuple[str, ...]:
+    """Return the limits that a study did not check, and `guide` if the hours of the guide are not known.
+
+    Parameters
+    ----------
+    results : the solved study
+    lives : whether the study compares lives
+    """
+    known = {"static", "fatigue"} if lives else {"static"}
+    if "limit" in results.data.dims:
+        names = results.data["limit"].values.tolist()
+        values = [results.data[n] for n in ("utilisation", "life_hours_by_limit") if n in results.data]
+        known |= {name for i, name in enumerate(names) if any(v.isel(limit=i).notnull().any() for v in values)}
+    wanted = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in BESIDE]
+    missing = [name for name in wanted if name not in known]
+    return tuple(missing + ["guide"] * (lives and not results.has("guide_life_hours")))
+
+
+def _misses(cases: Cases, bad: np.ndarray, among: np.ndarray, reason: np.ndarray) -> Misses:
+    """Describe cases that are not met among others, by their conditions."""
+    candidates, names, use = cases.candidates, cases.conditions, cases.use
+    table = candidates.results.table
+    counts = Counter(str(word) for word in reason[bad])
+    causes = [name for cause, name in CAUSES.items() if cause in counts and _unnamed(candidates.results, name)]
+    found = Misses(
+        len(np.unique(use[bad])),
+        len(np.unique(use[among])),
+        dict(counts.most_common()),
+        not_given={name: float(candidates.results.base[name]) for name in causes},
+    )
+    if candidates.drawn or not bad.any():
+        return found
+    restricted: dict[str, tuple[Any, ...]] = {}
+    for name in names:
+        levels = [v for v in candidates.results.levels(name) if (table[name].to_numpy() == v)[bad].any()]
+        if len(levels) < len(candidates.results.levels(name)):
+            restricted[name] = tuple(map(_plain, levels))
+    covered = among & np.all([among, *(table[name].isin(own).to_numpy() for name, own in restricted.items())], axis=0)
+    exact = restricted and set(use[covered]) == set(use[bad])
+    return replace(found, where=restricted) if exact else found
+
+
+def _plain(value: Any) -> Any:
+    """Return a level as a plain number or text."""
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def _unnamed(results: Results, name: str) -> bool:
+    """Return whether an input of the roller was not given, and is no factor either."""
+    return name in names_not_given(results.data.attrs) and name not in results.factors
+
+
+def _given(cases: Cases, reach: np.ndarray) -> tuple[Turn, ...]:
+    """Return the inputs that were not given and that bring conditions out of reach of every candidate.
+
+    With a target each such condition counts, because no candidate can meet it. Without one the verdict turns on the
+    input if it takes at least half of the conditions.
+    """
+    results = cases.results
+    turns = []
+    for cause, name in CAUSES.items():
+        by_it = cases.own & (cases.reason == cause)
+        hopeless = by_it & reach
+        wanted = bool(results.config.analysis.target) and hopeless.any()
+        share = hopeless.sum() if cases.candidates.matched and cases.conditions else by_it.sum()
+        if _unnamed(results, name) and (wanted or share >= MANY * cases.own.sum()):
+            turns.append(Turn(name, low=float(results.base[name]), high=float(results.base[name]), units="N"))
+    return tuple(turns)
+
+
+def _tradeoff(results: Results) -> Tradeoff | None:
+    """Return the ends of the Pareto set of several goals that the study file names without a target."""
+    if len(results.config.pareto) < 2 or results.config.analysis.target:
+        return None
+    front = study_pareto(results)
+    if front is None or front.attrs.get("kind") == "case" or (front["optimal"].values == 1).sum() < 2:
+        return None
+    goals, names = goals_of(front), [n for n in str(front.attrs["factors"]).split(", ") if n in front]
+    ends = tuple(
+        (
+            {n: _plain(front[n].values[place]) for n in names},
+            tuple(float(front[goal].values[place]) for goal, _ in goals),
+        )
+        for place in end_places(front)
+    )
+    first = np.unique(front[goals[0][0]].values[front["optimal"].values == 1].astype(float))
+    first = first[np.isfinite(first) & (first > 0)]
+    gap: tuple[float, ...] = ()
+    if len(first) > 1:
+        widest = int(np.argmax(first[1:] / first[:-1]))
+        if first[widest + 1] > GAP * first[widest]:
+            gap = float(first[widest]), float(first[widest + 1])
+    words = tuple(
+        (str(front[n].attrs.get("long_name") or n), str(front[n].attrs.get("units", "")), way) for n, way in goals
+    )
+    return Tradeoff(words, ends, int((front["optimal"].values == 1).sum()), gap)
+
+
+def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
+    """Return what to measure, with the value at which the decision turns where the life follows from it.
+
+    The life until a body wears is inversely proportional to its wear coefficient, and the use of the shakedown limit to
+    its yield strength.
+    """
+    turns: list[Turn] = []
+    named = sorted(found.best, key=lambda c: -(c.high / c.low if c.low > 0 else np.inf))
+    for one in named[:1]:
+        other = next((c for c in found.best if c.number != one.number), None)
+        least = found.required if np.isfinite(found.required) else other.high if other else np.nan
+        until = other.low if other is not None and not np.isfinite(found.required) else np.nan
+        turns += [_of_limit(cases, one, limit) for limit in one.open_limits]
+        if one.ends == "wear" or not turns:
+            turns.append(_of_wear(cases, one, least, until))
+    return tuple(turns)
+
+
+def _bodies(cases: Cases, one: Candidate) -> tuple[str, str]:
+    """Return the material of the body that ends a candidate, and the material of the other body."""
+    names = {body: str(cases.results.material(body)[one.case]) for body in BODIES}
+    return names[one.body], names["roller" if one.body == "guide" else "guide"]
+
+
+def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
+    """Return the wear coefficient below which a candidate reaches `least`, and above which it stays below `until`."""
+    of, on = _bodies(cases, one)
+    if one.ends != "wear":
+        return Turn("placeholder_position", of, on, candidate=one.number)
+    low, high, units = _range(cases.results, "wear", of, rf"wear_coefficient \(on {re.escape(on)}, ")
+    if COEFFICIENT in cases.spans:
+        levels = cases.results.levels(COEFFICIENT)
+        low, high, units = float(levels[0]), float(levels[-1]), "times its value"
+    value, beyond = high * one.low / least, high * one.low / until if until > 0 else np.nan
+    value, beyond = (x if low < x < high else np.nan for x in (value, beyond))
+    return Turn("wear_coefficient", of, on, value, beyond, low, high, units, one.number)
+
+
+def _of_limit(cases: Cases, one: Candidate, limit: str) -> Turn:
+    """Return the placeholder that an open limit rests on, and the value from which on the limit is kept."""
+    results = cases.results
+    rows = rows_of(cases.candidates, one, cases.own)
+    place = results.data["limit"].values.tolist().index(limit)
+    use = flat(results.data, "utilisation", results.dims)[rows, place]
+    body = BODIES[int(np.nanargmax(np.nanmax(use, axis=0)))] if np.isfinite(use).any() else one.body
+    of = str(results.material(body)[one.case])
+    texts = [
+        text for name, material, text in guessed_values(results.data) if (name, material.strip("'")) == (limit, of)
+    ]
+    what = next(iter(re.findall(r"(\w+) \(", " ".join(texts))), "placeholder")
+    low, high, units = _range(results, limit, of, rf"{what} \(")
+    stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(of, {}).get(what, np.nan)
+    value = float(stored) * float(np.nanmax(use)) if what == "yield_strength" and np.isfinite(use).any() else np.nan
+    return Turn(what, of, value=value, low=low, high=high, units=units, candidate=one.number)
+
+
+def _range(results: Results, limit: str, material: str, begin: str) -> tuple[float, float, str]:
+    """Return the range of a placeholder and its unit from the notes on limits; NaN if there is none."""
+    for name, of, text in guessed_values(results.data):
+        found = re.search(begin + r"expected from (\S+) to (\S+) ([^)]*\)?[^)]*)\)", text)
+        if (name, of.strip("'")) == (limit, material) and found:
+            return float(found[1]), float(found[2]), found[3]
+    return np.nan, np.nan, ""
