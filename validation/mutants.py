@@ -7,7 +7,8 @@ from __future__ import annotations
 
 SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
-WEAR = ("damage/test_wear.py", "results/test_unsure.py")
+VERDICT = ("results/test_verdict.py",)
+WEAR = ("damage/test_wear.py",)
 SOBOL = ("results/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
 CONVERGENCE = ("results/test_sensitivity.py", "results/test_enough.py", "results/test_given_data.py")
@@ -100,7 +101,12 @@ FORMULAS = {
     "wear-gap": ("damage/wear.py", "0.5 * curvature[:, None]", "curvature[:, None]", WEAR),
     "wear-standing-roller": ("damage/wear.py", "where(locked, 1.0,", "where(locked, 0.5,", WEAR),
     "wear-run-in": ("damage/wear.py", "np.max(counted, axis=2), axis=1)", "np.min(counted, axis=2), axis=1)", WEAR),
-    "wear-of-designs": ("results/unsure.py", "least[None, :] > most[:, None]", "most[None, :] > most[:, None]", WEAR),
+    "wear-of-designs": (
+        "results/verdict.py",
+        "self.low[others] > self.high[i]",
+        "self.high[others] > self.high[i]",
+        VERDICT,
+    ),
 }
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {

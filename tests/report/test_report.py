@@ -80,7 +80,7 @@ def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
         "Best 1",
         "Best 5",
         "of 540 cases roll",
-        "Build 1.7225",
+        '<p class="lead"><strong>',
         "Papers behind the methods",
         "applmech3020041",
         "abcdef0",

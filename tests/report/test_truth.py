@@ -12,11 +12,12 @@ import pytest
 import yaml
 from random_studies import FLAGS, random_study
 from synthetic_results import results_of
+from verdict_by_hand import check_verdict
 
 from trackroller.report.words.accuracy import accuracy, friction_error
 from trackroller.report.words.cases import extremes, lift_off, occurrence, strength, surface, valid_cases
-from trackroller.report.words.designs import best_design
 from trackroller.report.words.factors import effect_of
+from trackroller.report.words.verdict import verdict_sentences
 
 STUDIES = 150
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")
@@ -265,53 +266,19 @@ def check_classes(raw, said):
 USE = ("friction_coefficient", "axial_force", "velocity", "motor_force", "guide_curve_radius")
 
 
-def by_design(raw):
-    """Return worst, median, number of valid cases and of cases by design, and whether all have the same conditions."""
-    frame = pd.DataFrame(raw.factors).assign(life=np.where(raw.valid, raw.get("roller_life_hours"), np.nan))
-    choices = [n for n in raw.factors if n not in USE] or [np.zeros(raw.n)]
+def check_best(raw, results):
+    """Recompute the verdict from the raw rows, and return its sentences."""
     conditions = [n for n in raw.factors if n in USE]
-    groups = frame.groupby(choices)
-    table = groups.life.agg(["min", "median", "max", "count", "size"])
-    shared = {tuple(sorted(map(tuple, g[conditions].values.tolist()))) for _, g in groups} if conditions else {()}
-    alike = len(shared) == 1 and not frame.duplicated([n for n in raw.factors]).any()
-    return groups, table, conditions, alike
-
-
-def check_best(raw, said, method):
-    """Recompute the design to build from a group-by on the raw rows."""
-    v = said.values
-    if said.kind == "none_valid":
-        assert not raw.valid.any()
-        return
-    groups, table, conditions, alike = by_design(raw)
-    if said.kind == "unanswered":
-        assert conditions and not alike and table["size"].min() < 20 and "`design: inner_outer`" in said.text
-        assert (v["designs"], v["least"], v["most"]) == (len(table), table["size"].min(), table["size"].max())
-        return
-    assert not conditions or alike or table["size"].min() >= 20
-    share = table["count"] / table["size"]
-    drawn = bool(conditions) and (not alike or method in ("lhs", "inner_outer"))
-    if drawn:  # the life that nine of ten cases reach, with the cases that are not valid as 0
-        score = groups.life.apply(lambda lives: np.sort(lives.fillna(0.0))[int(np.ceil(0.1 * len(lives))) - 1])
-        top = score if (score > 0).any() else table["min"][share == share.max()]
-    else:
-        top = table["min"][share == share.max()]
-    tied = top.index[top == top.max()]
-    own = table.loc[tied]
-    assert v["ties"] == len(tied)
-    own = own[own["median"] == own["median"].max()]
-    assert v["worst"] in own["min"].values and v["median"] in own["median"].values and v["valid"] in own["count"].values
-    assert raw.valid[v["worst_case"]] and raw.get("roller_life_hours")[v["worst_case"]] == v["worst"]
-    for name, level in v["design"].items():
-        assert raw.columns[name][v["worst_case"]] == level
-    if np.isfinite(v["worst"]):
-        written = first(rf"the roller lasts {NUMBER} h", said.text)[0]
-        assert close(written, v["worst"])
-    else:
-        assert "the roller does not fail (beyond the S-N data)" in said.text
-    assert "unlimited" not in said.text and "give `guide_overrollings_per_hour`" in said.text
-    if conditions and v["valid"] < v["cases"]:
-        assert f"valid in {v['valid']:,} of {v['cases']:,} conditions" in said.text
+    choices = [n for n in raw.factors if n not in USE]
+    frame = pd.DataFrame(raw.factors).assign(life=raw.get("roller_life_hours"), valid=raw.valid)
+    check_verdict(results.verdict, frame, choices, conditions, "life")
+    said = verdict_sentences(results)
+    assert len(" ".join(sentence.text for sentence in said).split()) <= 120
+    for one in results.verdict.best[:1]:
+        if np.isfinite(one.low) and said[0].kind in ("build", "lasts"):
+            assert close(first(rf"{NUMBER} h\b", " ".join(sentence.text for sentence in said))[0], one.low)
+        assert one.case < 0 or one.ends != "fatigue" or raw.valid[one.case]
+    return said
 
 
 def check_others(raw, results):
@@ -386,10 +353,7 @@ def sentences_of(seed):
         found = occurrence(results, results.flagged(flag), flag, results.rolling)
         check_occurrence(raw, found, raw.flags[flag], raw.rolling)
         said.append(found)
-    best = best_design(results) if results.life else []
-    if best:
-        check_best(raw, best[0], results.config.design)
-        said += best
+    said += check_best(raw, results) if results.life else []
     outputs = [("peak_stress_roller", "peak stress of the roller")]
     outputs += [("roller_life_hours", "life of the roller")] if results.life else []
     for (column, words), factor in itertools.product(outputs, results.factors):
@@ -407,7 +371,8 @@ def test_no_sentence_on_a_random_study_is_false(part):
     kinds = Counter()
     for seed in range(part * STUDIES // 5, (part + 1) * STUDIES // 5):
         kinds += sentences_of(seed)
-    wanted = {"valid", "cases", "only", "frequent", "best", "unanswered", "next", "pairs", "pairs_both", "classes_none"}
+    wanted = {"valid", "cases", "only", "frequent", "build", "unanswered", "ends", "pairs", "pairs_both"}
+    wanted |= {"classes_none"}
     wanted |= {"surface"}
     assert wanted <= set(kinds) and sum(kinds.values()) > 360, kinds
 

@@ -9,11 +9,13 @@ import pytest
 import xarray as xr
 from reference_cases import solve_sliding
 from synthetic_results import results_of
+from verdict_by_hand import check_verdict
 
 import trackroller as tr
 from trackroller.report.pages.study import contents
-from trackroller.report.words.designs import best_design, best_table, target_of_designs
+from trackroller.report.words.designs import best_table
 from trackroller.report.words.pareto import pareto_sentence
+from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.candidates import lift_off_margin, slip_margin
 from trackroller.results.pareto import study_pareto
 from trackroller.roller.limits import limits
@@ -117,19 +119,16 @@ def test_designs_of_a_grid_against_a_group_by(rate):
         np.testing.assert_allclose(table[name], expected[name], err_msg=name)
     conditions = frame[frame["valid"]][list(designs.conditions)].drop_duplicates()
     assert designs.possible == len(conditions)
-    said = {s.kind: s.text for s in best_design(results)}
-    top = expected.iloc[0]
-    assert said["best"].startswith(f"Build {expected.index[0][1]} on ")
-    assert f"valid in {top['valid']:.0f} of {top['cases']:.0f} conditions" in said["best"]
-    assert ("roller and guide last" in said["best"]) == bool(rate)
-    assert ("give `guide_overrollings_per_hour`" in said["best"]) == (rate is None)
-    assert ("beyond the S-N data" in said["best"]) == bool(top["beyond"])
+    said = {s.kind: s.text for s in verdict_sentences(results)}
+    pairs = frame.assign(material_pair=results.table["material_pair"].to_numpy())
+    check_verdict(results.verdict, pairs, list(designs.choices), list(designs.conditions), life)
     if rate is None:
-        assert "first" not in said and "give `guide_overrollings_per_hour`" in said["next"]
+        assert "give `guide_overrollings_per_hour`" in said["not_checked"]
         assert "Life of the roller, worst condition [h]" in {row[0] for row in best_table(results).rows}
     else:
-        body = "guide" if top["first_guide"] > top["first_roller"] else "roller"
-        assert (body == "guide" or rate == 600) and said["first"].startswith(f"The {body} fails first in")
+        best = results.verdict.best[0]
+        assert best.body == ("guide" if frame["first_to_fail"][best.case] == 1 else "roller")
+        assert f"ends the {best.body}" in said["ends"] and "the pair lasts" in said["ends"]
 
 
 def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
@@ -137,12 +136,13 @@ def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
     np.testing.assert_array_equal(
         frame["pair_life_hours"], np.minimum(frame["roller_life_hours"], frame["guide_life_hours"])
     )
-    said = best_design(results_of(ds))[0]
-    worst = frame.iloc[said.values["worst_case"]]
-    assert worst["valid"] and worst["pair_life_hours"] == said.values["worst"]
+    results = results_of(ds)
+    best, said = results.verdict.best[0], {s.kind: s.text for s in verdict_sentences(results)}
+    worst = frame.iloc[best.case]
+    assert worst["valid"] and worst["pair_life_hours"] == best.low
     drive = "free rolling" if worst["motor_force"] == 0 else "driven −30 N"
     friction = f"friction coefficient {worst['friction_coefficient']:g}"
-    assert f"({friction}, {drive}, axial force {worst['axial_force']:g} N)" in said.text
+    assert f"({friction}, {drive}, axial force {worst['axial_force']:g} N)" in said["ends"]
 
 
 def test_an_inner_outer_design_is_compared_by_the_life_that_nine_of_ten_reach():
@@ -154,8 +154,8 @@ def test_an_inner_outer_design_is_compared_by_the_life_that_nine_of_ten_reach():
     groups = lives.groupby([frame["roller_profile_radius"], frame["contact_angle"]])
     expected = groups.apply(lambda own: np.sort(own)[math.ceil(0.1 * len(own)) - 1]).sort_values(ascending=False)
     np.testing.assert_allclose(designs.table["b10"], expected)
-    text = best_design(results_of(ds))[0].text
-    assert "nine of ten of its 32 sampled conditions reach" in text and "95 % interval" in text
+    text = verdict_sentences(results_of(ds))[1].text
+    assert text.startswith("Nine of ten sampled conditions reach") and "95 % interval" in text
 
 
 def test_designs_that_hold_in_fewer_than_nine_of_ten_conditions_come_last():
@@ -166,25 +166,21 @@ def test_designs_that_hold_in_fewer_than_nine_of_ten_conditions_come_last():
     held = frame.groupby(["roller_profile_radius", "contact_angle"]).valid.sum()
     assert (found["b10"] == 0).all() and found["valid"].tolist() == sorted(held, reverse=True)
     assert found["rank"].max() > 1
-    assert (
-        "sampled conditions are not valid, so there is no life that nine of ten reach"
-        in best_design(results_of(ds))[0].text
-    )
 
 
 def test_a_sample_in_which_no_design_repeats_names_the_design_of_experiments_that_can_answer():
     factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
     ds, frame = solved(design="lhs", samples=40, factors=factors)
-    said = best_design(results_of(ds))
-    assert [s.kind for s in said] == ["unanswered"] and frame["valid"].any()
-    assert said[0].text.startswith("Each of the 40 cases is a design of its own at one condition, so this lhs study")
-    assert "give roller profile radius and contact angle as lists" in said[0].text
-    assert "friction coefficient and axial force as distributions with `design: inner_outer`" in said[0].text
+    said = verdict_sentences(results_of(ds))
+    assert [s.kind for s in said][:2] == ["cannot_tell", "unanswered"] and frame["valid"].any()
+    assert said[1].text.startswith("Each of the 40 cases is a design of its own at one condition, so this lhs study")
+    assert "give roller profile radius and contact angle as lists" in said[1].text
+    assert "friction coefficient and axial force as distributions with `design: inner_outer`" in said[1].text
     page = contents(results_of(ds))
     assert "best_designs" not in {t.name for t in page["tables"]["decide"]}
     ds, _ = solved(design="lhs", samples=40, factors={"roller_profile_radius": {"uniform": [-8, -6.5]}})
-    said = best_design(results_of(ds))[0]  # no condition varies: each row is a design under the one condition
-    assert said.kind == "best" and "worst condition" not in said.text
+    said = verdict_sentences(results_of(ds))  # no condition varies: each row is a design under the one condition
+    assert said[0].kind in ("build", "a_or_b") and "worst condition" not in " ".join(one.text for one in said)
 
 
 def test_lives_beyond_the_data_are_never_bare():
@@ -193,12 +189,13 @@ def test_lives_beyond_the_data_are_never_bare():
     factors = {"roller_profile_radius": {"values": [-6.5, -8]}, "friction_coefficient": {"values": [0.0, 0.2]}}
     ds, frame = solved(base=light | {"axial_force": 0}, factors=factors)
     assert frame["beyond"].all()
-    said = best_design(results_of(ds))
-    assert "all beyond the S-N data" in said[0].text and "both beyond the S-N data" in said[-1].text
+    said = {one.kind: one.text for one in verdict_sentences(results_of(ds))}
+    assert "(beyond the S-N data)" in said["ends"] and "(beyond the S-N data)" in said["next"]
     ds, _ = solved(base=light | {"axial_force": 0}, factors=factors, life_rule="unlimited")
-    said = best_design(results_of(ds))
-    assert "the roller does not fail (beyond the S-N data)" in said[0].text and "unlimited" not in said[0].text
-    assert said[0].values["ties"] == 2 and said[1].kind == "ties" and said[1].text.startswith("2 designs tie")
+    results = results_of(ds)
+    said = {one.kind: one.text for one in verdict_sentences(results)}
+    assert "no failure (beyond the S-N data)" in said["ends"] and "unlimited" not in said["ends"]
+    assert results.verdict.kind == "a_or_b" and results.verdict.why == "tie" and "They tie" in said["ends"]
     assert best_table(results_of(ds)).heads[1:] == ["Best 1 (tie)", "Best 1 (tie)"]
 
 
@@ -229,10 +226,11 @@ def test_roles_of_the_study_file_decide_what_a_design_is():
 
 def test_a_study_without_choices_has_one_design():
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 30]}}
-    ds, frame = solved(factors=factors)
-    said = best_design(results_of(ds))
-    assert said[0].text.startswith("The study has one design: roller and guide last") and "Next" not in said[-1].text
-    assert said[0].values["worst"] == frame["pair_life_hours"].min()
+    ds, frame = solved(factors=factors, base=GRID["base"] | {"motor_force": 0})
+    results = results_of(ds)
+    said = verdict_sentences(results)
+    assert said[0].text.startswith("The pair lasts") and "next" not in {one.kind for one in said}
+    assert results.verdict.kind == "lasts" and results.verdict.best[0].low == frame["pair_life_hours"].min()
     assert isinstance(ds, xr.Dataset) and best_table(results_of(ds)).heads == ["", "All conditions"]
 
 
@@ -306,14 +304,15 @@ def test_targets_are_met_by_designs():
     results = results_of(ds)
     assert results.config.analysis.target == {"pair_life_hours": {"min": 100}}
     hits = (frame["valid"] & (frame["pair_life_hours"] >= 100)).groupby([frame[n] for n in CHOICES]).sum()
-    said = target_of_designs(results, "life of the pair of at least 100 h")
-    assert sorted(said.values["met"]) == sorted(hits) and 0 < max(hits) < 12
+    found = results.verdict
+    assert sorted(one.met for one in found.candidates) == sorted(hits) and 0 < max(hits) < 12
     (radius, material), most = hits.idxmax(), hits.max()
-    assert said.text.startswith("Life of the pair of at least 100 h: none of 6 designs meets it in all conditions; ")
-    often = f"radius −{-radius:g} mm meets it most often, in {most} of 12 conditions."
-    assert f"{material} on " in said.text and often in said.text
+    first = found.candidates[0]
+    assert (first.choices["roller_profile_radius"], first.met, first.conditions) == (radius, most, 12)
+    assert first.choices["material_pair"].startswith(material)
+    told = " ".join(one.text for one in verdict_sentences(results))
+    assert f"radius −{-radius:g} mm, in {most} of 12 conditions" in told or found.kind == "give"
     row = next(r for r in best_table(results).rows if r[0] == "Meets the targets in")
     assert row[1] == f"{hits[results.candidates().table.iloc[0][CHOICES[0]], material]} of 12"
     ds, _ = solved(base={}, analysis={"target": {"min": 100}})
-    said = target_of_designs(results_of(ds), "life of the pair of at least 100 h")
-    assert "give `guide_overrollings_per_hour`" in said.text
+    assert "give `guide_overrollings_per_hour`" in verdict_sentences(results_of(ds))[-1].text

@@ -9,8 +9,8 @@ import trackroller as tr
 from trackroller.damage import LIMITS
 from trackroller.report.explorer.rows import collect
 from trackroller.report.pages.study import contents
-from trackroller.report.words.limits import title
-from trackroller.results.first_limits import deciding, first_limit, turn, without_first
+from trackroller.report.words.verdict import limit_words
+from trackroller.results.first_limits import deciding, first_limit, reached_hours, turn
 from trackroller.study.file.load import parse_study
 
 STUDY = {
@@ -55,23 +55,14 @@ def test_the_pair_ends_with_the_first_limit_of_either_body(solved, rows):
     assert first_limit(results).tolist() == expected and len(set(expected)) > 1
 
 
-def test_without_its_first_limit_a_case_lasts_until_the_next(solved, rows):
-    reached, names = rows[0].min(axis=2), solved.data["limit"].values.tolist()
-    for case, own in enumerate(reached):
-        first, hours, following, then = without_first(solved, case)
-        order = np.sort(own)
-        assert (hours, then) == pytest.approx((order[0], order[1]), rel=1e-12)
-        assert own[names.index(first)] == pytest.approx(hours) and own[names.index(following)] == pytest.approx(then)
-
-
 def test_a_life_that_is_not_known_is_no_first_limit():
     """Above its fatigue limit a guide without a number of overrollings does not fail at once."""
     base = {key: value for key, value in STUDY["base"].items() if key != "guide_overrollings_per_hour"}
     unknown = tr.run(parse_study(STUDY | {"base": base | {"radial_force": -200}}), progress=False)
     used = unknown.data["utilisation"].sel(limit="fatigue", body="guide")
     assert (used > 1).any() and unknown.data["life_hours_by_limit"].sel(body="guide").isnull().all()
-    for case, pair in enumerate(unknown.column("pair_life_to_first_limit_hours")):
-        assert without_first(unknown, case)[1] == pytest.approx(pair, rel=1e-12)
+    pair = unknown.column("pair_life_to_first_limit_hours")
+    np.testing.assert_allclose(reached_hours(unknown).min(axis=1), pair, rtol=1e-12)
 
 
 def test_designs_are_ranked_by_the_first_limit_and_the_turn_is_a_rank_correlation(solved, rows):
@@ -97,9 +88,9 @@ def test_the_factors_that_decide_the_limit_carry_its_information(solved):
 
 def test_the_page_says_which_limit_rules_and_its_table_counts_every_valid_case(solved):
     page = contents(solved)
-    ends = dict(page["summary"])["What ends it"]
-    first, hours, following, _ = without_first(solved, int(solved.candidates().table.iloc[0]["worst_case"]))
-    assert title(first).lower() in ends[0].text.lower() and title(following) in ends[0].text and np.isfinite(hours)
+    said = " ".join(sentence.text for sentence in dict(page["summary"])["Verdict"])
+    best = solved.verdict.best[0]
+    assert best.ends == first_limit(solved)[best.case] and limit_words(best.ends) in said
     table = next(t for t in page["tables"]["decide"] if t.name == "first_limits")
     cells = [part for row in table.rows for cell in row[1:] for part in cell.split(", ") if part != "–"]
     assert sum(int(part.rsplit(" ", 1)[1]) for part in cells) == solved.valid.sum()

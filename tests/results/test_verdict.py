@@ -395,7 +395,8 @@ def brute(table):
         key: [(0, 0) if kind == "s" else (0, math.inf) if kind == "u" else (low, low + more) for low, more, kind in own]
         for key, own in of.items()
     }
-    reach = [c for c in range(3) if any(ends[key][c][1] > 0 for key in keys)]
+    reached = [c for c in range(3) if any(0 < ends[key][c][1] < math.inf for key in keys)]
+    reach = reached or [0, 1, 2]
     span = {key: tuple(min((own[c][i] for c in reach), default=0) for i in (0, 1)) for key, own in ends.items()}
     judged = [key for key in keys if all(of[key][c][2] != "u" for c in reach) and span[key][1] > 0]
     unbeaten = []
@@ -409,7 +410,7 @@ def brute(table):
             beaten |= other != key and better
         if not beaten:
             unbeaten.append(keys.index(key))
-    return span, unbeaten, keys, reach
+    return span, unbeaten, keys, reached
 
 
 def arrays(rows):
@@ -435,10 +436,10 @@ def arrays(rows):
 def test_intervals_and_unbeaten_candidates_against_loops(rows):
     low, high, regime, flags, table = arrays(rows)
     found = verdict_of(made(low, high, regime=regime, flags=flags))
-    span, unbeaten, keys, reach = brute(table)
+    span, unbeaten, keys, reached = brute(table)
     for one in found.candidates:
         assert (one.low, one.high) == span[keys[one.number]]
-    assert (found.out_of_reach.count if found.out_of_reach else 0) == 3 - len(reach)
+    assert (found.out_of_reach.count if found.out_of_reach else 0) == 3 - len(reached)
     if unbeaten:
         assert sorted(names(found)) == unbeaten
         alike = len({span[keys[i]] for i in unbeaten}) == 1

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -142,6 +143,11 @@ class Candidates:
         return rows
 
     @cached_property
+    def valid_in(self) -> np.ndarray:
+        """Return the number of valid cases of each design, shape (designs,)."""
+        return self._count(self.usable)
+
+    @cached_property
     def possible(self) -> int:
         """Return the number of conditions in which at least one design is valid; 0 if designs share no conditions."""
         return len(np.unique(codes(self.results.table, self.conditions)[self.usable])) if self.matched else 0
@@ -156,7 +162,7 @@ class Candidates:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return one row a design, the best first; designs without a valid case come last.
+        """Return one row a design, in the order of the verdict of the study: the best first.
 
         Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
         goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
@@ -187,7 +193,10 @@ class Candidates:
             table = table.assign(**self._quantile())
             sure = table["b10"] > 0
             key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
-        return _ranked(table, held, key, sign * table["median"])
+        found = results.verdict
+        if found is None or (found.goal, self.choices) != (self.goal, found.choices):
+            return _ranked(table, held, key, sign * table["median"])  # of other choices, or by another life
+        return _in_order(table, found)
 
     def cases_of(self, design: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
@@ -268,6 +277,19 @@ def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Ser
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
     rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
     return table.iloc[order].assign(rank=rank)
+
+
+def _in_order(table: pd.DataFrame, found: Any) -> pd.DataFrame:
+    """Sort designs as the verdict of the study does, and rank them; designs with equal lives tie.
+
+    `found` is a `Verdict`, whose file imports this one.
+    """
+    listed = found.candidates
+    # of lives of 0 and without end, what the candidate reaches elsewhere decides
+    beside = [one.holds if one.low in (0.0, np.inf) else 0.0 for one in listed]
+    alike = [(one.status, one.low, one.met, more) for one, more in zip(listed, beside, strict=True)]
+    rank = [1 + next(i for i, other in enumerate(alike) if other == own) for own in alike]
+    return table.loc[[one.number for one in listed]].assign(rank=rank)
 
 
 def hardest_first(candidates: Candidates) -> np.ndarray:

@@ -94,12 +94,3 @@ def reached_hours(results: Results) -> np.ndarray:
     counted = np.array([not limit.beside for limit in limits])[:, None]
     reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, hours, np.nan))
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
-
-
-def without_first(results: Results, case: int) -> tuple[str, float, str, float]:
-    """Return first limit and hours of a case, and limit and hours that come next if the first were moved far away."""
-    names, reached = results.data["limit"].values.tolist(), reached_hours(results)[case]
-    use = np.nan_to_num(flat(results.data, "utilisation", results.dims)[case], nan=0.0).max(axis=1)
-    order = np.lexsort((-use, reached))
-    first, second = int(order[0]), int(order[1]) if len(order) > 1 else int(order[0])
-    return names[first], float(reached[first]), names[second], float(reached[second])

@@ -184,8 +184,11 @@ class Cases:
 
     @cached_property
     def out_of_reach(self) -> np.ndarray:
-        """Return the cases of the conditions that no candidate meets, shape (n,)."""
-        high = self.ends[1]
+        """Return the cases of the conditions that no candidate meets, shape (n,).
+
+        A candidate that is not judged in a condition does not meet it.
+        """
+        high = np.where(self.judged, self.ends[1], 0.0)
         if not self.conditions:
             return np.zeros(len(high), dtype=bool)
         if not self.candidates.matched:

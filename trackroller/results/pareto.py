@@ -283,7 +283,7 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
     results = candidates.results
     columns = {name: results.quantity(name) for name in objectives}
     worst = {name: candidates.worst_cases(columns[name][0].astype(float), way) for name, way in objectives.items()}
-    held = candidates.table["valid"].sort_index().to_numpy()
+    held = candidates.valid_in
     kept = np.flatnonzero(np.all([cases >= 0 for cases in worst.values()], axis=0) & (held > 0))
     row = next(iter(worst.values()))[kept]
     factors = {name: results.table[name].to_numpy()[row] for name in candidates.choices}

@@ -201,6 +201,11 @@ class Verdict:
         return tuple(c for c in self.candidates if not c.judged and (c.high > first or not self.goal_rises))
 
     @property
+    def choices(self) -> tuple[str, ...]:
+        """Return the names of the choices; empty where the study cannot tell candidates apart."""
+        return tuple(self.candidates[0].choices) if self.candidates else ()
+
+    @property
     def goal_rises(self) -> bool:
         """Return whether more of the goal is better."""
         return "life" in self.goal[0]
@@ -241,9 +246,11 @@ def verdict_of(results: Results) -> Verdict | None:
     turns = _given(cases, reach)
     traded = _tradeoff(results)
     if turns:
-        rest = _decided(cases, cases.own & ~reach, reach)
+        left = cases.own & ~reach
+        rest = _decided(cases, left if left.any() else cases.own, reach)
         out = _misses(cases, reach, cases.own, cases.reason)
-        return replace(rest, kind="give", turns=turns, rest=replace(rest, out_of_reach=None), out_of_reach=out)
+        others = replace(rest, out_of_reach=None) if left.any() else None
+        return replace(rest, kind="give", turns=turns, rest=others, out_of_reach=out)
     found = _decided(cases, cases.own, reach)
     if traded is not None and found.kind in ("build", "a_or_b", "measure"):
         return replace(found, kind="give", turns=(Turn("requirement"),), rest=found, tradeoff=traded)
@@ -312,27 +319,28 @@ def _scores(cases: Cases, kept: np.ndarray) -> Scores:
     candidates = cases.candidates
     many, levels = len(candidates.size), int(cases.level.max()) + 1
     low, high = cases.ends
-    ends = np.full((2, many, levels), np.nan)
+    ends = np.full((2, many, levels), np.inf)
     draws = np.zeros((many, 0))
+    judged = np.bincount(candidates.place[kept & ~cases.judged], minlength=many) == 0
     if cases.sampled:
-        for i in range(many):
-            for level in range(levels):
-                rows = kept & (candidates.place == i) & (cases.level == level)
-                if rows.any():
-                    ends[:, i, level] = b10(low[rows])[0], b10(high[rows])[0]
         draws = _resampled(cases, kept)
+        for i, level in np.ndindex(many, levels):
+            rows = kept & (candidates.place == i) & (cases.level == level)
+            if rows.any():  # a condition that is not judged counts as 0, unless more than one in ten are not
+                sure = np.where(cases.judged, high, 0.0)[rows]
+                most = b10(high[rows])[0]
+                judged[i] |= b10(sure)[0] > 0
+                ends[:, i, level] = b10(low[rows])[0], b10(sure)[0] if judged[i] else most
     else:
-        ends[:] = np.inf
         for end, values in zip(ends, (low, high), strict=True):
             np.minimum.at(end, (candidates.place[kept], cases.level[kept]), values[kept])
-        ends[:, np.bincount(candidates.place[kept], minlength=many) == 0] = 0.0  # no condition is left
-    judged = np.bincount(candidates.place[kept & ~cases.judged], minlength=many) == 0
+    ends[:, np.bincount(candidates.place[kept], minlength=many) == 0] = 0.0  # no condition is left
     case = cases.worst(kept)
     error = np.where(case < 0, 0.0, cases.error[case])
     table = candidates.members
     named = [name for name in OF_MATERIALS if name in candidates.choices]
     pairs = table[named].astype(str).agg(" / ".join, axis=1).to_numpy(dtype=str) if named else np.full(many, "")
-    lowest, highest = np.nanmin(ends[0], axis=1), np.nanmax(ends[1], axis=1)
+    lowest, highest = ends[0].min(axis=1), ends[1].max(axis=1)
     return Scores(lowest, highest, np.concatenate([*ends], axis=1), judged, error, draws, pairs, case)
 
 
@@ -345,12 +353,15 @@ def _resampled(cases: Cases, kept: np.ndarray) -> np.ndarray:
     out = np.empty((len(candidates.size), RESAMPLES))
     for i in range(len(out)):
         rows = np.flatnonzero(kept & (candidates.place == i))
+        if not len(rows):
+            out[i] = _logarithm(0.0)
+            continue
         rows = rows[np.argsort(cases.use[rows], kind="stable")]
         random = np.random.default_rng(0 if candidates.matched else i)
-        drawn = random.multinomial(len(rows), np.full(len(rows), 1 / max(len(rows), 1)), RESAMPLES)
+        drawn = random.multinomial(len(rows), np.full(len(rows), 1 / len(rows)), RESAMPLES)
         order = np.argsort(low[rows], kind="stable")
         reached = drawn[:, order].cumsum(axis=1) >= 0.1 * len(rows)
-        out[i] = _logarithm(low[rows][order][np.argmax(reached, axis=1)]) if len(rows) else _logarithm(0.0)
+        out[i] = _logarithm(low[rows][order][np.argmax(reached, axis=1)])
     return out
 
 
@@ -402,6 +413,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     """Return the verdict over the cases `wanted`; those out of reach are left out of the ranking, not of the target."""
     candidates, target = cases.candidates, cases.results.config.analysis.target
     kept = wanted & ~reach
+    kept = kept if kept.any() else wanted
     scores = _scores(cases, kept)
     required, sure, may = _targeted(cases)
     counted, good = (wanted, sure) if target else (kept, cases.ends[0] > 0)
@@ -412,6 +424,8 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
     order = np.array([*first, *(i for i in order if i not in first)])
+    if kind == "none":  # of all conditions, those without any candidate included
+        size, met = cases.conditions_in(wanted), cases.conditions_in(wanted) - cases.conditions_in(wanted & ~good)
     facts = {"met": met, "conditions": size, "status": status}
     listed = tuple(_candidate(cases, scores, kept, int(i), facts) for i in order)
     named = len(first) or min(1, len(listed))
@@ -428,7 +442,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
         **_shared(cases),
     )
     if kind == "none":
-        own = rows_of(candidates, listed[0], counted)
+        own = rows_of(candidates, listed[0], wanted)
         reason = np.where(cases.reason == "", cases.first, cases.reason)
         return replace(found, fails=_misses(cases, own & ~good, own, reason))
     return replace(found, turns=_turns(cases, found)) if kind == "measure" else found

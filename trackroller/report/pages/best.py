@@ -8,8 +8,9 @@ from trackroller.report.html import render, write_page
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.cases import valid_cases
-from trackroller.report.words.designs import best_design, best_table
+from trackroller.report.words.designs import best_table
 from trackroller.report.words.optimum import optima_table, optimum_sentences
+from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.results import Results
 
 NOTHING = "The study has no result that ranks designs. Add life or peak_stress to its outputs, and run it again."
@@ -19,7 +20,7 @@ NOTHING = "The study has no result that ranks designs. Add life or peak_stress t
 def best_of(results: Results) -> tuple[list[str], Table | None]:
     """Return sentences on the best designs of a study, and a table of up to five of them."""
     optimum = optimum_sentences(results)
-    said = optimum or best_design(results)
+    said = optimum or verdict_sentences(results)
     if not said:
         return [NOTHING], None
     if not (optimum or results.valid.all()):

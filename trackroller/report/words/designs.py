@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -10,17 +10,14 @@ import pandas as pd
 
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import (
-    BEYOND,
     Life,
     capital,
     count,
     head_unit,
-    lasting,
     long_name,
     part_of,
     percent,
     plain,
-    quantity,
     rounded,
     setting,
 )
@@ -28,12 +25,13 @@ from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, Candidates, factor_roles
 from trackroller.results.results import Results
+from trackroller.results.unsure import UNSURE
 
 MOST_TIES = 3  # designs with equal lives that are named
 BEST = 5  # designs that stand side by side
 
 
-def design_words(candidates: Candidates, row: pd.Series) -> str:
+def design_words(candidates: Candidates, row: Mapping[Any, Any] | pd.Series) -> str:
     """Name a design by its choices, materials first, such as 'PA6 on itself, contact angle 30°'."""
     names = sorted(candidates.choices, key=lambda name: candidates.results.numeric(name))
     return ", ".join(setting(name, row[name]) for name in names)
@@ -44,8 +42,9 @@ def condition_words(candidates: Candidates, case: int) -> str:
     table, goal = candidates.results.table, candidates.results.column(candidates.goal[0])
     own = candidates.usable & (candidates.place == candidates.place[case])
     alike = own & (goal == goal[case])
-    varied = [n for n in candidates.conditions if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
-    return ", ".join(setting(name, table[name].iloc[case]) for name in varied or candidates.conditions)
+    names = [n for n in candidates.conditions if n not in UNSURE]
+    varied = [n for n in names if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
+    return ", ".join(setting(name, table[name].iloc[case]) for name in varied or names)
 
 
 def alone(candidates: Candidates) -> bool:
@@ -64,101 +63,7 @@ def size_words(results: Results) -> str:
     return text + each * (many * size == cases)
 
 
-def best_design(results: Results) -> list[Sentence]:
-    """Say which design to build, how long it lasts, what fails first, and which design comes next.
-
-    Returns
-    -------
-    The sentences; none without a valid design. A study whose designs of experiments cannot answer says which one can.
-    """
-    candidates = results.candidates()
-    if candidates is None:
-        return [] if results.valid.any() else [say("designs", "none_valid")]
-    if not candidates.comparable:
-        return [_unanswered(candidates)]
-    table = candidates.table
-    best, ties = table.iloc[0], int((table["rank"] == 1).sum())
-    said = [_of_design("best", candidates, best, ("worst", "median", "best"), ties=ties)]
-    if ties > 1:
-        said.append(_ties(candidates, ties))
-    counts = {word: int(best[f"first_{word}"]) for word in FIRST_TO_FAIL}
-    if candidates.rising and counts["roller"] + counts["guide"]:
-        most, fewer = sorted(BODIES, key=lambda body: -counts[body])
-        values = {"most": most, "fewer": fewer, "counts": counts, "valid": int(best["valid"])}
-        said.append(say("designs", "first", several=bool(candidates.conditions), **values))
-    slip, lift = float(best["slip_margin"]), float(best["lift_off_margin"])
-    if slip < 1 or np.isfinite(lift):  # without a drive nothing slips
-        values = {"slip": slip, "lift_off": lift, "lifting": bool(np.isfinite(lift))}
-        said.append(say("designs", "margins", several=bool(candidates.conditions), **values))
-    if len(table) > ties and table.iloc[ties]["valid"]:
-        said.append(_of_design("next", candidates, table.iloc[ties], ("worst", "median")))
-    return said
-
-
-def target_of_designs(results: Results, words: str) -> Sentence | None:
-    """Say how many designs meet the study's targets in all their conditions, and which one meets them most often.
-
-    Parameters
-    ----------
-    results : the study
-    words : the targets in words
-
-    Returns
-    -------
-    The sentence; None without a target, or if the study cannot compare its designs.
-    """
-    candidates = results.candidates()
-    met = candidates.targets_met() if candidates is not None and candidates.comparable else None
-    if candidates is None or met is None:
-        return None
-    best = int(np.argmax(met / candidates.size))
-    values = {"met": met.tolist(), "every": int((met == candidates.size).sum()), "best": best, "words": words}
-    row = candidates.table[candidates.table.index == best].iloc[0]
-    values |= {"name": design_words(candidates, row), "several": bool(candidates.conditions)}
-    unknown = "pair_life_hours" in results.config.analysis.target and alone(candidates)
-    return say("designs", "target_of_designs", **values, conditions=int(candidates.size[best]), alone=unknown)
-
-
-def _of_design(kind: str, candidates: Candidates, row: pd.Series, shown: Sequence[str], **values: Any) -> Sentence:
-    """Write the lives or the stress of a design, and in how many of its conditions it is valid.
-
-    Lives that all lie beyond the S-N data share one remark.
-    """
-    unit, lives = candidates.goal[2], [(row[name], row[f"{name}_beyond"]) for name in shown]
-    share = "b10" not in row and all(beyond and np.isfinite(value) for value, beyond in lives)
-    texts = [quantity(value, unit) if share else lasting(value, unit, beyond) for value, beyond in lives]
-    keys = ("worst", "median", "best", "valid", "cases", "rolls", "worst_case", "beyond")
-    return say(
-        "designs",
-        kind,
-        **values,
-        **{key: row[key] for key in keys},
-        row=row,
-        design={name: row[name] for name in candidates.choices},
-        name=design_words(candidates, row),
-        rising=candidates.rising,
-        drawn=candidates.drawn,
-        several=bool(candidates.conditions),
-        goal=candidates.goal[1],
-        unit=unit,
-        lives=texts,
-        common=f", {'all' if len(shown) > 2 else 'both'} {BEYOND}" * share,
-        where=condition_words(candidates, int(row["worst_case"])),
-        possible=candidates.possible if candidates.matched and len(candidates.size) > 1 else 0,
-        alone=alone(candidates),
-    )
-
-
-def _ties(candidates: Candidates, ties: int) -> Sentence:
-    """Name the designs that are no worse than the first."""
-    others = candidates.table.iloc[1:ties]
-    names = [design_words(candidates, row) for _, row in others.head(MOST_TIES).iterrows()]
-    names += [f"{count(len(others) - MOST_TIES)} more"] if len(others) > MOST_TIES else []
-    which = "nine-of-ten life" if candidates.drawn and candidates.rising else "worst case"
-    return say("designs", "ties", ties=ties, names=names, which=which)
-
-
-def _unanswered(candidates: Candidates) -> Sentence:
+def unanswered(candidates: Candidates) -> Sentence:
     """Say why a study cannot compare designs, and which design of experiments can."""
     roles = factor_roles(candidates.results)
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}

@@ -9,13 +9,13 @@ from trackroller.report.numbers import capital
 from trackroller.report.words import indices
 from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
 from trackroller.report.words.cases import occurrence, silent_drive, valid_cases
-from trackroller.report.words.designs import best_design, target_of_designs
 from trackroller.report.words.indices import part_sentences
-from trackroller.report.words.limits import best_whatever, guesses, limit_of_best, whichever_first, worn
+from trackroller.report.words.limits import guesses, worn
 from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.samples import grown, samples
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.targets import target, target_words
+from trackroller.report.words.targets import target
+from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.ranking import decisive, headline, order, robust_design
 from trackroller.results.results import Results
 
@@ -36,10 +36,10 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
     complete = sens if not results.unfinished else None  # the study asks for more samples than are solved
     enough = samples(complete, results.config.samples) if complete is not None else None
     compared = [Sentence("models", text) for text in models]
+    search = optimum_sentences(results)
     lines: list[tuple[str, list[Sentence | None]]] = [
         # first, so that the first screen answers what to build
-        ("Best", [*(optimum_sentences(results) or best_design(results)), _target(results)]),
-        ("What ends it", [limit_of_best(results), best_whatever(results), whichever_first(results)]),
+        ("Best" if search else "Verdict", [*(search or verdict_sentences(results)), _target(results)]),
         ("Valid cases", [valid_cases(results), stopped(results)]),
         ("What decides", decides(sens)),
         (
@@ -66,12 +66,12 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
 
 
 def _target(results: Results) -> Sentence | None:
-    """Say how often all targets of the study are met: by designs over their conditions, otherwise by cases."""
-    sens = results.analysis
+    """Say how often all targets of the study are met, where its verdict does not say which candidates meet them."""
+    sens, found = results.analysis, results.verdict
     if sens is None or "target" not in sens.dims:
         return None
-    of_designs = None if robust_design(sens) else target_of_designs(results, target_words(sens, -1))
-    return of_designs or target(sens, -1)  # the last target joins several
+    answered = found is not None and found.kind != "cannot_tell" and not found.sampled
+    return None if answered and not robust_design(sens) else target(sens, -1)  # the last target joins several
 
 
 def stopped(results: Results) -> Sentence | None:

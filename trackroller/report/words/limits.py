@@ -11,36 +11,16 @@ from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.candidates import Candidates
-from trackroller.results.first_limits import Turn, deciding, first_limit, turn, without_first
+from trackroller.results.first_limits import Turn, deciding, first_limit, turn
 from trackroller.results.limit_notes import guessed_values
-from trackroller.results.lives import FIRST_LIMIT, body_lives
+from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
-from trackroller.results.unsure import COEFFICIENT, POSITION, settled, unbeaten, varied
-
-MOST_NAMED = 4  # designs that a sentence names
+from trackroller.results.unsure import COEFFICIENT, POSITION, settled, varied
 
 
 def title(name: str) -> str:
     """Return the words of a limit without the remark in brackets."""
     return LIMITS[name].title.partition(" (")[0]
-
-
-def limit_of_best(results: Results) -> Sentence | None:
-    """Say what ends the best design first at its worst condition, and its life without it; None without limits."""
-    candidates = results.candidates()
-    if (
-        candidates is None
-        or candidates.goal != FIRST_LIMIT
-        or not candidates.comparable
-        or not candidates.table.iloc[0]["valid"]
-    ):
-        return None
-    case = int(candidates.table.iloc[0]["worst_case"])
-    first, hours, following, then = without_first(results, case)
-    lives = body_lives("").values()
-    beyond = following == "fatigue" and any(results.beyond_data(name)[case] for name in lives)
-    values = {"first": title(first), "hours": hours, "next": title(following), "then": then}
-    return say("limits", "gain", **values, beyond=beyond, several=bool(candidates.conditions))
 
 
 def limit_sentences(results: Results) -> list[Sentence]:
@@ -52,8 +32,9 @@ def limit_sentences(results: Results) -> list[Sentence]:
     counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
     titles = {title(name): cases for name, cases in counts.items()}
     said = [say("limits", "first_limits", counts=titles, valid=int(results.valid.sum()))] if counts else []
-    order = turn(candidates)
-    return [*said, _turned(candidates, order)] if order is not None else said
+    order, same = turn(candidates), whichever_first(results)
+    turned = None if order is None else _turned(candidates, order)
+    return [*said, *(sentence for sentence in (turned, same) if sentence is not None)]
 
 
 def guesses(results: Results) -> Sentence | None:
@@ -75,18 +56,6 @@ def worn(results: Results) -> Sentence | None:
     km, valid = results.column("run_in_distance")[rows], int(results.valid.sum())
     values = {"count": int(rows.sum()), "valid": valid, "of_limits": results.has(name)}
     return say("limits", "worn", **values, least=km.min(), most=km.max())
-
-
-def best_whatever(results: Results) -> Sentence | None:
-    """Say which designs are the best whatever the values known within a range are; None without such values."""
-    candidates = results.candidates()
-    best = unbeaten(candidates) if candidates is not None else None
-    if candidates is None or best is None or not len(best):
-        return None
-    rows = candidates.table[candidates.table.index.isin(best)]
-    names = [design_words(candidates, row) for _, row in rows.iterrows()]
-    values = {"designs": rows.index.tolist(), "of": len(candidates.size), "names": names, "most": MOST_NAMED}
-    return say("limits", "best_whatever", **values, **_unsure(candidates))
 
 
 def _unsure(candidates: Candidates) -> dict[str, str]:

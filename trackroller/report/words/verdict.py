@@ -1,0 +1,294 @@
+"""The verdict of a study in words: what to build, measure or give, and why, in at most 120 words."""
+
+from __future__ import annotations
+
+import math
+
+from trackroller.damage import LIMITS
+from trackroller.parameters import PARAMETERS
+from trackroller.report.numbers import (
+    BEYOND,
+    lasting,
+    level_text,
+    long_name,
+    plain,
+    quantity,
+    rounded,
+    setting,
+    shortened,
+)
+from trackroller.report.words.designs import alone, condition_words, design_words, unanswered
+from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.candidates import Candidates
+from trackroller.results.results import Results
+from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
+
+MOST = 3  # candidates that a sentence names
+WORDS = 120  # of a verdict
+LEAST_NEEDED = ("next", "not_judged", "out", "turn")  # kinds of sentences that also stand below, the first one least
+SHORT = {"bearing": "bearing", "shakedown": "shakedown", "guide": "guide (give `guide_overrollings_per_hour`)"}
+REASONS = {  # of `Cases.reason`, as what the candidate does
+    "breaks": "breaks",
+    "yields": "yields below its surface",
+    "not converged": "has no solution",
+    "life not known": "has no known life",
+    "outside the half-space": "lies outside the half-space",
+    "conformal": "touches the edge of its groove",
+    "steep friction": "may not roll steadily",
+}
+
+
+def limit_words(name: str) -> str:
+    """Return the words of a limit without the remark in brackets: 'wear'; those of fatigue in short."""
+    if name == "fatigue" or name not in LIMITS:
+        return name
+    return LIMITS[name].title.partition(" (")[0]
+
+
+def verdict_sentences(results: Results) -> list[Sentence]:
+    """Say the verdict of a study: first what to do, then why, what is left out, and what was not checked.
+
+    Returns
+    -------
+    The sentences, the first one in a few words; none for a search and without a result that ranks candidates.
+    """
+    found = results.verdict
+    if found is None:
+        return []
+    words = _Words(results, found)
+    said = [words.head(), *words.reasons(), words.aside(), words.open_limits(), words.unchecked()]
+    return _fitting([sentence for sentence in said if sentence is not None])
+
+
+def _fitting(said: list[Sentence]) -> list[Sentence]:
+    """Return the sentences of a verdict within `WORDS`: what is least needed for the decision is left out first."""
+    for kind in LEAST_NEEDED:
+        if sum(len(sentence.text.split()) for sentence in said) > WORDS:
+            said = [sentence for sentence in said if sentence.kind != kind]
+    return said
+
+
+class _Words:
+    """The verdict with the study that it is about."""
+
+    def __init__(self, results: Results, found: Verdict) -> None:
+        self.results, self.found = results, found
+        self.candidates = Candidates.grouped(results, found.goal)
+
+    def name(self, one: Candidate) -> str:
+        return design_words(self.candidates, one.choices) or "the roller"
+
+    def span(self, one: Candidate) -> str:
+        """Write both ends of a candidate's life, or its stress."""
+        unit = self.found.goal[2]
+        if not self.found.goal_rises:
+            return quantity(one.low, unit)
+        if math.isinf(one.low) or one.high <= one.low * (1 + 1e-6):
+            return lasting(one.low, unit, one.beyond)
+        text = f"{rounded(one.low)} to {quantity(one.high, unit)}"
+        text = text if math.isfinite(one.high) else f"at least {quantity(one.low, unit)}"
+        return text + f" ({BEYOND})" * one.beyond
+
+    def head(self) -> Sentence:
+        """Say what to do."""
+        found = self.found
+        named = [self.name(one) for one in found.best]
+        values = {"names": named, "tried": found.tried, "many": len(named), "tie": found.why == "tie"}
+        what = [_what(turn) for turn in found.turns]
+        lives = self.span(found.best[0]) if found.best else ""
+        who = "roller" if alone(self.candidates) or not found.goal_rises else "pair"
+        return say("verdict", found.kind, **values, what=what, lives=lives, who=who, rises=found.goal_rises)
+
+    def reasons(self) -> list[Sentence | None]:
+        """Say why: lives, what ends them, what turns the decision, and the conditions that are left out."""
+        found = self.found
+        if found.kind == "cannot_tell" and found.why == "conditions":
+            return [unanswered(self.candidates)]
+        if found.kind == "give":
+            return [self.given(), self.out(found.out_of_reach), *self.rest()]
+        if found.kind == "cannot_tell":
+            return [None]
+        if found.kind == "none":
+            return [self.nearest()]
+        if found.kind == "measure":
+            return [self.range_of(), *map(self.turn, found.turns), self.out(found.out_of_reach)]
+        return [self.ends(found.best[0]), self.following(), self.out(found.out_of_reach)]
+
+    def ends(self, one: Candidate) -> Sentence:
+        """Say how long a candidate lasts, where, what ends it, and the target."""
+        found = self.found
+        return say(
+            "verdict",
+            "ends",
+            candidate=one,
+            lives=self.span(one),
+            interval=[rounded(end) for end in one.interval] if found.sampled else [],
+            unit=found.goal[2],
+            sampled=found.sampled,
+            where=self.where(one),
+            who="roller" if alone(self.candidates) else "pair",
+            goal=found.goal[1],
+            rises=found.goal_rises,
+            limit=limit_words(one.ends),
+            target=self.target(),
+            edges=[long_name(name) for name in one.edges] if found.kind == "build" else [],
+            many=len(found.best),
+            tie=found.why == "tie",
+            error=one.error,
+            repeats=found.kind == "lasts",
+        )
+
+    def where(self, one: Candidate) -> str:
+        """Name the worst condition of a candidate."""
+        return condition_words(self.candidates, one.case) if self.candidates.conditions else ""
+
+    def target(self) -> str:
+        """Write the targets of the study."""
+        found, texts = self.found, []
+        if math.isfinite(found.required):
+            texts.append(quantity(found.required, "h"))
+        for name, ends in found.target.items():
+            unit, words = self.results.quantity(name)[1:]
+            if not (unit == "h" and set(ends) == {"min"} and math.isfinite(found.required)):
+                parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
+                texts.append(f"{words} {' and '.join(parts)}")
+        return ", ".join(texts)
+
+    def following(self) -> Sentence | None:
+        """Name the next best candidate by the same measure."""
+        one = self.found.next
+        if one is None:
+            return None
+        values = {"candidate": one, "name": self.name(one), "lives": self.span(one), "holds": one.met == one.conditions}
+        return say("verdict", "next", **values)
+
+    def out(self, misses: Misses | None) -> Sentence | None:
+        """Name the conditions that no candidate meets, and why."""
+        if misses is None or not misses.count:
+            return None
+        given = [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
+        given = given if self.found.kind != "give" else []
+        return say("verdict", "out", misses=misses, where=_levels(misses), why=_reasons(misses), not_given=given)
+
+    def nearest(self) -> Sentence:
+        """Say that no candidate is enough, which one is nearest, and where it fails."""
+        found, one = self.found, self.found.candidates[0]
+        fails = found.fails or Misses(0, 0, {})
+        values = {
+            "candidate": one,
+            "name": self.name(one) if len(found.candidates) > 1 else "",
+            "target": self.target(),
+        }
+        limits = [limit_words(word) for word in fails.reasons if word in LIMITS]
+        life = self.span(one) if one.low > 0 else ""
+        values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
+        return say("verdict", "nearest", **values, many=len(found.candidates), worst=self.where(one))
+
+    def range_of(self) -> Sentence:
+        """State the ranges of the candidates between which the measurement decides."""
+        found = self.found
+        shown = [(self.name(one), self.span(one)) for one in found.best[:MOST]]
+        first = found.best[0]
+        ranged = any(one.high > one.low for one in found.best)
+        values = {"ranged": ranged, "shown": shown, "left": len(found.best) - len(shown)}
+        values |= {"limit": limit_words(first.ends)}
+        return say("verdict", "range", **values, target=self.target(), where=self.where(first), body=first.body)
+
+    def turn(self, turn: Turn) -> Sentence | None:
+        """Say at which value the decision turns."""
+        if not (math.isfinite(turn.value) or math.isfinite(turn.until)):
+            return None
+        named = {one.number: self.name(one) for one in self.found.best}
+        others = [name for number, name in named.items() if number != turn.candidate]
+        values = {"turn": turn, "name": named.get(turn.candidate, ""), "others": others, "target": self.target()}
+        texts = {key: quantity(getattr(turn, key), turn.units) for key in ("value", "until", "high")}
+        texts["low"] = rounded(turn.low)
+        return say("verdict", "turn", **values, texts=texts, wear=turn.what == "wear_coefficient")
+
+    def given(self) -> Sentence:
+        """Say which value was used instead of the one that was not given, or the ends of several goals."""
+        traded = self.found.tradeoff
+        if traded is None:
+            turns = [(long_name(t.what), level_text(t.what, t.low, words=False)) for t in self.found.turns]
+            return say("verdict", "given", turns=turns)
+        ends = []
+        for choices, values in traded.ends:
+            lives = [quantity(v, unit) for v, (_, unit, _) in zip(values, traded.goals, strict=True)]
+            ends.append((" at ".join(lives), ", ".join(setting(n, v) for n, v in choices.items())))
+        unit = traded.goals[0][1]
+        gap = [rounded(traded.gap[0]), quantity(traded.gap[1], unit)] if traded.gap else []
+        return say("verdict", "tradeoff", designs=traded.designs, ends=ends, gap=gap)
+
+    def rest(self) -> list[Sentence | None]:
+        """Say the verdict over the conditions that remain."""
+        rest = self.found.rest
+        if rest is None or rest.why == "conditions":
+            return [] if rest is None else [unanswered(self.candidates)]
+        own = _Words(self.results, rest)
+        if rest.kind == "none":
+            return [say("verdict", "rest", text="", kind=rest.kind, goal=""), own.nearest()] if rest.candidates else []
+        head = own.head().text
+        goal = self.found.goal[1] if self.found.tradeoff is not None else ""
+        first = say("verdict", "rest", text=head[:1].lower() + head[1:], kind=rest.kind, goal=goal)
+        return [first, *own.reasons()[: 2 if rest.kind == "measure" else 1]]
+
+    def aside(self) -> Sentence | None:
+        """Name the candidates that the model does not judge."""
+        found = self.found
+        others = found.not_judged
+        if found.kind == "give" and found.rest is not None:
+            others = found.rest.not_judged
+        if not others:
+            return None
+        unit = found.goal[2]
+        shown = []
+        for one in others[:MOST]:
+            holds = "" if math.isnan(one.holds) else quantity(one.holds, unit)
+            shown.append((self.name(one), REASONS.get(one.ends, one.ends), holds))
+        return say("verdict", "not_judged", shown=shown, left=len(others) - len(shown), rises=found.goal_rises)
+
+    def open_limits(self) -> Sentence | None:
+        """Name the limits of the first candidate that are exceeded at one end of the range of a placeholder."""
+        found = self.found
+        names = found.best[0].open_limits if found.best else ()
+        if not names:
+            return None
+        return say("verdict", "open", limits=[limit_words(name) for name in names])
+
+    def unchecked(self) -> Sentence | None:
+        """Name what was not checked."""
+        names = [SHORT.get(name) or limit_words(name) for name in self.found.not_checked]
+        names += [f"{limit_words(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
+        return say("verdict", "not_checked", names=names) if names else None
+
+
+def _what(turn: Turn) -> str:
+    """Name what to measure or to give."""
+    if turn.what == "requirement":
+        return "a requirement"
+    if turn.what in PARAMETERS and not turn.of:
+        return f"the {long_name(turn.what)}"
+    if turn.what in ("placeholder_position", "placeholder"):
+        return f"the placeholders of {turn.of}"
+    return f"the {plain(turn.what)} of {turn.of}" + f" on {'itself' if turn.on == turn.of else turn.on}" * bool(turn.on)
+
+
+def _levels(misses: Misses) -> str:
+    """Write the levels of conditions: 'friction coefficient 0 and 0.05, driven −20 N'."""
+    parts = []
+    for name, levels in misses.where.items():
+        texts = [level_text(name, v) for v in levels]
+        spoken = setting(name, levels[0]) == texts[0]
+        parts.append(shortened(texts) if spoken else f"{long_name(name)} {shortened(texts)}")
+    return ", ".join(parts)
+
+
+def _reasons(misses: Misses) -> list[str]:
+    """Write why conditions are not met, the most frequent reason first; what ends a life too early is no reason."""
+    words = [word for word in misses.reasons if word and word not in LIMITS]
+    return [
+        f"exceeds the limit of {limit_words(word.removeprefix('limit '))}"
+        if word.startswith("limit ")
+        else REASONS.get(word, word)
+        for word in words
+    ]
