@@ -19,7 +19,8 @@ from trackroller.results.results import Results
 from trackroller.results.unsure import UNSURE
 from trackroller.study.outputs import flat
 
-BESIDE = ("rating", "catalogue", "multiaxial")  # limits that stand beside the verdict: second models of the same end
+# limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
+BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
 NOT_JUDGED = ("life not known", "steep friction", "conformal", "outside the half-space", "not converged")
 
 
@@ -125,7 +126,7 @@ class Cases:
         return np.asarray(np.where(np.isnan(found), value, found))
 
     def _limits(self, state: str) -> dict[str, np.ndarray]:
-        """Return the cases in which each limit without hours is `exceeded` or `open`, shape (n,) by limit."""
+        """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,) by limit."""
         data = self.results.data
         if "limit_state" not in data:
             return {}
@@ -133,17 +134,7 @@ class Cases:
         values = flat(data, "limit_state", self.results.dims)  # (n, limit, body)
         hit = (values == words.index(state)).any(axis=2)
         names = data["limit"].values.tolist()
-        return {name: hit[:, i] for i, name in enumerate(names) if name not in (*self.timed, *BESIDE)}
-
-    @cached_property
-    def timed(self) -> tuple[str, ...]:
-        """Return the limits that have hours and end a life after them."""
-        data = self.results.data
-        if "life_hours_by_limit" not in data:
-            return ()
-        known = data["life_hours_by_limit"].notnull().any([d for d in data["life_hours_by_limit"].dims if d != "limit"])
-        names = [str(name) for name, has in zip(data["limit"].values, known.values, strict=True) if has]
-        return tuple(name for name in names if name not in LIMITS or not LIMITS[name].ends_at_once)
+        return {name: hit[:, i] for i, name in enumerate(names) if name not in BESIDE}
 
     @cached_property
     def open_limits(self) -> dict[str, np.ndarray]:
