@@ -11,7 +11,7 @@ import xarray as xr
 from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import capital, count, listing, long_name, plain
+from trackroller.report.numbers import capital, count, listing, long_name, plain, quantity, rounded
 from trackroller.report.words.designs import alone, design_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading, pareto_sentence
@@ -59,9 +59,8 @@ def lives_by_design(results: Results) -> style.Drawn:
         f"{count(len(candidates.size))} designs. Lives of the valid conditions. Hollow marks lie beyond the S-N data."
     )
     caption += f" {'; '.join(f'{i}: {name}' for i, name in enumerate(names, 1))}." if numbered else ""
-    what = "its worst condition, among designs that are valid in as many"
-    what = "nine of ten sampled conditions" if candidates.drawn else what
-    finding = f"{names[0]} lasts longest in {what}."
+    ends = rounded(table["worst"].min()), quantity(table["worst"].max(), candidates.goal[2])
+    finding = f"The lives of these designs at the worst of their valid conditions lie between {ends[0]} and {ends[1]}."
     if candidates.drawn and not table["b10"].max() > 0:
         finding = "For each design one in ten or more of the sampled conditions are not valid."
     return figure, style.FigureInfo("designs", caption, finding)
