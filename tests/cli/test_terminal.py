@@ -58,7 +58,7 @@ def test_solve_ends_with_the_margins_and_what_was_not_checked():
     last = " ".join(lines[margins:])
     for text in ("First limit of the roller:", "First limit of the guide:", "First limit of the pair:", "Not checked"):
         assert text in last
-    assert "Not asked for: shakedown, heat and wear" in last
+    assert "heat (give heat_transfer_coefficient, give cooled_area)" in last
 
 
 def test_a_wide_table_is_parted_and_repeats_its_first_column(capsys, monkeypatch):

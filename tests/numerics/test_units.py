@@ -145,7 +145,7 @@ def test_a_study_takes_units():
                 "velocity": {"linspace": ["0.5 m/s", "1.5 m/s", 3]},
                 "ambient_temperature": {"values": ["68 degF"]},
             },
-            "outputs": ["forces"],
+            "outputs": ["heat"],
         }
     )
     design = study.design()
@@ -154,7 +154,7 @@ def test_a_study_takes_units():
     assert design["axis_distance"].values[0] == 22.0
     assert tr.load_study(study.as_dict()).merged() == study.merged()
     normal = {"ambient_temperature": {"truncnormal": ["20 °C", "5 K", "10 °C", "303.15 K"]}}
-    drawn = tr.load_study({"name": "n", "factors": normal, "design": "lhs", "samples": 4, "outputs": ["forces"]})
+    drawn = tr.load_study({"name": "n", "factors": normal, "design": "lhs", "samples": 4, "outputs": ["heat"]})
     assert drawn.parsed["ambient_temperature"].numbers == pytest.approx((20.0, 5.0, 10.0, 30.0))
     with pytest.raises(InputError, match=r"factors\.velocity\.uniform = 'N'"):
         tr.load_study({"name": "w", "factors": {"velocity": {"uniform": ["5 N", "6 N"]}}, "design": "lhs"})

@@ -168,17 +168,31 @@ class Audit:
             whole = hit == len(frame)
             assert f"occurs in {'all ' if whole else f'{hit:,} of '}{len(frame):,} cases" in kind_text
 
+    def limits(self):
+        """Return in which rows a limit is exceeded, and in which one may be exceeded by a placeholder's range."""
+        ds = self.solved.data
+        if "limit_state" not in ds:
+            return np.zeros((2, len(self.frame)), dtype=bool)
+        words = ds["limit_state"].attrs["flag_meanings"].split()
+        state = ds["limit_state"].where(~ds["limit"].isin(["rating", "catalogue"]), 0)
+        state = state.max(["limit", "body"]).transpose(*self.solved.dims).values.ravel()
+        return state == words.index("exceeded"), state == words.index("open")
+
     def check_best(self):
         """Recompute the verdict; a target on the life of the pair is judged in all conditions."""
         found, frame = self.solved.verdict, self.frame
         text = " ".join(sentence.text for sentence in self.short["Verdict"] if sentence.kind != "target")
         assert len(text.split()) <= 120, text
         assert "guide" in found.not_checked or self.life == "pair"
+        exceeded, uncertain = self.limits()
         if "analysis" not in self.told:
-            check_verdict(found, frame, self.choices, self.conditions, self.life)
+            check_verdict(
+                found, frame.assign(valid=frame["valid"] & ~exceeded), self.choices, self.conditions, self.life
+            )
             return
+        sure = frame["valid"] & ~exceeded & ~uncertain
         least = self.told["analysis"]["target"]["pair_life_hours"]["min"]
-        met = {words: (frame["valid"] & (frame[self.life] >= least))[rows.index] for words, rows in self.designs()}
+        met = {words: (sure & (frame[self.life] >= least))[rows.index] for words, rows in self.designs()}
         if found.candidates and not found.sampled and found.kind != "give":
             every = {words for words, hits in met.items() if hits.all()}
             assert (found.kind in ("build", "a_or_b", "lasts")) == bool(every)

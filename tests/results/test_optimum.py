@@ -193,7 +193,7 @@ def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
     ("keys", "says"),
     [
         ({"base": {"motor_force": 0, "roller_material": "POM", "radial_force": -300}}, "of them stay inside the model"),
-        ({"outputs": ["forces"]}, "Add life or peak_stress to its outputs"),
+        ({"outputs": ["forces"], "base": {"motor_force": 0}}, "Add life or peak_stress to its outputs"),
     ],
 )
 def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, says):

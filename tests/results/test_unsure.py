@@ -13,7 +13,8 @@ from trackroller.study.file.load import parse_study
 
 STUDY = {
     "name": "unsure",
-    "base": {"radial_force": -60, "axial_force": 5, "guide_overrollings_per_hour": 600, "motor_force": 0},
+    "base": {"radial_force": -60, "axial_force": 5, "guide_overrollings_per_hour": 600, "motor_force": 0}
+    | {"permissible_wear_depth": 0.3},
     "factors": {
         "material_pair": {"values": [["1.7225-normalised"] * 2, ["EN AW-7075", "1.7225-normalised"]]},
         "velocity": {"values": [20, 120]},

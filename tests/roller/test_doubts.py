@@ -108,7 +108,7 @@ def test_solve_plan_and_run_ask(tmp_path):
 
 
 def test_a_study_and_a_spectrum_ask_about_ratings():
-    study = {"name": "d", "outputs": ["forces"], "base": {"bearing": BEARING | {"dynamic_rating": 3}}}
+    study = {"name": "d", "outputs": ["bearing"], "base": {"bearing": BEARING | {"dynamic_rating": 3}}}
     study["factors"] = {"radial_force": {"values": [-200, -800]}}
     (told,) = tr.load_study(study).doubts()
     assert "beside the radial force of 200 N; if 3 kN is meant" in told

@@ -31,7 +31,7 @@ def test_every_variable_is_labelled():
         if name in VARIABLES:
             assert ds[name].dims == ("case", *VARIABLES[name].dims)
     flags = {"regime", "converged", "validity", "validity_body", "contact_model_used", "first_to_fail"}
-    flags |= {"limiting_mechanism"}
+    flags |= {"limiting_mechanism", "limit_state"}
     elsewhere = {"fatigue_stress", "error_over_tolerance"}  # of another `life_criterion`, and of a tolerance
     assert {v.name for v in VARIABLES.values()} == (set(ds.data_vars) - flags) | elsewhere
     assert ds.regime.attrs["flag_meanings"].split() == list(parameters.REGIMES)

@@ -709,7 +709,11 @@ def _bodies(cases: Cases, one: Candidate) -> tuple[str, str]:
 
 
 def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
-    """Return the wear coefficient below which a candidate reaches `least`, and above which it stays below `until`."""
+    """Return the wear coefficient below which a candidate reaches `least`, and above which it stays below `until`.
+
+    The low end of its life belongs to the high end of the coefficient. The high end belongs to the low end of the
+    coefficient, or where places of the placeholder are rows of their own, to that of the worst row.
+    """
     of, on = _bodies(cases, one)
     if one.ends != "wear":
         return Turn("placeholder_position", of, on, candidate=one.number)
@@ -717,7 +721,9 @@ def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
     if COEFFICIENT in cases.spans:
         levels = cases.results.levels(COEFFICIENT)
         low, high, units = float(levels[0]), float(levels[-1]), "times its value"
-    value, beyond = high * one.low / least, high * one.low / until if until > 0 else np.nan
+    own = cases.ends[1][one.case], high
+    longest, there = own if cases.spans else (one.high, low)
+    value, beyond = high * one.low / least, there * longest / until if until > 0 else np.nan
     value, beyond = (x if low < x < high else np.nan for x in (value, beyond))
     return Turn("wear_coefficient", of, on, value, beyond, low, high, units, one.number)
 

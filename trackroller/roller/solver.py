@@ -299,6 +299,8 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
         if (name in VARIABLES and VARIABLES[name].group in options.outputs)
         or name == "residual"
         or (name == "error_estimate" and "peak_stress" in options.outputs)
+        # the materials of these results are those at this temperature
+        or (name == "bulk_temperature_rise" and verdict.GROUP in options.outputs)
     ]
     attrs: dict[str, Any] = {
         **file_attributes("Forces, stresses and life of track rollers", "solved"),

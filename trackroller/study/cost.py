@@ -7,6 +7,7 @@ from itertools import product
 from typing import TYPE_CHECKING, Any
 
 from trackroller.contact.friction_laws import law_of
+from trackroller.damage import verdict
 from trackroller.methods import METHODS
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, tolerance_of
@@ -45,6 +46,10 @@ def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
     if peaks:  # one search serves all
         seconds += searched
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
+    if verdict.GROUP in groups and "shakedown" not in options.get("not_checked", ()):
+        groups.add(
+            "shakedown"
+        )  # the materials of the database have what it needs; heat needs fields that few cases give
     seconds += sum(_PATCH_LIMITS.get(group, 0.0) for group in groups)
     return 1.0 / seconds
 
