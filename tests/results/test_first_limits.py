@@ -77,7 +77,13 @@ def test_designs_are_ranked_by_the_first_limit_and_the_turn_is_a_rank_correlatio
     best = designs.table.iloc[0]
     own = tuple(best[n] for n in FACTORS[:2])
     assert worst["low"].idxmax() == own and best["worst"] == worst["first"].loc[own]
-    assert turn(designs).correlation == pytest.approx(spearmanr(worst["low"], worst["fatigue"])[0], abs=1e-12)
+    order, by_fatigue = (
+        turn(designs),
+        (-worst["fatigue"]).argsort().tolist(),
+    )  # groups stand in the order of the designs
+    assert order.after == tuple(designs.table.index) and list(order.before) == by_fatigue
+    places = [by_fatigue.index(design) for design in order.after]
+    assert order.correlation == pytest.approx(spearmanr(range(len(places)), places)[0], abs=1e-12)
 
 
 def test_the_factors_that_decide_the_limit_carry_its_information(solved):
