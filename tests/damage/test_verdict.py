@@ -15,6 +15,7 @@ from trackroller.damage.limit import Limit, SolvedRollers, Verdict
 from trackroller.damage.verdict import ENDS, STATES, states, verdict
 from trackroller.errors import InputError
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
+from trackroller.report.numbers import rounded
 from trackroller.report.pages.sheet import collect
 
 NAMES = list(LIMITS)
@@ -241,3 +242,17 @@ def test_a_skidding_roller_keeps_the_lives_of_its_other_limits():
     assert np.isnan(ds.life_hours_by_limit.sel(limit=["fatigue", "rating"])).all()
     guide = ds.life_hours_by_limit.sel(limit="wear", body="guide")
     assert np.isfinite(guide) and ds.life_to_first_limit_hours.sel(body="guide") == guide
+
+
+def test_the_head_of_a_sheet_names_each_limit_that_may_come_first():
+    """Fatigue lies within the range of the wear life here; a measured coefficient tells which one it is."""
+    given = {"permissible_wear_depth": 0.1, "radial_force": -90, "axial_force": 5, "guide_overrollings_per_hour": 500}
+    ds = tr.solve(tr.Case(**given), contact_model="sliding")
+    hours = ds.sel(body="roller").life_hours_by_limit.sel(limit="fatigue").item()
+    low, high = (float(ds[f"pair_life_to_first_limit_hours{end}"]) for end in ("_low", "_high"))
+    assert low < hours == high
+    told = collect(ds).verdict
+    assert f"fatigue or wear ends the roller after {rounded(low)} to {rounded(high)} h, by values that nobody" in told
+    measured = {"like": "1.7225-normalised", "wear_coefficient": 1e-6}
+    known = tr.solve(tr.Case(**given, roller_material=measured, guide_material=measured), contact_model="sliding")
+    assert f"fatigue ends the roller after {rounded(hours)} h; wear would after" in collect(known).verdict

@@ -29,6 +29,7 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.pages.sheet import body_materials, pictures, versions_text
 from trackroller.report.tables.inputs import Row, input_rows
+from trackroller.report.tables.limits import at_temperature, not_checked, placeholders, unchecked
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import UNITS, known_damage, sentences
@@ -89,15 +90,17 @@ def limit_table(ds: xr.Dataset) -> Table | None:
     heads, rows = ["Limit"], []
     for body in BODIES:
         heads += [f"{capital(body)} used", f"{capital(body)} [shifts]"]
-    for name in ds["limit"].values.tolist():
+    for name in (name for name in ds["limit"].values.tolist() if name not in unchecked(ds)):
         own, row = ds.sel(limit=name), [LIMITS[name].title]
         for body in BODIES:
-            used, shifts = (float(own[n].sel(body=body)) for n in ("utilisation", "life_shifts_by_limit"))
-            row += ["–" if np.isnan(used) else f"{rounded(100.0 * used)} %", "–" if np.isnan(shifts) else life(shifts)]
+            used = float(own["utilisation"].sel(body=body))
+            ends = [life(float(own[f"life_shifts_by_limit{end}"].sel(body=body))) for end in ("_low", "_high")]
+            shifts = " to ".join(dict.fromkeys(ends)).replace("unknown", "–")
+            row += ["–" if np.isnan(used) else f"{rounded(100.0 * used)} %", shifts]
         rows.append(row)
     note = (
         "The share that the worst block uses, and the shifts until the sum over the blocks is reached. A limit without "
-        "a life has no shifts; a value that is missing leaves a dash."
+        "a life has no shifts; a value that is missing leaves a dash. A range is that of the placeholders of materials."
     )
     return Table("spectrum_limits", "Limits", heads, rows, note)
 
@@ -109,7 +112,7 @@ def warnings(ds: xr.Dataset) -> list[str]:
         for flag in flags_of(ds.isel(block=i)):
             blocks_of_flag.setdefault(f"{flag.sentence} {flag.remedy}", []).append(f"'{name}'")
     flagged = [f"{text} Blocks: {listing(blocks)}." for text, blocks in blocks_of_flag.items()]
-    return flagged + str(ds.attrs.get("limits_notes", "")).splitlines()
+    return [*flagged, *placeholders(ds), *at_temperature(ds), *not_checked(ds)]
 
 
 def assumed(ds: xr.Dataset) -> list[str]:

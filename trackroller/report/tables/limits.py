@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -28,6 +28,7 @@ BOTH = "roller and guide"
 
 
 GUESSED = " (rests on placeholders)"
+TIED = 1e-9  # relative difference of lives that count as equal
 
 
 @dataclass(frozen=True)
@@ -252,15 +253,62 @@ def _of_loads(ranges: Limits, inputs: Mapping[str, Any]) -> list[Margin]:
     return out
 
 
+@dataclass(frozen=True)
+class First:
+    """What ends a life first: the limits that may come first within their ranges, and the life with its range.
+
+    Attributes
+    ----------
+    margins : tuple of Margin
+        The limits that may come first, the one that does with the values themselves at the head.
+    low, high : float
+        Ends of the life [h].
+    """
+
+    margins: tuple[Margin, ...]
+    low: float
+    high: float
+
+    @classmethod
+    def of(cls, listed: Iterable[Margin]) -> First | None:
+        """Return what comes first of some limits; None where no life is known."""
+        ending = sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached)
+        if not ending:
+            return None
+        low, high = (min(0.0 if m.breaks else getattr(m, end) for m in ending) for end in ("low", "high"))
+        return cls(tuple(m for m in ending if m is ending[0] or m.low < high * (1.0 - TIED)), low, high)
+
+    @property
+    def breaks(self) -> bool:
+        """Return whether the body breaks at once."""
+        return self.margins[0].breaks
+
+    @property
+    def guessed(self) -> bool:
+        """Return whether placeholders decide the life."""
+        return any(margin.guessed for margin in self.margins) and self.low < self.high * (1.0 - TIED)
+
+    @property
+    def when(self) -> str:
+        """Say when it ends."""
+        return self.margins[0].when if len(self.margins) == 1 else f"after {self.life}"
+
+    @property
+    def life(self) -> str:
+        """Return the hours with their range."""
+        return between(self.low, self.high, any(margin.beyond for margin in self.margins))
+
+
 def first_limits(listed: list[Margin]) -> list[str]:
-    """Return one sentence for roller, guide and pair each on what ends its life first, and those on kept limits."""
-    ending = sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached)
+    """Return one sentence for roller, guide and pair each on what ends its life first."""
     out = []
     for body in BODIES:
-        own = [margin for margin in ending if margin.body in (body, BOTH)]
-        out += [f"First limit of the {body}: {m.title}{GUESSED * m.guessed}, {m.when}." for m in own[:1]]
-    if ending:
-        out.append(f"First limit of the pair: {ending[0].words}, {ending[0].when}{_guide_alone(listed)}.")
+        if (own := First.of(m for m in listed if m.body in (body, BOTH))) is not None:
+            titles = " or ".join(f"{m.title}{GUESSED * m.guessed}" for m in own.margins)
+            out.append(f"First limit of the {body}: {titles}, {own.when}.")
+    if (pair := First.of(listed)) is not None:
+        words = " or ".join(margin.words for margin in pair.margins)
+        out.append(f"First limit of the pair: {words}, {pair.when}{_guide_alone(listed)}.")
     return out
 
 
@@ -275,17 +323,19 @@ def what_ends(listed: list[Margin]) -> str:
 
     The text is empty where no life is known, or where a body breaks at once.
     """
-    ending = sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached)
-    if not ending or ending[0].breaks or math.isinf(ending[0].reached):
+    first = First.of(listed)
+    if first is None or first.breaks or math.isinf(first.low):
         return ""
-    first, others = ending[0], dict[str, str]()
-    for margin in ending[1:]:
-        if margin.short != first.short:
-            others.setdefault(margin.short, f"{margin.short} would after {margin.life}")
-    unmeasured = ", by values that nobody has measured" if first.guessed and first.low < first.high else ""
-    further = "".join(f"; {text}" for text in others.values())
-    head = f"{capital(first.short)} ends the {'pair' if first.body == BOTH else first.body}"
-    return f"{head} after {first.life}{unmeasured}{further}{_guide_alone(listed)}"
+    shorts = list(dict.fromkeys(margin.short for margin in first.margins))
+    bodies = {margin.body for margin in first.margins}
+    later: dict[str, str] = {}
+    for margin in sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached):
+        if margin.short not in shorts:
+            later.setdefault(margin.short, f"; {margin.short} would after {margin.life}")
+    unmeasured = ", by values that nobody has measured" * first.guessed
+    body = bodies.pop() if len(bodies) == 1 else "pair"
+    head = f"{capital(' or '.join(shorts))} ends the {'pair' if body == BOTH else body}"
+    return f"{head} after {first.life}{unmeasured}{''.join(later.values())}{_guide_alone(listed)}"
 
 
 def unchecked(ds: xr.Dataset) -> list[str]:
