@@ -7,7 +7,7 @@ from __future__ import annotations
 
 SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
-VERDICT = ("results/test_verdict.py",)
+VERDICT = ("results/test_study_verdict.py",)
 WEAR = ("damage/test_wear.py",)
 SOBOL = ("results/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
