@@ -34,6 +34,13 @@ def test_solve_prints_json_and_writes_netcdf(tmp_path):
         assert ds["normal_force"].attrs["units"] == "N"
 
 
+def test_json_says_in_words_whether_a_limit_is_kept_and_which_one_is_first(tmp_path):
+    told = json.loads(trackroller("solve", "--set", "contact_model=sliding", "--json", cwd=tmp_path).stdout)
+    states = dict(zip(told["limit"]["value"], told["limit_state"]["meaning"], strict=True))
+    assert states["static"] == ["kept", "kept"] and states["bearing"] == ["unknown", "unknown"]
+    assert told["limiting_mechanism"]["meaning"] == ["fatigue", "unknown"]  # the guide's hours are not known
+
+
 def test_study_from_plan_to_repeat(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
     assert "cases    6, 0 of them" in trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout

@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import LIMITS
+from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.pages.sheet import collect
@@ -105,6 +107,8 @@ def as_json(ds: xr.Dataset) -> str:
     for name, words in (
         ("regime", REGIMES),
         ("first_to_fail", FIRST_TO_FAIL),
+        ("limiting_mechanism", (*LIMITS, "unknown")),
+        ("limit_state", STATES),
     ):
         if name in content:
             content[name]["meaning"] = np.array(words)[ds[name].values].tolist()
