@@ -81,7 +81,7 @@ def test_the_page_begins_with_the_roller_of_the_readme(browser, live):
         assert given["roller_material"] in readme and given["guide_material"] in readme
         call = readme.partition("tr.solve(tr.Case(")[2].partition(", **")[0]
         assert call == ", ".join(f"{name}={value}" for name, value in given.items() if not name.endswith("material"))
-        assert float(verdict(shown).partition("lasts ")[2].split()[0]) > 8.0
+        assert float(verdict(shown).partition("after ")[2].split()[0]) > 8.0
         shown.run("document.querySelector('[data-field=axial_force]').focus()")
         type_into(shown, "axial_force", "70")
         shown.until(SETTLED)

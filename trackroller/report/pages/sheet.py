@@ -230,7 +230,7 @@ def _verdict(
 ) -> str:
     """Return the summary of the sheet: what rules (lift-off, overload, skidding, life) and the distance to lift-off."""
     states: dict[str, dict[str, list[str]]] = {"exceeded": {}, "open": {}}
-    for margin in (m for m in own if m.state in states and not m.breaks):
+    for margin in (m for m in own if m.state in states and not m.breaks and not m.beside):
         states[margin.state].setdefault(margin.short, []).append(margin.body)
     texts = {state: [f"{title} ({listing(bodies)})" for title, bodies in s.items()] for state, s in states.items()}
     ends = what_ends(own)
