@@ -220,3 +220,15 @@ def test_a_spectrum_counts_damage_by_the_strength_at_the_temperature_of_each_blo
             )  # the last pass changes the temperature by less than its tolerance
         half = ds.life_shifts_at_probability.sel(probability=0.5, body="roller").values
         assert half == pytest.approx(ds.life_shifts.sel(body="roller").values, rel=1e-12)
+
+
+def test_a_table_is_not_used_where_the_case_lacks_what_heat_needs():
+    """By default every limit is asked for; without a heat transfer the material stays as cold as without a table."""
+    cold = pom()
+    cold.pop("temperature_dependence")
+    given = {"radial_force": -20, "axial_force": 1, "motor_force": 0}
+    lives = [
+        float(tr.solve(tr.Case(**given, roller_material=own), contact_model="sliding").roller_life_hours)
+        for own in (pom(), cold)
+    ]
+    assert np.isfinite(lives).all() and lives[0] == lives[1]

@@ -18,7 +18,6 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from trackroller.damage import asked, heat
 from trackroller.materials.temperature import FOLLOW_STRENGTH, TABLED, TemperatureTable
 from trackroller.parameters import BODIES
 from trackroller.roller.blocks import Block, join
@@ -51,7 +50,7 @@ def settle(
     table, block : CaseTable and Block
         The n cases, and their results with the materials' own values.
     options : Options
-        Their options; without heat among the outputs, no temperature is known and nothing changes.
+        Their options; where heat is not computed, no temperature is known and nothing changes.
     solve : callable
         Solve a table.
 
@@ -63,7 +62,7 @@ def settle(
         Their results, with `unsettled`, (n,), if a case was solved again. Cases without a table keep theirs.
     """
     rows = np.flatnonzero((table.roller.temperature_dependence != "") | (table.guide.temperature_dependence != ""))
-    if heat.LIMIT not in asked(options.outputs, options.not_checked) or not rows.size:
+    if "bulk_temperature_rise" not in block.values or not rows.size:
         return table, block
     reached = temperatures(table, block)
     used, warm = np.full_like(reached, np.nan), table
