@@ -84,10 +84,11 @@ def _served(path: Path | None, settings: list[str] | None) -> tuple[str, ...]:
     """Return the groups of outputs of the limits of the verdict whose inputs a case gives."""
     from trackroller.roller.case import to_table
     from trackroller.roller.options import Options
-    from trackroller.roller.stages.case import to_compute  # heavy: as above
+    from trackroller.roller.stages.case import solved_of, to_compute  # heavy: as above
 
     case, options, _ = case_of(path, settings)
-    limits = to_compute(to_table(case), Options(**options | {"outputs": ("limits",)}))
+    wanted = Options(**options | {"outputs": ("limits",)})
+    limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)
     return tuple(limit.group for limit in limits)
 
 

@@ -26,6 +26,11 @@ OF_GUIDE = ("guide_overrollings_per_hour",)  # fields of a case that concern the
 Results = dict[str, np.ndarray]
 
 
+def missing(column: np.ndarray) -> np.ndarray:
+    """Return where a column of a case has no value, (n,) bool: a number is NaN, or the text of a mapping is empty."""
+    return np.asarray(column == "" if column.dtype == object else np.isnan(column))
+
+
 def roller_overrollings(velocity: ArrayLike, rolling_radius: ArrayLike) -> np.ndarray:
     """Return the overrollings of a point of the roller, one in each revolution.
 
@@ -234,8 +239,7 @@ class Limit:
         for name in self.required(solved.options):
             column = solved.cases.get(name)
             if column is not None:
-                missing = column == "" if column.dtype == object else np.isnan(column)
-                out |= missing[:, None] & [name not in OF_GUIDE, True]
+                out |= missing(column)[:, None] & [name not in OF_GUIDE, True]
         for name, concerned in self.required_of(solved):
             out |= np.isnan(solved.materials[name]) & concerned
         return out
@@ -244,7 +248,7 @@ class Limit:
         """Return whether a case has all that a verdict requires, or gives a field that serves this limit alone."""
         own = [*(one.name for one in self.parameters if one.allow_missing), *(one.name for one in self.mappings)]
         columns = [solved.cases[name] for name in own if name in solved.cases]
-        given = any(np.any(c != "" if c.dtype == object else ~np.isnan(c)) for c in columns)
+        given = not all(missing(column).all() for column in columns)
         return given or not self.lacking(solved).all()
 
     def moves(self, solved: SolvedRollers) -> bool:

@@ -114,7 +114,7 @@ def first_of(
 
 
 def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Sequence[Limit]) -> np.ndarray:
-    """Return the number in `STATES` of each limit, (n, limit, body).
+    """Return the state of each limit as its place in `STATES`, (n, limit, body).
 
     Parameters
     ----------

@@ -35,7 +35,6 @@ KM_PER_HOUR = 0.06  # for 1 m/min
 # Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
 # finer elements. Measures of single patches, such as the roughness of the depth, did not tell the error any better.
 ERROR = {"kalker": 0.5, "kalker_table": 0.5, "sliding": 0.8}
-FACTOR = "wear_coefficient_factor"
 PLACES, WIDEST = 801, 20.0  # places across drawn profiles; half their width over the root of the depth [mm^0.5]
 TIE = 1e-9  # relative difference below which the outer one of two depths counts as the deeper one
 
@@ -390,7 +389,7 @@ LIMIT = Limit(
         ),
         optional("required_travel", "", "km", "travel that the wear depth has to allow", 0.0, 1e9),
         Parameter(
-            FACTOR,
+            "wear_coefficient_factor",
             "f_k",
             "-",
             math.nan,

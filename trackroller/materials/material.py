@@ -158,13 +158,16 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     @property
     def ends_of_limits(self) -> dict[str, tuple[float, float]]:
         """Return the worse and the better end of each placeholder of a limit that has a range, over its value."""
-        ends = {name: r.range if name not in LESS_IS_BETTER else r.range[::-1] for name, r in self._spans().items()}
-        values = {name: float(getattr(self, name)) for name in ends}
-        return {name: (ends[name][0] / v, ends[name][1] / v) for name, v in values.items() if v}
+        values = {name: float(getattr(self, name)) for name in self._ends()}
+        return {name: (worse / v, better / v) for name, (worse, better) in self._ends().items() if (v := values[name])}
 
-    def _spans(self) -> dict[str, Any]:
-        """Return the records of the placeholders of limits that have a range."""
-        return {n: r for n, r in self.records.items() if r.placeholder and r.range is not None and n in OF_LIMITS}
+    def _ends(self) -> dict[str, tuple[float, float]]:
+        """Return the worse and the better end of each placeholder of a limit; one without a range has none."""
+        return {
+            name: r.range[::-1] if name in LESS_IS_BETTER else r.range
+            for name, r in self.records.items()
+            if r.placeholder and r.range is not None and name in OF_LIMITS
+        }
 
     def moved(self, position: float) -> Material:
         """Return the material with its placeholders of limits at another place in their ranges.
@@ -184,9 +187,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         ASSUME: more is better, but for loss and wear.
         """
         values: dict[str, Any] = {}
-        for name, record in self._spans().items():
-            worse, better = record.range if name not in LESS_IS_BETTER else record.range[::-1]
-            values[name] = record.value + abs(position) * ((better if position > 0 else worse) - record.value)
+        for name, (worse, better) in self._ends().items():
+            value = self.records[name].value
+            values[name] = value + abs(position) * ((better if position > 0 else worse) - value)
         return dataclasses.replace(self, **values) if position else self
 
     def at(self, temperature: float) -> Material:

@@ -7,6 +7,8 @@ import functools
 from collections.abc import Callable, Iterable
 from typing import Any
 
+import numpy as np
+
 
 class Rows:
     """Row selection for data classes whose fields are arrays along one axis."""
@@ -26,6 +28,18 @@ def _part(value: Any, index: Any) -> Any:
     if value is None:
         return None
     return value.take(index) if isinstance(value, Rows) else value[index]
+
+
+def distinct(objects: Iterable[Any]) -> tuple[list[Any], np.ndarray]:
+    """Return the different objects of a column of n, and the place of each row's object among them, (n,).
+
+    Objects differ by identity: the same few fill a column of millions.
+    """
+    column = list(objects)
+    keys = list(map(id, column))
+    found = dict(zip(keys, column, strict=True))
+    places = {key: place for place, key in enumerate(found)}
+    return list(found.values()), np.fromiter(map(places.__getitem__, keys), int, len(keys))
 
 
 def once_each(make: Callable[[Any], Any], values: Iterable[Any]) -> list[Any]:

@@ -372,7 +372,7 @@ def _logarithm(lives: np.ndarray | float) -> np.ndarray:
 
 
 def _targeted(cases: Cases) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the required hours, and the cases that meet the target for certain, and those that may meet it.
+    """Return the required hours, the cases that surely meet the target, and the cases that may meet it.
 
     A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one limit
     is of no use if another limit comes first.
@@ -657,7 +657,7 @@ def _given(cases: Cases, reach: np.ndarray) -> tuple[Turn, ...]:
 
 
 def _tradeoff(results: Results) -> Tradeoff | None:
-    """Return the ends of the Pareto set of several goals that the study file names without a target."""
+    """Return the ends of the Pareto set; None unless the study file has several goals and no target."""
     if len(results.config.pareto) < 2 or results.config.analysis.target:
         return None
     front = study_pareto(results)
@@ -690,15 +690,13 @@ def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
     The life until a body wears is inversely proportional to its wear coefficient, and the use of the shakedown limit to
     its yield strength.
     """
-    turns: list[Turn] = []
-    named = sorted(found.best, key=lambda c: -(c.high / c.low if c.low > 0 else np.inf))
-    for one in named[:1]:
-        other = next((c for c in found.best if c.number != one.number), None)
-        least = found.required if np.isfinite(found.required) else other.high if other else np.nan
-        until = other.low if other is not None and not np.isfinite(found.required) else np.nan
-        turns += [_of_limit(cases, one, limit) for limit in one.open_limits]
-        if one.ends == "wear" or not turns:
-            turns.append(_of_wear(cases, one, least, until))
+    one = max(found.best, key=lambda c: c.high / c.low if c.low > 0 else np.inf)  # the widest range
+    other = next((c for c in found.best if c.number != one.number), None)
+    least = found.required if np.isfinite(found.required) else other.high if other else np.nan
+    until = other.low if other is not None and not np.isfinite(found.required) else np.nan
+    turns = [_of_limit(cases, one, limit) for limit in one.open_limits]
+    if one.ends == "wear" or not turns:
+        turns.append(_of_wear(cases, one, least, until))
     return tuple(turns)
 
 

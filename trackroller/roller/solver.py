@@ -10,6 +10,7 @@ import numpy as np
 from numba.core.registry import cpu_target
 
 from trackroller.damage import asked, fatigue, judged, verdict
+from trackroller.damage.limit import Limit
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
@@ -221,7 +222,7 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 
     distinct, number = table, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not stages_case.of_patches(stages_case.to_compute(table, options)):
+    if options.shortcuts and len(table) > 1 and not stages_case.of_patches(_limits(table, options)):
         rows, number = requirements.distinct_mechanics(table)
         distinct = table.take(rows)
     table, block = temperature.settle(table, solve_all(distinct).take(number), options, solve_all)
@@ -267,7 +268,7 @@ def block_of(results: Results, options: Options) -> Block:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
     wanted = set(options.outputs)
-    limits = stages_case.to_compute(scene.table, options)
+    limits = _limits(scene.table, options)
     wanted |= {need for limit in limits for need in limit.needs}
     stages.forces(results)
     stages.force_error(results, options)
@@ -289,6 +290,11 @@ def block_of(results: Results, options: Options) -> Block:
     settings = options.settings.name
     rung = np.full(scene.n, RUNGS.index(settings) if settings in RUNGS else 0, dtype=np.int8)
     return Block(results.values, results.regime, results.converged, results.bits, model, rung, results.stopped)
+
+
+def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
+    """Return the limits to compute for cases that are not solved yet."""
+    return stages_case.to_compute(stages_case.solved_of(table, {}, options), options)
 
 
 def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:

@@ -9,7 +9,7 @@ import numpy as np
 
 from trackroller.materials import Material
 from trackroller.materials.properties import PROPERTIES
-from trackroller.numerics.rows import Rows
+from trackroller.numerics.rows import Rows, distinct
 from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
 
 OPTIONAL_VALUES = tuple(name for name, value in PROPERTIES.items() if value.allow_missing)
@@ -47,20 +47,17 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
         """Return the arrays of a list of n materials; the same few objects fill a list of millions."""
-        keys = list(map(id, materials))
-        distinct = dict(zip(keys, materials, strict=True))
-        places = {key: place for place, key in enumerate(distinct)}
-        index = np.fromiter(map(places.__getitem__, keys), int, len(keys))
+        different, index = distinct(materials)
 
         def values(attribute: str) -> np.ndarray:
-            return np.array([getattr(m, attribute) for m in distinct.values()], dtype=float)[index]
+            return np.array([getattr(m, attribute) for m in different], dtype=float)[index]
 
         return cls(
-            name=np.array([m.name for m in distinct.values()], dtype=object)[index],
-            guesses=np.array([m.guesses_of_limits for m in distinct.values()], dtype=object)[index],
-            ends=np.array([m.ends_of_limits for m in distinct.values()], dtype=object)[index],
+            name=np.array([m.name for m in different], dtype=object)[index],
+            guesses=np.array([m.guesses_of_limits for m in different], dtype=object)[index],
+            ends=np.array([m.ends_of_limits for m in different], dtype=object)[index],
             temperature_dependence=np.array(
-                ["" if (own := m.temperature_dependence) is None else own.text for m in distinct.values()], dtype=object
+                ["" if (own := m.temperature_dependence) is None else own.text for m in different], dtype=object
             )[index],
             **{f.name: values(f.name) for f in fields(cls) if f.name not in TEXTS},
         )

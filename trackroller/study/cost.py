@@ -47,9 +47,8 @@ def rate(options: Mapping[str, Any], friction_law: Any = None) -> float:
         seconds += searched
     seconds += _TRACTIONS * ("tractions" in groups) + _SUBSURFACE * ("subsurface" in groups)
     if verdict.GROUP in groups and "shakedown" not in options.get("not_checked", ()):
-        groups.add(
-            "shakedown"
-        )  # the materials of the database have what it needs; heat needs fields that few cases give
+        # the materials of the database have what it needs; heat needs fields that few cases give
+        groups.add("shakedown")
     seconds += sum(_PATCH_LIMITS.get(group, 0.0) for group in groups)
     return 1.0 / seconds
 

@@ -100,7 +100,8 @@ def limit_table(ds: xr.Dataset) -> Table | None:
         rows.append(row)
     note = (
         "The share that the worst block uses, and the shifts until the sum over the blocks is reached. A limit without "
-        "a life has no shifts; a value that is missing leaves a dash. A range is that of the placeholders of materials."
+        "a life has no shifts. A dash stands for a missing value. A range of shifts runs from the worse to the better "
+        "end of the placeholders of materials."
     )
     return Table("spectrum_limits", "Limits", heads, rows, note)
 

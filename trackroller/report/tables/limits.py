@@ -339,7 +339,7 @@ def what_ends(listed: list[Margin]) -> str:
 
 
 def unchecked(ds: xr.Dataset) -> list[str]:
-    """Return the names of the limits of which nothing is known for either body."""
+    """Return the names of the limits that were checked for neither body."""
     if "limit_state" not in ds:
         return []
     state = ds.variables["limit_state"]

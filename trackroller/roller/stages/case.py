@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 from collections.abc import Iterable, Mapping
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -13,9 +13,10 @@ from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, asked, computed, judged, verdict
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers, Verdict
+from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers, Verdict, missing
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.materials.material import UNNAMED
+from trackroller.numerics.rows import distinct
 from trackroller.parameters import BODIES, CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
@@ -67,7 +68,7 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
     A value whose place in its range is given has no range, and a given factor replaces that of the wear coefficient.
     """
     given, out = ~np.isnan(table.placeholder_position), {}
-    bodies = [_distinct(own.ends) for own in (table.roller, table.guide)]
+    bodies = [distinct(own.ends) for own in (table.roller, table.guide)]
     for name in sorted({name for materials, _ in bodies for ends in materials for name in ends}):
         held = given | ~np.isnan(table.wear_coefficient_factor) if name == "wear_coefficient" else given
         columns = [np.array([ends.get(name, (1.0, 1.0)) for ends in materials])[place] for materials, place in bodies]
@@ -75,17 +76,8 @@ def _ends(table: CaseTable) -> dict[str, np.ndarray]:
     return {name: shares for name, shares in out.items() if np.any(shares != 1.0)}
 
 
-def _distinct(column: np.ndarray) -> tuple[list[Any], np.ndarray]:
-    """Return the different objects of a column, and the place of each row's object among them, (n,)."""
-    keys = list(map(id, column))
-    objects = dict(zip(keys, column, strict=True))
-    places = {key: place for place, key in enumerate(objects)}
-    return list(objects.values()), np.fromiter(map(places.__getitem__, keys), int, len(keys))
-
-
-def to_compute(table: CaseTable, options: Options) -> tuple[Limit, ...]:
+def to_compute(solved: SolvedRollers, options: Options) -> tuple[Limit, ...]:
     """Return the limits to compute: those named among the outputs, and those of the verdict that a case serves."""
-    solved = solved_of(table, {}, options)
     wanted = computed(options.outputs, options.not_checked, options.life_criterion)
     return tuple(own for own in wanted if own.group in options.outputs or own.verdict is None or own.served(solved))
 
@@ -114,7 +106,8 @@ def _unworn_gap(table: CaseTable, case: int, contact: int, lateral: np.ndarray) 
 
 def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime: np.ndarray) -> None:
     """Add the results of the limits asked for to the results `v`, and the verdict if it is asked for."""
-    wanted, solved = to_compute(table, options), solved_of(table, v, options, regime)
+    solved = solved_of(table, v, options, regime)
+    wanted = to_compute(solved, options)
     there = of_patches(wanted)  # see `patch_limits`
     for limit in wanted:
         if limit not in there:
@@ -122,7 +115,7 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
     places = [solved]
     if any(limit.moves(solved) for limit in wanted):
         places += [_at_end(solved, wanted, end) for end in (0, 1)]
-        for end, place in zip(("_low", "_high"), places[1:], strict=True):
+        for end, place in zip(verdict.ENDS[1:], places[1:], strict=True):
             names = [one.name for limit in wanted for one in limit.results if one.name.endswith(end)]
             v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
@@ -203,7 +196,7 @@ def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray])
     out = []
     for name in limit.required(solved.options):
         column = solved.cases.get(name)
-        if column is not None and np.any(column == "" if name in MAPPING_FIELDS else np.isnan(column)):
+        if column is not None and missing(column).any():
             out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
     values = list(limit.required_of(solved))
     if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
@@ -231,7 +224,7 @@ def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
         for body in bodies.values()
         for name, own in zip(body.name, body.guesses, strict=True)
     )
-    out, served = [], to_compute(table, options)
+    out, served = [], to_compute(solved, options)
     for limit in asked(options.outputs, options.not_checked):
         out += _lacks(limit, solved, names)
         required = dict(limit.required_of(solved)) if limit in served else {}
@@ -265,7 +258,7 @@ def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndar
     v = block.values
     solved = solved_of(table, v, options, block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
-    lives = [own.verdict(solved, v).life_hours for own in to_compute(table, options) if own.verdict is not None]
+    lives = [own.verdict(solved, v).life_hours for own in to_compute(solved, options) if own.verdict is not None]
     shortest = np.fmin.reduce([hours for hours in lives if hours is not None])
     return np.asarray(shortest > run_in[:, None])
 
