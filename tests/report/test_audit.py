@@ -149,7 +149,7 @@ class Audit:
             yield ", ".join(level(*pair) for pair in words), rows
 
     def check_cases(self):
-        text, frame = self.said("Valid cases")["valid"], self.frame
+        text, frame = self.said("Where it ends")["valid"], self.frame
         assert text.startswith(f"{frame['rolls'].sum():,} of {len(frame):,} cases roll")
         for code, words in ((1, "full slip"), (2, "lift-off")):
             if lost := int((frame["regime"] == code).sum()):
@@ -158,10 +158,11 @@ class Audit:
             assert f"{frame['inside'].sum():,} of them stay inside the model" in text
         if "constraints" in self.told and frame["inside"].any():
             assert f"{frame['valid'].sum() or 'None'} of the {frame['inside'].sum()} meet" in text
-        limits = self.said("What limits")
+        limits = self.said("Where it ends")
         silent = "motor_force" not in {**self.told.get("base", {}), **self.told["factors"]}
         assert ("silent_drive" in limits) == (silent and (frame["regime"] == 1).any())
-        limits.pop("silent_drive", None)
+        for kind in ("silent_drive", "valid"):
+            limits.pop(kind, None)
         for kind_text in limits.values():
             code = 1 if kind_text.startswith("Full slip") else 2 if kind_text.startswith("Lift-off") else 3
             hit = int((frame["regime"] == code).sum())
@@ -213,7 +214,7 @@ class Audit:
 
     def check_tables(self):
         """Counts of regimes and flags, and the numbers of the table of the best designs."""
-        frame, tables = self.frame, {t.name: t for t in self.page["tables"]["decide"] + self.page["tables"]["ends"]}
+        frame, tables = self.frame, {t.name: t for t in [*self.page["tables"]["decide"], *self.page["tables"]["more"]]}
         for name, count, *_ in tables["regimes"].rows:
             code = ("rolling", "full slip", "lift-off", "failed").index(name)
             assert count == (frame["regime"] == code).sum()
@@ -232,7 +233,7 @@ class Audit:
 
     def check_rows_of_indices(self):
         """Each row is left out for one reason, and an index that uses every row says so alone."""
-        frame, tables = self.frame, {t.name: t for t in self.page["tables"]["why"]}
+        frame, tables = self.frame, {t.name: t for t in self.page["tables"]["more"]}
         missed = int((frame["rolls"] & ~(frame["pressure"] < self.limit)).sum())
         for table in (t for t in tables.values() if t.heads[-1] == "Computed from"):
             counted = re.search(rf"{NUMBER} further rows miss a constraint", table.note)

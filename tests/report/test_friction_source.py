@@ -5,12 +5,12 @@ import json
 
 import numpy as np
 import pytest
+from told import effect_of
 
 import trackroller as tr
 from trackroller.materials import load_database
 from trackroller.report.pages.sheet_text import as_json
 from trackroller.report.pages.study import contents
-from trackroller.report.words.factors import effect_of
 from trackroller.roller.record import friction_records
 
 STEEL, POM, PA6 = "1.7225-normalised", "POM", "PA6"
@@ -72,7 +72,7 @@ def test_pairs_of_materials_say_that_their_friction_differs(free):
     values = 1.0 + results.table["material_pair"].astype(str).str.len().to_numpy()
     results.table["roller_life_hours"] = values  # the words count here, not the number
     rows = np.ones(len(results.table), dtype=bool)
-    text = effect_of(results, "roller_life_hours", "life of the roller", "material_pair", rows).text
+    text = effect_of(results, "roller_life_hours", "material_pair", rows).text
     assert ("differ in nothing else than the friction coefficient that follows from it" in text) == free
     assert "differ in nothing else" in text
 
@@ -82,7 +82,7 @@ def test_levels_of_friction_do_not_follow_from_themselves():
     results = found
     results.table["roller_life_hours"] = np.where(results.table["friction_coefficient"] == "upper", 10.0, 1.0)
     rows = np.ones(len(results.table), dtype=bool)
-    text = effect_of(results, "roller_life_hours", "life of the roller", "friction_coefficient", rows).text
+    text = effect_of(results, "roller_life_hours", "friction_coefficient", rows).text
     assert "that follows from it" not in text
 
 

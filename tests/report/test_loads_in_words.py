@@ -7,9 +7,8 @@ import pytest
 import xarray as xr
 import yaml
 from synthetic_results import results_of
+from told import effect_of, occurrence
 
-from trackroller.report.words.cases import occurrence
-from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import at_least, at_most
 
 
@@ -56,7 +55,7 @@ def test_sentences_on_a_load_name_its_weight(name, sign):
         return
     size = np.random.default_rng(4).uniform(1, 90, 300)
     results = sample(name, sign * size, roller_life_hours=1e6 / size**3)
-    said = effect_of(results, "roller_life_hours", "life of the roller", name, results.valid).text
+    said = effect_of(results, "roller_life_hours", name, results.valid).text
     first, rest = said.split(" instead of ")
     lengthens = "lengthens" in rest
     assert ("lighter" in first) == lengthens and ("heavier" in rest) == lengthens

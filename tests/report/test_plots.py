@@ -75,7 +75,7 @@ def test_a_full_grid_gets_every_figure_as_svg_and_png_with_captions(grid):
     index = json.loads((folder / "figures" / "index.json").read_text())
     assert {i["name"] for i in index} == ALL
     for item in index:
-        assert item["caption"] and item["sentence"].endswith(".")
+        assert item["caption"].endswith(".") and not item["sentence"]
         assert (folder / "figures" / f"{item['name']}.png").read_bytes()[:4] == b"\x89PNG"
         ET.parse(folder / "figures" / f"{item['name']}.svg")
 
@@ -245,30 +245,29 @@ def test_a_material_has_the_same_colour_in_every_list():
     assert guides == [alone[polyamide], alone[steel]]
 
 
-@pytest.mark.parametrize("longest", [5, 500])
-def test_long_names_of_designs_are_numbered_with_a_key(monkeypatch, longest):
-    monkeypatch.setattr(designs, "LONGEST", longest)
-    with style.look():
-        figure, info = designs.lives_by_design(results_of(grid_study(SMALL)))
-    labels = [text.get_text() for text in figure.axes[0].get_yticklabels()]
-    assert (labels[:2] == ["1", "2"]) == (longest == 5)
-    assert (" 1: " in info.caption) == (longest == 5)
-
-
-@pytest.mark.parametrize(
-    ("force", "said"),
-    [(-12, "For each design one in ten or more"), (0, "The lives of these designs at the worst")],
-)
-def test_designs_without_a_life_in_nine_of_ten_conditions_are_told(force, said):
+def test_the_picture_of_candidates_has_the_numbers_of_the_verdict():
+    """Low and high end, median and best condition of each candidate, its target, and what ends it."""
     factors = {
-        "friction_coefficient": {"uniform": [0.06, 0.22]},
+        "friction_coefficient": {"values": [0.1, 0.25]},
         "roller_material": {"values": ["1.7225-normalised", "1.7225-quenched-tempered"]},
+        "roller_profile_radius": {"values": [-6.3, -7.0]},
     }
-    base = {"motor_force": force, "radial_force": -80}
-    named = {"name": "s", "base": base, "factors": factors, "design": "lhs", "samples": 40, "outputs": ["life"]}
+    base = {"motor_force": 0, "radial_force": -80, "permissible_wear_depth": 0.1, "guide_overrollings_per_hour": 600}
+    told = {"name": "s", "base": base, "factors": factors, "analysis": {"target": {"min": 20}}}
+    solved = tr.run(told | {"contact_model": "sliding"}, progress=False)
     with style.look():
-        _, info = designs.lives_by_design(tr.run(named | {"contact_model": "sliding"}, progress=False))
-    assert info.sentence.startswith(said)
+        figure, info = designs.candidates_side_by_side(solved)
+    axes, found = figure.axes[0], solved.verdict
+    shown = [one for one in found.candidates if one.low > 0]
+    marks = {line.get_label(): line for line in axes.lines}
+    assert marks["what is sure"].get_xdata() == pytest.approx([one.low for one in shown])
+    assert marks["median"].get_xdata() == pytest.approx([one.median for one in shown])
+    assert marks["target 20 h"].get_xdata()[0] == 20
+    spans = [np.array(lines.get_segments())[:, :, 0].ravel() for lines in axes.collections]
+    assert spans[0] == pytest.approx([end for one in shown for end in (one.low, one.best)])
+    assert spans[1] == pytest.approx([end for one in shown for end in (one.low, one.high)])
+    assert [text.get_text() for text in axes.texts] == [f"{one.ends}, {one.body}" for one in shown]
+    assert len(shown) == 4 and all(one.high > one.low for one in shown) and "ends it" in info.caption
 
 
 @pytest.mark.parametrize(

@@ -12,14 +12,15 @@ import pytest
 import xarray as xr
 from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, results_of, sampled_study
+from told import occurrence
 
-import trackroller as tr
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
-from trackroller.report.pages.study import contents, models_used, write_report
+from trackroller.report.pages.study import contents, models_used, page_text, write_report
 from trackroller.report.tables.inputs import Row
-from trackroller.report.words.cases import occurrence, regime_table, validity_table
+from trackroller.report.tables.table import Table
+from trackroller.report.words.cases import regime_table, validity_table
 from trackroller.study.store.digests import record_digest
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.ownership import MADE_BY
@@ -61,12 +62,15 @@ def report(tmp_path_factory):
 
 
 def test_a_long_cell_that_equals_the_one_above_says_so(tmp_path):
-    factors = {"friction_coefficient": {"values": [0, 0.02, 0.3]}, "motor_force": {"values": [0, -30]}}
-    study = {"name": "small", "contact_model": "sliding", "outputs": ["forces", "contact"], "factors": factors}
-    page = tr.run(study).report(tmp_path / "report.html").read_text(encoding="utf-8")
-    cells = re.findall(r'<td class="w">(.*?)</td>', page.split("<h3>What decides each output")[1].split("</table>")[0])
-    assert cells[0].startswith("3 of 6 cells used; rows left out: 2 full slip, and 1 at the same levels, because")
-    assert cells[1:] == ["as above"] * 4
+    ds = grid_study({"axial_force": [0.0, 130.0], "friction_coefficient": [0.1, 0.2]})
+    long = ["no convergence, " * 6 + str(i) for i in (0, 1)]
+    ds["reason"] = xr.full_like(ds["regime"], long[0], dtype=object)
+    table = Table("reasons", "Reasons", ["Case", "Reason"], [[1, long[0]], [2, long[0]], [3, long[1]]])
+    content = contents(results_of(ds))
+    content["tables"]["ends"] = [table]
+    page = page_text(results_of(ds), content, tmp_path)
+    cells = re.findall(r'<td class="w">(.*?)</td>', page.split("<h3>Reasons")[1].split("</table>")[0])
+    assert cells == [long[0], "as above", long[1]]
 
 
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
@@ -88,10 +92,12 @@ def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
         "static",
     )
     assert [w for w in wanted if w not in text] == []
-    assert text.count("<figure") == 6
-    assert re.search(r"<figcaption><strong>[^<]+\.</strong> Figure 1\. ", text)
-    heads = [text.index(f">{head}</h2>") for head in ("In short", "Decide", "Why", "Where it ends", "Proof")]
-    assert heads == sorted(heads)
+    assert text.count("<figure") == 3 and text.index('id="designs"') < text.index('id="decide"')
+    parts = ("Verdict", "Decide", "Why", "Where it ends", "Explore", "Proof")
+    heads = [text.index(f">{head}</h2>") for head in parts]
+    assert heads == sorted(heads) and 0 < text[heads[2] : heads[3]].count("<li>") <= 5
+    assert text.index("<details") < heads[-1] and "<h3>What decides each output" not in text
+    assert (report.parent / "tables" / "best_designs.csv").is_file()
 
 
 def test_it_is_one_file_without_network(report):
@@ -114,7 +120,7 @@ def test_regimes_name_the_levels_at_which_they_occur():
     results = results_of(grid_study(FACTORS))
     rows = {row[0]: row for row in regime_table(results).rows}
     assert sum(row[1] for row in rows.values()) == len(results.table)
-    slip, lift = (s.text for s in dict(contents(results)["summary"])["What limits"])
+    slip, lift = (s.text for s in dict(contents(results)["summary"])["Where it ends"][1:3])
     assert lift.endswith("only at axial force 130 N: in all cases there.")
     assert "only at" in slip and "friction coefficient 0.05" in slip and "failed" not in rows
 
@@ -142,7 +148,7 @@ def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_lif
     frame = ds["roller_life_hours"].where(valid).to_dataframe(name="life").reset_index()
     groups = frame.groupby(["roller_profile_radius", "material_pair"]).life
     expected = groups.agg(["count", "min", "median", "max", "size"]).sort_values(["count", "min"], ascending=False)[:5]
-    for row, column in (("worst condition", "min"), ("median", "median"), ("best condition", "max")):
+    for row, column in (("worst condition", "min"), ("median", "median")):
         assert best[f"Life of the roller, {row} [h]"] == pytest.approx(expected[column].tolist())
     told = [f"{n} of {size}" for n, size in zip(expected["count"], expected["size"], strict=True)]
     assert best["Valid in"] == told
@@ -221,7 +227,7 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]
     assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
     told = contents(results_of(ds))
-    valid = dict(told["summary"])["Valid cases"]
+    valid = dict(told["summary"])["Where it ends"]
     assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)
     assert models_used(sampled_study(40)) == []
 
@@ -238,12 +244,12 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
     "part",
     [
         "pages.study.report_section",
-        "pages.study.study_pareto",
+        "pages.study.given_pareto",
         "pages.study.target_tables",
         "pages.study.explorer",
         "pages.study.figures",
         "figures.comparison.pairs",
-        "figures.study.study_pareto",
+        "figures.study.given_pareto",
         "figures.factors.coloured",
         "figures.sensitivity._axis",
     ],

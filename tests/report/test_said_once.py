@@ -88,8 +88,8 @@ def page(name):
     found = contents(solved)
     prose = [(head, s.text) for head, said in found["summary"] for s in said]
     infos = [drawn[1] for draw in _jobs(solved) if (drawn := draw()) is not None]
-    prose += [(info.name, text) for info in infos for text in (info.sentence, info.caption)]
-    for table in (t for part in ("decide", "why", "ends", "models") for t in found["tables"][part]):
+    prose += [(info.name, info.caption) for info in infos]
+    for table in (t for part in ("decide", "ends", "models") for t in found["tables"][part]):
         prose.append((table.name, table.note))
         if table.name not in ("indices", "validity"):  # their last column explains each row
             prose += [(table.name, v) for row in table.rows for v in row if isinstance(v, str) and len(v) > 60]
@@ -166,7 +166,8 @@ def test_a_sample_without_designs_says_so_and_nothing_contradicts_it(name):
     if "pareto" in names:
         assert names["pareto"].title == "Pareto-optimal cases"
         assert any("Each case is one design at one condition" in text for _, text in prose)
-    if "target" in best:
-        assert "over all cases" in best["target"]
+    decide = {s.kind: s.text for s in dict(found["summary"]).get("Decide", [])}
+    if "target" in decide:
+        assert "over all cases" in decide["target"]
     with pytest.raises(tr.InputError, match="inner_outer"):
         solved.best()

@@ -9,7 +9,7 @@ import trackroller as tr
 from trackroller.damage import LIMITS
 from trackroller.report.explorer.rows import collect
 from trackroller.report.pages.study import contents
-from trackroller.report.words.verdict import limit_words
+from trackroller.report.words.designs import ended_by
 from trackroller.results.first_limits import deciding, first_limit, reached_hours, turn
 from trackroller.study.file.load import parse_study
 
@@ -100,11 +100,11 @@ def test_the_page_says_which_limit_rules_and_its_table_counts_every_valid_case(s
     page = contents(solved)
     said = " ".join(sentence.text for sentence in dict(page["summary"])["Verdict"])
     best = solved.verdict.best[0]
-    assert best.ends == first_limit(solved)[best.case] and limit_words(best.ends) in said
+    assert best.ends == first_limit(solved)[best.case] and ended_by(best.ends) in said
     table = next(t for t in page["tables"]["decide"] if t.name == "first_limits")
     cells = [part for row in table.rows for cell in row[1:] for part in cell.split(", ") if part != "–"]
     assert sum(int(part.rsplit(" ", 1)[1]) for part in cells) == solved.valid.sum()
-    assert any(text.startswith("The first limit of the pair is ") for text in page["said"]["decide"])
+    assert any(one.text.startswith("The first limit of the pair is ") for one in page["said"]["why"])
 
 
 def test_results_of_limits_serve_as_goals_constraints_targets_and_outputs(solved):

@@ -120,7 +120,6 @@ def test_figures_of_the_set_are_drawn_in_words():
     with style.look():
         _, first = pareto_front(front)
     assert "a designer cannot choose: " in first.caption
-    assert first.sentence == pareto_sentence(front).text
     assert pareto_front(front.assign_attrs(objectives="roller_life_hours max")) is None  # a search with one goal
 
 

@@ -10,7 +10,8 @@ from synthetic_results import results_of
 from trackroller.errors import InputError
 from trackroller.methods.saltelli import pairs_sharing, sobol
 from trackroller.report.words.in_short import in_short
-from trackroller.report.words.indices import level_indices, part_tables
+from trackroller.report.words.indices import part_tables
+from trackroller.results.findings import level_values
 from trackroller.results.parts import within_levels
 from trackroller.results.sensitivity import analyse
 from trackroller.study.design.sampling import sample
@@ -211,9 +212,9 @@ def test_levels_reach_analysis_table_and_summary():
         ds = solved(FILE | {"design": design, "samples": 256, "analysis": analysis})
         sens = analyse(results_of(ds))
         assert sens["conditional_S1"].sel(level="POM", factor="friction_coefficient").item() > 0.7
-        said = level_indices(sens, "roller_life_hours")
-        assert said.values["lead"]["POM"] == "friction_coefficient"
-        assert said.values["lead"]["PA6"] in ("axial_force", "radial_force")
+        lead = level_values(sens, "roller_life_hours")["lead"]
+        assert lead["POM"].factor == "friction_coefficient"
+        assert lead["PA6"].factor in ("axial_force", "radial_force")
         assert [row[1] for row in part_tables(sens)[0].rows] == ["PA6", "POM"]
 
 

@@ -121,7 +121,7 @@ def test_report_explorer_and_best_cases_come_from_the_same_object(tmp_path):
     assert best["worst"].tolist() == worst[:2].tolist()
     page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
     again = tr.report(ds, tmp_path / "again.html").read_text(encoding="utf-8")
-    assert "Valid cases" in page and len(page) == pytest.approx(len(again), rel=0.01)
+    assert "Where it ends" in page and len(page) == pytest.approx(len(again), rel=0.01)
     assert sorted(p.name for p in tmp_path.iterdir()) == ["again.html", "report.html"]
     assert "data-count" in solved.explore(tmp_path / "explorer.html").read_text(encoding="utf-8")
     with pytest.raises(tr.InputError, match="inner_outer"):

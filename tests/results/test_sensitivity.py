@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from synthetic_results import results_of
+from told import of_analysis
 
 from trackroller.errors import InputError
 from trackroller.methods import convergence
@@ -14,7 +15,7 @@ from trackroller.methods.arrays import effects
 from trackroller.methods.given_data import first_order, given_data, prcc
 from trackroller.methods.grid import grid_shares
 from trackroller.methods.saltelli import sobol
-from trackroller.report.words import indices as words
+from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import caveat
 from trackroller.results.sensitivity import analyse
 from trackroller.study.design.sampling import sample
@@ -388,18 +389,9 @@ def test_plackett_burman_keeps_main_effects_clear_of_interactions():
 
 
 def test_advice_on_sample_size_follows_the_width():
-    """Half width 0.1 against 0.05 wants 4 times the samples; 0.04 is converged."""
+    """Half width 0.1 against 0.05 wants 4 times the samples; 0.04 is enough."""
     assert convergence.take_times(np.array([0.4]), np.array([0.6]), 0.05) == 4
     assert convergence.take_times(np.array([0.46]), np.array([0.54]), 0.05) == 1
-    coords = {"output": ["life"], "factor": ["velocity"], "factor_name": ("factor", ["speed"]), "sample_size": [64]}
-    for times, said in (
-        (1, "have converged."),
-        (4, "take 4 times as many samples."),
-        (np.nan, "too few usable samples"),
-    ):
-        bounds = {f"first{end}": (("output", "factor"), [[v]]) for end, v in (("", 0.5), ("_low", 0.4), ("_high", 0.6))}
-        table = xr.Dataset(bounds | {"take_times": ("output", [float(times)])}, coords, {"method": "lhs"})
-        assert said in words.convergence(table, "life").text
 
 
 def test_rows_of_another_study_are_refused():
@@ -446,19 +438,15 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
     solved({"name": "i", "design": "saltelli", "samples": 128, "factors": CARRIERS}, fake, tmp_path / "study.nc")
     results = results_of(tmp_path / "study.nc")
     infos = draw_all(results_of(results, analyse(results)), tmp_path / "figures")
-    said = {i.name: i.sentence for i in infos}
-    assert {
-        "tornado-roller_life_hours",
-        "convergence-roller_life_hours",
-        "bands-roller_life_hours",
-    } <= set(said)
-    assert said["tornado-roller_life_hours"].startswith("Axial force accounts for 9")
-    assert "± " in said["tornado-roller_life_hours"] and "converged" in said["convergence-roller_life_hours"]
-    assert "shortens the median life of the roller" in said["bands-roller_life_hours"]
-    assert "interactions-roller_life_hours" not in said  # the made-up life has none
+    drawn = [i.name for i in infos]
+    assert {"tornado-roller_life_hours", "bands-roller_life_hours"} <= set(drawn)
+    told = [sentence.text for sentence in dict(in_short(results_of(results, analyse(results)), []))["Why"]]
+    assert told[0].startswith("Axial force accounts for 9") and "± " in told[0]
+    assert any("shortens the median life of the roller" in text for text in told)
+    assert "interactions-roller_life_hours" not in drawn  # the made-up life has none
     listed = json.loads((tmp_path / "figures" / "index.json").read_text(encoding="utf-8"))
-    assert [entry["name"] for entry in listed] == list(said)
-    for name in said:
+    assert [entry["name"] for entry in listed] == drawn
+    for name in drawn:
         assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000
 
 
@@ -473,8 +461,7 @@ def test_morris_figures_and_words_name_what_matters(tmp_path):
 
     sens = analyse(results_of(solved({"name": "i", "design": "morris", "samples": 40, "factors": CARRIERS}, fake)))
     with style.look():
-        _, plane = morris_plane(sens, "friction_power")
-        _, bars = tornado(sens, "friction_power")
-    assert "the effect of axial force is nearly the same everywhere" in plane.sentence
-    assert "motor force" in plane.sentence.split("differently")[0].split(";")[1]
-    assert bars.sentence.startswith("Over its whole range")
+        assert morris_plane(sens, "friction_power") and tornado(sens, "friction_power")
+    said = of_analysis(sens, "morris", "friction_power").text
+    assert "the effect of axial force is nearly the same everywhere" in said and "motor force" in said.split(";")[1]
+    assert of_analysis(sens, "index", "friction_power").text.startswith("Over its whole range")

@@ -3,10 +3,10 @@
 import itertools
 
 import numpy as np
+from told import told
 
 import trackroller as tr
 from trackroller.report.numbers import factor_label
-from trackroller.report.words.limits import whichever_first
 from trackroller.results.first_limits import reached_hours
 from trackroller.results.unsure import settled
 from trackroller.study.file.load import parse_study
@@ -41,10 +41,11 @@ def test_conclusions_that_hold_for_all_combinations_of_the_ranges_are_counted():
         certain += len(firsts) == 1
     found = solved.candidates()
     assert settled(found) == (certain, ends) and 0 < certain < ends
-    said = whichever_first(solved)
+    said = next(told(solved, one) for one in solved.findings["why"] if one.kind == "whichever_first")
     assert f"in {certain} of {ends} combinations" in said.text and "placeholders of materials" in said.text
     fixed = STUDY | {"factors": {n: f for n, f in STUDY["factors"].items() if n != "placeholder_position"}}
-    assert whichever_first(tr.run(parse_study(fixed), progress=False)) is None
+    found = tr.run(parse_study(fixed), progress=False).findings["why"]
+    assert not [one for one in found if one.kind == "whichever_first"]
 
 
 def test_factors_with_and_without_a_symbol_have_a_label_that_figures_can_draw():

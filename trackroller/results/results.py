@@ -175,6 +175,18 @@ class Results:
         """
         return _of("results.verdict", "verdict_of")(self)
 
+    @cached_property
+    def findings(self) -> dict[str, list[Any]]:
+        """Return what the study shows beside its verdict, as data.
+
+        Returns
+        -------
+        dict
+            `why` one design lasts longer than another, the most important finding first, and where rolling `ends`;
+            lists of `trackroller.results.findings.Finding`.
+        """
+        return {name: _of("results.findings", name)(self) for name in ("why", "ends")}
+
     def best(self, count: int = 5) -> pd.DataFrame:
         """Return the best designs over all their conditions, the best one first.
 

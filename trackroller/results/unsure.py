@@ -28,8 +28,8 @@ def settled(candidates: Candidates) -> tuple[int, int] | None:
     Returns
     -------
     tuple of int or None
-        Number of settled conditions, and of all conditions in which a limit is reached; None if the study varies no
-        such condition.
+        Number of settled conditions, and of all conditions in which a limit is reached and all places of the values
+        are valid cases; None if the study varies no such condition.
 
     Notes
     -----
@@ -41,7 +41,11 @@ def settled(candidates: Candidates) -> tuple[int, int] | None:
         return None
     place = codes(results.table, (name for name in results.factors if name not in UNSURE))
     reached = reached_hours(results)
+    whole = np.prod(
+        [len(results.levels(name)) for name in varied(candidates)]
+    )  # places of the values within their ranges
     groups, first = [place[results.valid] == g for g in np.unique(place[results.valid])], reached[results.valid]
+    groups = [rows for rows in groups if rows.sum() == whole]
     certain = ends = 0
     for rows in groups:
         least, most = first[rows].min(axis=0), first[rows].max(axis=0)

@@ -48,7 +48,8 @@ class Candidate:
     ----------
     number : index in `Candidates.table`
     choices : levels by factor
-    low, high, median : of the goal: the two ends over the conditions, and the median of the conditions [goal's unit]
+    low, high, median, best : of the goal: the two ends over the conditions, the median of the conditions, and the high
+        end at the best one [goal's unit]
     error : relative error of `low` by the solution [1]
     interval : 95 % interval of `low` where it is the life that nine of ten sampled conditions reach, else NaN
     case : row of the worst condition
@@ -68,6 +69,7 @@ class Candidate:
     low: float
     high: float
     median: float
+    best: float
     error: float
     interval: tuple[float, float]
     case: int
@@ -532,6 +534,7 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         low=_as_goal(candidates, scores.low[i]),
         high=_as_goal(candidates, scores.high[i]),
         median=float(np.median(middle)) if middle.size else np.nan,
+        best=_as_goal(candidates, cases.ends[1][rows[judged[rows]]].max(initial=0.0)),
         error=float(scores.error[i]),
         interval=(float(interval[0]), float(interval[1])),
         case=case,

@@ -112,7 +112,7 @@ def test_the_report_says_that_a_silent_drive_makes_rollers_skid():
     named = {"name": "hall", "factors": factors, "contact_model": "sliding", "outputs": ["forces"]}
     for base, said in (({}, True), ({"motor_force": -30}, False), ({"motor_force": 0}, False)):
         results = tr.run(named | {"base": base}, progress=False)
-        texts = [s.text for s in dict(in_short(results, [])).get("What limits", [])]
+        texts = [s.text for s in dict(in_short(results, [])).get("Where it ends", [])]
         silent = "The study gives no motor force: −30 N of the paper's example drive the roller"
         assert any(text.startswith(silent) for text in texts) == said
         assert any(text.startswith("Full slip") for text in texts) == (base != {"motor_force": 0})

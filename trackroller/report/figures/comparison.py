@@ -9,7 +9,7 @@ import numpy as np
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, legend, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, percent
-from trackroller.report.words.comparison import FRICTION, by_drive, short
+from trackroller.report.words.comparison import FRICTION, by_drive
 from trackroller.results.contact_models import GOOD, designs, errors, measured, pairs
 from trackroller.results.groups import DRIVE, groups, ordered, spaced_by_ratio
 from trackroller.results.results import Results
@@ -71,4 +71,4 @@ def model_errors(results: Results) -> style.Drawn:
         f"that roll. Lines: medians of the cases; bands: 5 to 95 %. Dotted: {percent(GOOD)}. Marks at the lower end: "
         f"{percent(LEAST)} or less."
     )
-    return figure, style.FigureInfo("models-error", caption, short(paired)[0])
+    return figure, style.FigureInfo("models-error", caption)

@@ -2,85 +2,99 @@
 
 from __future__ import annotations
 
+import textwrap
 from typing import Any
 
 import numpy as np
-import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import capital, count, listing, long_name, plain, quantity, rounded
-from trackroller.report.words.designs import alone, design_words
-from trackroller.report.words.levels import coloured
-from trackroller.report.words.pareto import goal_heading, pareto_sentence
+from trackroller.report.numbers import capital, count, listing, long_name, plain, quantity
+from trackroller.report.words.designs import design_words, ended_by
+from trackroller.report.words.levels import coloured, short_levels
+from trackroller.report.words.pareto import goal_heading
 from trackroller.results.candidates import Candidates
 from trackroller.results.pareto import goals_of
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
+from trackroller.results.verdict import Verdict
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import OF_MATERIALS
 
-MOST = 20  # designs shown
-LONGEST = 48  # letters of a name beside the axis; longer names are numbered
+MOST = 10  # candidates drawn
+WIDEST = 44  # letters of a line of a name beside the axis
 
 
-def lives_by_design(results: Results) -> style.Drawn:
-    """Draw the worst life of roller and guide of each design, and the median and best life of the pair.
+def candidates_side_by_side(results: Results) -> style.Drawn:
+    """Draw the life of each candidate, or its stress, over its conditions and over what nobody has measured.
 
-    It answers: which design keeps its life at its worst condition, and which of its two bodies ends it? For random
-    conditions the life that nine of ten reach stands beside the worst one.
+    It answers: which candidate keeps its life at its worst condition, how sure is that, what ends it there, and does it
+    reach the target? None for fewer than two candidates.
     """
-    candidates = results.candidates()
-    if (
-        candidates is None
-        or not (candidates.comparable and candidates.rising and candidates.conditions)
-        or len(candidates.size) < 2
-    ):
+    found = results.verdict
+    ranked = found if found is None or found.rest is None else found.rest
+    if ranked is None or len(ranked.candidates) < 2:
         return None
-    table = candidates.table[candidates.table["valid"] > 0]
-    table = table[np.isfinite(table["worst"])].head(MOST)
-    if len(table) < 2:
+    rising, unit = ranked.goal_rises, ranked.goal[2]
+    listed = [one for one in ranked.candidates if np.isfinite(one.low) and one.low > 0 and one.judged][:MOST]
+    if len(listed) < 2:
         return None
-    names = [capital(design_words(candidates, row)) for _, row in table.iterrows()]
-    numbered = max(map(len, names)) > LONGEST
-    figure, (axes,) = style.panels("Life of the designs over their conditions", 30 + 5.0 * len(table))
-    place = np.arange(len(table))[::-1]
-    _draw(axes, candidates, table, place)
-    style.name_rows(axes, place, list(map(str, range(1, len(names) + 1))) if numbered else names)
-    # whole marks in the first and the last line
-    axes.set(ylim=(-0.6, len(table) - 0.4), xlabel=f"life [{candidates.goal[2]}]", xscale="log")
-    style.log_ticks(axes.xaxis, *axes.get_xlim())
-    figure.legend(loc="outside lower center", ncols=5, columnspacing=1.0, handletextpad=0.4)
-    caption = (
-        "Designs in the order of the table of the best designs, over "
-        f"{listing([long_name(n) for n in candidates.conditions])}; {len(table)} of "
-        f"{count(len(candidates.size))} designs. Lives of the valid conditions. Hollow marks lie beyond the S-N data."
-    )
-    caption += f" {'; '.join(f'{i}: {name}' for i, name in enumerate(names, 1))}." if numbered else ""
-    ends = rounded(table["worst"].min()), quantity(table["worst"].max(), candidates.goal[2])
-    finding = f"The lives of these designs at the worst of their valid conditions lie between {ends[0]} and {ends[1]}."
-    if candidates.drawn and not table["b10"].max() > 0:
-        finding = "For each design one in ten or more of the sampled conditions are not valid."
-    return figure, style.FigureInfo("designs", caption, finding)
+    candidates = Candidates.grouped(results, ranked.goal)
+    names = short_levels([capital(design_words(candidates, one.choices)) for one in listed])
+    figure, (axes,) = style.panels(f"{capital(ranked.goal[1])} of each candidate", 26 + 6.4 * len(listed))
+    place = np.arange(len(listed))[::-1]
+    ends = np.array([[one.low, one.high, one.median, one.best] for one in listed])
+    spread, sure = _spread_words(ranked, rising)
+    _bars(axes, place, ends, spread, sure)
+    required = ranked.required
+    if np.isfinite(required):
+        axes.axvline(required, color=style.PAIR[1], linewidth=1.1, label=f"target {quantity(required, unit)}")
+    known = ends[np.isfinite(ends) & (ends > 0)]
+    low, high = (float(end(np.append(known, required) if np.isfinite(required) else known)) for end in (np.min, np.max))
+    if rising and high > 20 * low:
+        axes.set_xscale("log")
+        axes.set_xlim(low / 1.5, high * 1.5)
+        style.log_ticks(axes.xaxis, *axes.get_xlim())
+    style.name_rows(axes, place, [textwrap.fill(name, WIDEST) for name in names])
+    for at, one in zip(place, listed, strict=True):
+        text = f"{ended_by(one.ends)}, {one.body}" if rising and one.ends else ""
+        axes.text(1.01, at, text, transform=axes.get_yaxis_transform(), va="center", fontsize=7)
+    axes.set(ylim=(-0.6, len(listed) - 0.4), xlabel=f"{ranked.goal[1]} [{unit}]")
+    figure.legend(loc="outside lower center", ncols=4, columnspacing=1.0, handletextpad=0.4)
+    return figure, style.FigureInfo("designs", _caption(ranked, len(listed)))
 
 
-def _draw(axes: Any, candidates: Candidates, table: pd.DataFrame, place: np.ndarray) -> None:
-    """Draw a line from the worst to the best life of each design, with marks; hollow marks lie beyond the S-N data."""
-    best = table["best"].replace(np.inf, np.nan).fillna(table["worst"])
-    axes.hlines(place, table["worst"], best, color="0.75", linewidth=3, zorder=1, label="worst to best condition")
-    axes.plot(table["median"], place, color="0.1", marker="|", markersize=7, linestyle="none", label="median")
-    if candidates.drawn:
-        look: dict[str, Any] = {"color": "0.1", "marker": "D", "markersize": 3.5, "linestyle": "none"}
-        axes.plot(table["b10"].where(table["b10"] > 0), place, label="nine of ten reach", **look)
-    for body, marker, colour in (("roller", "o", style.PAIR[0]), ("guide", "s", style.PAIR[1])):
-        if alone(candidates) and body == "guide":
-            continue
-        lives, beyond = table[f"worst_{body}"].to_numpy(), table[f"worst_{body}_beyond"].to_numpy(dtype=bool)
-        faces = np.where(beyond, "white", colour).tolist()
-        look = {"marker": marker, "s": 26, "edgecolors": colour, "linewidths": 1.1, "zorder": 3}
-        axes.scatter(lives, place, c=faces, label=f"worst of the {body}", **look)
+def _spread_words(found: Verdict, rising: bool) -> tuple[str, str]:
+    """Name the thin line from the worst to the best condition, and the thick one over the range of placeholders."""
+    worst = "nine of ten sampled conditions" if found.sampled else "the worst condition"
+    return ("worst to best condition" if not found.sampled else "sampled conditions"), f"range at {worst}"
+
+
+def _bars(axes: Any, place: np.ndarray, ends: np.ndarray, spread: str, sure: str) -> None:
+    """Draw a thin line over the conditions, a thick one over the range at the worst one, and marks."""
+    low, high, median, best = ends.T
+    colour = style.PAIR[0]
+    lasts = np.isfinite(best) & (best > 0)
+    axes.hlines(place[lasts], low[lasts], best[lasts], color="0.7", linewidth=1.6, zorder=1, label=spread)
+    ranged = np.isfinite(high) & (np.abs(high - low) > 1e-9 * np.abs(low))
+    if ranged.any():
+        axes.hlines(
+            place[ranged], low[ranged], high[ranged], color=colour, linewidth=5, alpha=0.55, zorder=2, label=sure
+        )
+    shown = np.isfinite(median) & (median > 0)
+    axes.plot(median[shown], place[shown], color="0.1", marker="|", markersize=8, linestyle="none", label="median")
+    axes.plot(low, place, color=colour, marker="o", markersize=4.5, linestyle="none", zorder=3, label="what is sure")
+
+
+def _caption(found: Verdict, shown: int) -> str:
+    """Say what is drawn, and what is left out."""
+    text = f"The best {shown} of {count(len(found.candidates))} candidates" if shown < len(found.candidates) else ""
+    text += ". " * bool(text) + "Beside each: what ends it at its worst condition" if found.goal_rises else text
+    left = sum(not one.judged for one in found.candidates)
+    text += f". Not judged, so not drawn: {count(left)}" if left else ""
+    return f"{text}." if text else "Conditions that no candidate meets are left out."
 
 
 OTHER = "0.65"  # grey of the designs without a level of their own
@@ -124,7 +138,7 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     legend(figure, entries)
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
     caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front)}"
-    return figure, style.FigureInfo("pareto-front", caption, pareto_sentence(front, results).text)
+    return figure, style.FigureInfo("pareto-front", caption)
 
 
 def _colours(front: xr.Dataset, results: Results | None, goal: str) -> tuple[np.ndarray, Entries]:

@@ -5,12 +5,11 @@ from __future__ import annotations
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
-from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured
+from trackroller.results.findings import shown_output
 from trackroller.results.groups import Groups, classes, groups
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
@@ -70,15 +69,7 @@ def by_factor(results: Results) -> style.Drawn:
         f"{capital(words)} of the {rows.sum():,} valid cases along each factor, all other factors as they vary. "
         f"Lines: medians{each}; bands: the middle half of the valid cases."
     )
-    return figure, style.FigureInfo(f"bands-{column}", caption, _sentence(results, column, words, rows))
-
-
-def shown_output(results: Results) -> tuple[str, str, str] | None:
-    """Return column, words and unit of the life of a study, or of its peak stress where it has no life."""
-    if results.life:
-        return results.life
-    stresses = [(f"peak_stress_{b}", f"peak stress of the {b}", "MPa") for b in BODIES]
-    return next((s for s in stresses if results.has(s[0])), None)
+    return figure, style.FigureInfo(f"bands-{column}", caption)
 
 
 def _lead(results: Results, column: str) -> str:
@@ -112,11 +103,3 @@ def _panel(axes: Axes, along: Groups, values: np.ndarray, series: Series, colour
         band(axes, along.at + shift, drawn, {"color": colour, "marker": style.MARKERS[g % 10]}, along.ordered)
     axes.set_xlabel(factor_label(along.name) if along.ordered else capital(long_name(along.name)))
     set_axis(axes, along, PANEL_LETTERS, named=not apart)
-
-
-def _sentence(results: Results, column: str, words: str, rows: np.ndarray) -> str:
-    """State the two largest effects that have one direction."""
-    effects = [s for f in results.factors if (s := effect_of(results, column, words, f, rows)) is not None]
-    clear = [s for s in effects if s.kind in ("pairs", "classes")] or effects
-    clear.sort(key=lambda s: -abs(np.log(s.values["ratio"])))
-    return " ".join(s.text for s in clear[:2])

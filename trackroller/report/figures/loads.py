@@ -11,10 +11,7 @@ from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend, running
 from trackroller.report.numbers import factor_label, level_text, listing, symbol, with_unit
-from trackroller.report.words.cases import lift_off, surface
-from trackroller.report.words.factors import effect_of
 from trackroller.report.words.levels import coloured, held_words
-from trackroller.report.words.sentence import phrase
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 from trackroller.study.design.levels import OF_MATERIALS
@@ -75,16 +72,7 @@ def stress_against_fit(results: Results) -> style.Drawn:
         "Peak von Mises stress (MPa) of roller and guide, the worse of the two contacts, over the fit of groove and "
         f"guide; rolling cases. {marks} {held_words(held)}"
     )
-    return figure, style.FigureInfo("stress_against_fit", caption.strip(), _stress_sentence(results, bodies[0], fits))
-
-
-def _stress_sentence(results: Results, body: str, fits: tuple[str, ...]) -> str:
-    """State the effect of the fit on the peak and where the peak lies, from all valid cases."""
-    said = [surface(results, body, results.valid)]
-    if fits[0] in results.factors:
-        column = f"peak_stress_{body}"
-        said.insert(0, effect_of(results, column, f"peak stress of the {body}", fits[0], results.valid))
-    return " ".join(s.text for s in said if s)
+    return figure, style.FigureInfo("stress_against_fit", caption.strip())
 
 
 def _hue(results: Results, column: str, fits: tuple[str, ...]) -> str:
@@ -183,7 +171,7 @@ def forces_against_axial(results: Results) -> style.Drawn:
         f"Forces (N) of contact 1 (circles) and contact 2 (squares) on the roller over the axial force{each}. "
         f"{held_words(held) if results.grid else MEDIANS}"
     )
-    return figure, style.FigureInfo("forces_against_axial_force", caption.strip(), _force_sentence(results))
+    return figure, style.FigureInfo("forces_against_axial_force", caption.strip())
 
 
 def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
@@ -199,18 +187,3 @@ def _shade_lift_off(panels: Any, rows: pd.DataFrame, x: str) -> None:
         box = {"facecolor": "white", "edgecolor": "none", "pad": 1}
         place = {"xycoords": ("data", "axes fraction"), "ha": "right", "fontsize": 7, "bbox": box}
         panels[0].annotate("lift-off", (halves[-1], 0.3), **place)
-
-
-def _force_sentence(results: Results) -> str:
-    """State from which axial force on cases lift off, otherwise the normal forces at the largest axial force."""
-    lifted = lift_off(results)
-    if lifted is not None:
-        return lifted.text
-    both = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
-    axial = np.abs(results.column("axial_force"))
-    good = np.flatnonzero(np.isfinite(both).all(axis=0) & np.isfinite(axial))
-    if not good.size:
-        return ""
-    last = good[np.argmax(axial[good])]
-    at, loads = results.column("axial_force")[last], both[:, last].tolist()
-    return phrase("cases", "no_lift_off", axial=at, case=last, loads=loads)

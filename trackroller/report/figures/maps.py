@@ -16,7 +16,6 @@ from matplotlib.patches import Patch, Rectangle
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, factor_label, level_text, long_name, rounded, with_unit
-from trackroller.report.words.cases import extremes, occurrence
 from trackroller.report.words.levels import held_words
 from trackroller.results.groups import BINS, classes
 from trackroller.results.ranking import ranked_factors
@@ -56,9 +55,7 @@ def life_map(results: Results) -> style.Drawn:
     beyond = int((results.beyond_data(column)[rows.index] & drawn).sum())
     if beyond:
         how += f"; {count(beyond)} of the {count(int(drawn.sum()))} lives drawn lie beyond the S-N data (in brackets)"
-    inside = results.valid & np.isin(np.arange(len(results.table)), rows.index)
-    said = extremes(results, column, words, unit, pair, inside)
-    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip(), said.text)
+    return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip())
 
 
 def _life_pair(results: Results) -> Pair | None:
@@ -153,9 +150,8 @@ def regime_map(results: Results) -> style.Drawn:
     figure, (axes,) = style.panels("Regimes: rolling, full slip, lift-off", 76)
     note = _regime_shares(axes, results, pair)
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
-    said = [occurrence(results, results.regime == code, capital(REGIME_LABELS[code])) for code in (1, 2)]
     caption = f"Regime of the cases over {long_name(pair[0])} and {long_name(pair[1])}. {note}"
-    return figure, style.FigureInfo("regime_map", caption.strip(), " ".join(s.text for s in said if s))
+    return figure, style.FigureInfo("regime_map", caption.strip())
 
 
 def _regime_spread(results: Results, name: str) -> float:

@@ -1,7 +1,7 @@
-"""Figures of sensitivities: ranked indices, convergence, growth of a sample, Morris plane, interactions.
+"""Figures of sensitivities: ranked indices, growth of a sample, Morris plane, interactions.
 
 Those of an analysis take the dataset of `trackroller.results.sensitivity.analyse`. Every function returns a figure
-with its caption and sentence, or None where the design does not support it.
+with its caption, or None where the design does not support it.
 """
 
 from __future__ import annotations
@@ -15,19 +15,18 @@ import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from trackroller.methods import METHODS
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, with_unit
 from trackroller.report.words import indices
-from trackroller.report.words.samples import grown, quantity_words
+from trackroller.report.words.samples import quantity_words
+from trackroller.results.findings import WORTH
 from trackroller.results.looks import looks_of
-from trackroller.results.ranking import SIGNED, SIZED, headline, order
+from trackroller.results.ranking import SIGNED, SIZED, decisive, headline, order
 from trackroller.results.results import Results
 from trackroller.study.outputs import USUAL
 
 Look = dict[str, Any]
 MAX_BARS = 12
-WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 
 
 def main_outputs(sens: xr.Dataset) -> list[str]:
@@ -48,8 +47,8 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
     It answers: which factor decides, and how sure is that?
     """
     index = headline(sens)
-    ranks, said = order(sens, output)[:MAX_BARS], indices.tornado(sens, output)
-    if said.kind != "index":  # a figure without a finding is left out
+    ranks = order(sens, output)[:MAX_BARS]
+    if not decisive(sens, output):
         return None
     figure, (axes,) = style.panels(f"{title(sens, output)}: what decides it", 22 + 6.0 * len(ranks))
     place = np.arange(len(ranks))[::-1].astype(float)
@@ -73,7 +72,7 @@ def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
         f"{capital(indices.INDEX_WORDS[index])} of each factor on {indices.of_output(sens, output)}; whiskers: 95 % "
         f"intervals. {sens.attrs.get('treatment', '')}."
     )
-    return figure, style.FigureInfo(f"tornado-{output}", caption, said.text)
+    return figure, style.FigureInfo(f"tornado-{output}", caption)
 
 
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:
@@ -102,33 +101,6 @@ def _doubled(axes: Axes, sizes: Sequence[int] | np.ndarray, unit: str) -> None:
     axes.set_xticks(sizes, [count(int(size)) for size in sizes])
     axes.minorticks_off()
     axes.set_xlabel(f"{unit} [–]")
-
-
-def convergence(sens: xr.Dataset, output: str) -> style.Drawn:
-    """Draw the headline index of the leading factors over the number of samples, with 95 % bands.
-
-    It answers: are the samples enough, or does the ranking still change?
-    """
-    index = headline(sens)
-    ranks = order(sens, output)[:5]
-    if f"{index}_course" not in sens or not ranks or sens.sizes.get("sample_size", 0) < 2:
-        return None
-    figure, (axes,) = style.panels(f"{title(sens, output)}: course of the indices", 62)
-    part = sens.sel(output=output)
-    for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
-        one = part.sel(factor=rank.factor)
-        size, low, high = one["sample_size"].values, one[f"{index}_course_low"], one[f"{index}_course_high"]
-        axes.fill_between(size, low, high, color=colour, alpha=0.15, linewidth=0)
-        look = {"marker": style.MARKERS[i], "linestyle": style.LINES[i % len(style.LINES)]}
-        axes.plot(size, one[f"{index}_course"], color=colour, label=capital(rank.name), **look)
-    unit = METHODS[str(sens.attrs["method"])].samples_unit
-    top = max(np.nanmax(part[f"{index}_course"].sel(factor=r.factor).values) for r in ranks)
-    _doubled(axes, part["sample_size"].values, unit)
-    axes.set_ylim(min(0.0, -0.1 * top), 1.35 * top)
-    axes.set_ylabel(_axis(sens, output, index).replace(": ", ":\n").replace("effect [", "effect\n["))
-    figure.legend(loc="outside lower center", ncols=3)
-    caption = f"{capital(indices.INDEX_WORDS[index])} from the first samples up to all of them; bands: 95 % intervals."
-    return figure, style.FigureInfo(f"convergence-{output}", caption, indices.convergence(sens, output).text)
 
 
 def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
@@ -163,7 +135,7 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
         "lines its effect differs from place to place: it is curved or depends on other factors. Whiskers: 95 % "
         "intervals."
     )
-    return figure, style.FigureInfo(f"morris-{output}", caption, indices.morris(sens, output).text)
+    return figure, style.FigureInfo(f"morris-{output}", caption)
 
 
 def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
@@ -175,9 +147,8 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
     if not name or not np.isfinite(part[name].values).any():
         return None
-    said, sized = indices.interactions(sens, output), name == "interaction"
-    # a figure without a finding is left out
-    if said.kind != "interaction" or (not sized and said.values["value"] < WORTH):
+    sized = name == "interaction"
+    if not sized and np.nanmax(part[name].values) < WORTH:
         return None
     fitted = name == "interaction_share" and "main_share" not in part
     own = "fit_alone" if fitted else {"S2": "S1", "interaction_share": "main_share", "interaction": "effect"}[name]
@@ -190,7 +161,7 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     figure = _heat(table, names, label, f"{title(sens, output)}: interactions")
     caption = "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
-    return figure, style.FigureInfo(f"interactions-{output}", caption, said.text)
+    return figure, style.FigureInfo(f"interactions-{output}", caption)
 
 
 def intervals(results: Results) -> style.Drawn:
@@ -198,8 +169,8 @@ def intervals(results: Results) -> style.Drawn:
 
     It answers: was growing worth its cases? None for a study with fewer than two looks.
     """
-    growth, said = looks_of(results), grown(results)
-    if growth is None or said is None or len(growth["looks"]) < 2:
+    growth = looks_of(results)
+    if growth is None or len(growth["looks"]) < 2:
         return None
     cases = [one["cases"] for one in growth["looks"]]
     names = list(growth["looks"][0]["half_width"])
@@ -213,4 +184,4 @@ def intervals(results: Results) -> style.Drawn:
     axes.set(ylim=(0.0, None), ylabel="half width of the\nwidest interval [–]")
     figure.legend(loc="outside lower center", ncols=2)
     caption = f"95 % intervals from {growth['replicates']} independent replicates at each doubling of the sample."
-    return figure, style.FigureInfo("intervals-against-cases", caption, said.text)
+    return figure, style.FigureInfo("intervals-against-cases", caption)

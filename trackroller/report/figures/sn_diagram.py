@@ -16,7 +16,6 @@ from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import capital, count, listing, rounded, with_unit
 from trackroller.report.tables.inputs import as_material, stored_materials
-from trackroller.report.words.cases import strength
 from trackroller.results.results import Results
 
 BEYOND = 1e4  # the axis ends at this multiple of the cycles at the fatigue limit
@@ -151,14 +150,8 @@ def _info(results: Results, shown: list, known: Mapping[str, Material], rule: st
     caption += f" {count(left)} cases that do not roll are not drawn." if left and results.rolling.any() else ""
     beyond = sum(int((life > top).sum()) for _, points in shown for _, life in points.values())
     caption += f" {count(beyond)} lives lie beyond the axis." if beyond else ""
-    said = []
-    for body, _ in shown:
-        names = results.material(body)
-        ends = ("tensile_strength", "fatigue_limit")
-        most, limit = (np.array([getattr(known[n], end) if n in known else np.nan for n in names]) for end in ends)
-        said.append(strength(body, results.column(f"{_amplitude(results)}_{body}"), limit, most, results.rolling))
-    texts = [s.text for s in said if s] + [_scatter_words(known, names) for _, names in shown[:1]]
-    return style.FigureInfo("sn_diagram", caption, " ".join(t for t in texts if t))
+    scatter = [text for _, names in shown[:1] if (text := _scatter_words(known, names))]
+    return style.FigureInfo("sn_diagram", " ".join([caption, *scatter]))
 
 
 def _scatter_words(known: Mapping[str, Material], names: Points) -> str:

@@ -9,19 +9,19 @@ from pathlib import Path
 
 from trackroller.report.figures import sensitivity, style
 from trackroller.report.figures.comparison import model_errors
-from trackroller.report.figures.designs import lives_by_design, pareto_front
+from trackroller.report.figures.designs import candidates_side_by_side, pareto_front
 from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import lives_in_years
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
-from trackroller.results.pareto import study_pareto
+from trackroller.results.pareto import given_pareto
 from trackroller.results.ranking import robust_design
 from trackroller.results.results import Results
 
 OF_CASES = (
-    *(model_errors, lives_by_design, by_factor, life_map, stress_against_fit),
+    *(model_errors, candidates_side_by_side, by_factor, life_map, stress_against_fit),
     *(sn_diagram, forces_against_axial, regime_map),
 )
 FRICTION_WORDS = ("friction power", "friction work", "friction energy")
@@ -45,13 +45,13 @@ def draw_all(results: Results, out_dir: Path) -> list[style.FigureInfo]:
     """
     infos = style.draw_all(_jobs(results), Path(out_dir))
     if error := friction_error(results):
-        infos = [replace(i, sentence=f"{i.sentence} {error.text}") if _is_about_friction(i) else i for i in infos]
+        infos = [replace(i, caption=f"{i.caption} {error.text}") if _is_about_friction(i) else i for i in infos]
     style.write_index(infos, Path(out_dir))
     return infos
 
 
 def _is_about_friction(info: style.FigureInfo) -> bool:
-    text = f"{info.name} {info.caption} {info.sentence}"
+    text = f"{info.name} {info.caption}"
     return any(name in text for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
 
 
@@ -65,9 +65,8 @@ def _jobs(results: Results) -> Iterator[Callable[[], style.Drawn]]:
 
     yield from of_analysis(sensitivity.tornado, 1)
     yield from (partial(draw, results) for draw in OF_CASES)
-    if (front := study_pareto(results)) is not None:
+    if (front := given_pareto(results)) is not None:
         yield partial(pareto_front, front, results)
     yield partial(sensitivity.intervals, results)
     yield from of_analysis(sensitivity.morris_plane, 2)
     yield from of_analysis(sensitivity.interactions, 1)
-    yield from of_analysis(sensitivity.convergence, 1)

@@ -42,11 +42,11 @@ REGIME_HATCHES = ("", "////", "xxxx", "")
 
 @dataclass(frozen=True)
 class FigureInfo:
-    """A drawn figure: file stem, what it shows (caption), and its finding (sentence)."""
+    """A drawn figure: file stem, what it shows (caption), and its finding (sentence) where the page has no other."""
 
     name: str
     caption: str
-    sentence: str
+    sentence: str = ""
 
 
 Drawn = tuple[Figure, FigureInfo] | None  # what a figure's function returns; None without anything to show

@@ -24,15 +24,15 @@ from trackroller.report.words.comparison import report_section
 from trackroller.report.words.designs import best_table, size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import index_table, measure_table, part_tables
-from trackroller.report.words.limits import first_limit_table, limit_sentences
+from trackroller.report.words.limits import first_limit_table
 from trackroller.report.words.optimum import optima_table
-from trackroller.report.words.pareto import pareto_sentence, pareto_table
+from trackroller.report.words.pareto import pareto_table
 from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
 from trackroller.report.workbook import export
 from trackroller.results.judging import OPTIMUM
 from trackroller.results.looks import UNTIL
-from trackroller.results.pareto import study_pareto
+from trackroller.results.pareto import given_pareto
 from trackroller.results.ranking import headline, robust_design
 from trackroller.results.results import Results
 from trackroller.roller.dataset import solved_by
@@ -42,12 +42,15 @@ from trackroller.study.store.seal import put_text, sealing
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
-PLACES = ("decide", "why", "ends", "models")  # sections with tables and figures
-SECTIONS = {  # where a figure stands, by the beginning of its name
-    "decide": ("designs", "pareto-front"),
-    "ends": ("regime_map", "forces_against"),
+SECTIONS = {  # the figures of each section by the beginning of their names; the others stand in the folder alone
+    "verdict": ("designs",),
+    "decide": ("pareto-front",),
+    "why": ("morris-", "tornado-", "bands-"),  # the first of them that is drawn
+    "ends": ("regime_map",),
     "models": ("models-",),
 }
+PLACES = tuple(SECTIONS)
+HEADS = {"verdict": ("Verdict", "Best"), "decide": ("Decide",), "why": ("Why",), "ends": ("Where it ends",)}
 _ELSEWHERE = (
     "notice study materials friction comment title coordinates Conventions life_conventions sign_conventions design"
 )
@@ -74,16 +77,13 @@ def write_report(results: Results, figures_dir: Path, out_html: Path) -> Path:
     content = contents(results)
     put_text(Path(out_html), page_text(results, content, figures_dir))
     with sealing(Path(out_html).with_name("tables")) as beside:
-        export([t for key in PLACES for t in content["tables"][key]], beside)
+        export([t for listed in content["tables"].values() for t in listed], beside)
     return Path(out_html)
 
 
 def page_text(results: Results, content: dict[str, Any], figures_dir: Path) -> str:
     """Return the report as HTML from its `contents`, its figures and its explorer."""
-    drawn = figures(Path(figures_dir))
-    beside_figures = " ".join(item["sentence"] for items in drawn.values() for item in items)
-    said = {key: [s for s in texts if s not in beside_figures] for key, texts in content["said"].items()}
-    shown = content | {"figures": drawn, "said": said, "explorer": explorer(results)}
+    shown = content | {"figures": figures(Path(figures_dir)), "explorer": explorer(results)}
     return secured(render("report.html.j2", shown, cell=cell))
 
 
@@ -98,7 +98,6 @@ def contents(results: Results) -> dict[str, Any]:
         "name": settings["name"],
         "description": settings["description"] or attrs.get("comment", ""),
         "facts": _facts(results, merged),
-        "summary": in_short(results, models.get("short", [])),
         **sections(results, models),
         "factors": inputs.factor_table(results),
         "base": inputs.base_rows(results),
@@ -124,29 +123,35 @@ def _doubts(results: Results) -> list[str]:
 
 
 def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
-    """Return the tables and the sentences of each section; a sentence that a figure has is not repeated."""
+    """Return the sentences and the tables of each section.
+
+    The tables of `more` are no part of the page: all indices, and counts of regimes.
+    """
     sens, error = results.analysis, friction_error(results)
+    summary = in_short(results, models.get("short", []))
+    said = {key: [s for head, listed in summary if head in heads for s in listed] for key, heads in HEADS.items()}
     decide: list[Table | None] = [optima_table(results) or best_table(results), first_limit_table(results)]
-    front = study_pareto(results)
-    said = [s.text for s in limit_sentences(results)]
+    front = given_pareto(results)
     if front is not None:
-        said.append(pareto_sentence(front, results).text)
         decide.append(pareto_table(front, results, error))
-    decide += target_tables(sens, results) if sens is not None else []
-    why: list[Table | None] = []
+    more: list[Table | None] = [regime_table(results)]
+    if sens is not None:
+        decide += target_tables(sens, results)
     if sens is not None and robust_design(sens):
         decide += robust_tables(sens, error)
     elif sens is not None:
-        why = [index_table(sens, error), *part_tables(sens)]
-        index, names = headline(sens), sorted(map(str, sens["output"].values), key=lambda n: "life" not in n)
-        known = [n for n in names if np.isfinite(sens[index].sel(output=n)).any()]
-        why += [measure_table(sens, name, error) for name in known[:1]]  # a life, if the study has one, stands first
-    why.append(looks_table(results))
-    ends = [regime_table(results), validity_table(results), reason_table(results.data)]
-    tables = {"decide": decide, "why": why, "ends": ends, "models": models.get("tables", [])}
+        more += [index_table(sens, error), *part_tables(sens)]
+        index = headline(sens)
+        known = [n for n in map(str, sens["output"].values) if np.isfinite(sens[index].sel(output=n)).any()]
+        more += [measure_table(sens, name, error) for name in known]
+    ends = [validity_table(results), reason_table(results.data)]
+    tables = {"decide": decide, "ends": ends, "models": models.get("tables", []), "more": more}
+    tables["proof"] = [looks_table(results)]
     return {
+        "summary": summary,
         "tables": {key: [t for t in listed if t] for key, listed in tables.items()},
-        "said": {"decide": said, "models": models.get("said", [])},
+        "said": said | {"models": models.get("said", [])},
+        "sure": [s for head, listed in summary if head == "How sure" for s in listed],
     }
 
 
@@ -210,11 +215,12 @@ def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:
     if (folder / "index.json").is_file():
         listed = json.loads((folder / "index.json").read_text(encoding="utf-8"))
     placed: dict[str, list[dict[str, Any]]] = {key: [] for key in PLACES}
-    for item in listed:
-        section = next((key for key, starts in SECTIONS.items() if item["name"].startswith(starts)), "why")
-        drawn = folder / f"{item['name']}.svg"
-        drawn = drawn if drawn.stat().st_size <= MAX_SVG else drawn.with_suffix(".png")
-        placed[section].append(item | {"source": data_uri(drawn)})
+    for section, starts in SECTIONS.items():
+        found = [item for start in starts for item in listed if item["name"].startswith(start)]
+        for item in found if section == "models" else found[:1]:
+            drawn = folder / f"{item['name']}.svg"
+            drawn = drawn if drawn.stat().st_size <= MAX_SVG else drawn.with_suffix(".png")
+            placed[section].append(item | {"source": data_uri(drawn)})
     for number, item in enumerate((item for items in placed.values() for item in items), 1):
         item["number"] = number
     return placed

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from trackroller.parameters import BODIES, FIRST_TO_FAIL
+from trackroller.damage import LIMITS
+from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.numbers import (
     Life,
     capital,
@@ -87,7 +88,7 @@ def best_table(results: Results) -> Table | None:
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
             rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
     several, met = bool(candidates.conditions), candidates.targets_met()
-    for name, words in (("rolls", "Rolls in"), ("valid", "Valid in")) if several else ():
+    for name, words in (("valid", "Valid in"),) if several else ():
         rows.append([words, *(part_of(row[name], row["cases"]) for row in best)])
     if met is not None:
         places = candidates.table.index[: len(best)]
@@ -108,27 +109,46 @@ def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], not
 
 
 def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
-    """Return the rows on the goal of the designs, on the worst condition, and on the body that fails first."""
+    """Return the rows on the goal of the designs, on the worst condition, and on what ends the life there."""
     unit, rising = head_unit(candidates.goal[2]), candidates.rising
 
     def row_of(key: str, head: str, place: str = "") -> list[Any]:
         cells = (Life(row[key], row[f"{key}_beyond"]) if rising else float(row[key]) for row in best)
         return [f"{head}{', ' * bool(place)}{place} [{unit}]", *cells]
 
-    rows, places = [], {"worst": "worst condition", "median": "median", "best": "best condition"}
+    rows = []
     if rising and candidates.drawn:
         rows.append(row_of("b10", "Nine of ten reach"))
         rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
-    places = places if rising else {"worst": "largest", "median": "median"}
+    places = {"worst": "worst condition" if rising else "largest", "median": "median"}
     places = places if candidates.conditions else {"worst": ""}
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
+    rows += _of_verdict(candidates, best) if rising else []
     if candidates.conditions:
         rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
-    if rising and not alone(candidates):
-        known = [body for body in BODIES if any(np.isfinite(row[f"worst_{body}"]) for row in best)]
-        rows += [row_of(f"worst_{body}", f"Life of the {body}", places["worst"]) for body in known]
-        rows.append(["Fails first", *(first_words(row) for row in best)])
     return rows
+
+
+def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
+    """Return the rows on the range of the life and on what ends it, of a study whose verdict is on these designs."""
+    found = candidates.results.verdict
+    if found is None or found.goal != candidates.goal or found.choices != candidates.choices:
+        return []
+    known = {one.number: one for one in (found if found.rest is None else found.rest).candidates}
+    listed = [known.get(int(str(row.name))) for row in best]
+    rows: list[list[Any]] = []
+    if any(one is not None and one.high > one.low * (1 + 1e-6) for one in listed):
+        spans = [f"{rounded(one.low)} to {rounded(one.high)}" if one is not None else "–" for one in listed]
+        rows.append([f"Range by values that nobody has measured [{head_unit(candidates.goal[2])}]", *spans])
+    ends = [f"{ended_by(one.ends)}, {one.body}" if one is not None and one.ends else "–" for one in listed]
+    return [*rows, ["Ends it", *ends]]
+
+
+def ended_by(name: str) -> str:
+    """Return the words of what ends a life: a limit without the remark in brackets, fatigue in short, or a reason."""
+    if name == "fatigue" or name not in LIMITS:
+        return name
+    return LIMITS[name].title.partition(" (")[0]
 
 
 def first_words(row: pd.Series) -> str:

@@ -1,8 +1,7 @@
-"""Sentences on how an output changes with a factor, true within each category."""
+"""How an output changes with a factor, in words."""
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -10,50 +9,37 @@ import numpy as np
 from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, setting, times
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.results import effects
 from trackroller.results.effects import Effect
+from trackroller.results.findings import Finding
 from trackroller.results.results import Results
 from trackroller.study.design.levels import NAMED
 
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
 
 
-def effect_of(results: Results, column: str, words: str, factor: str, rows: np.ndarray) -> Sentence | None:
-    """Say how an output changes with a factor.
+def effect_words(results: Results, finding: Finding) -> Sentence:
+    """Say how an output changes with a factor."""
+    effect, column = finding.values["effect"], finding.values["column"]
+    output = results.quantity(column)[2] if column not in results.table else _words(results, column)
+    values = {**vars(effect), "words": output, "fold": times(effect.ratio), "verb": _change(output, effect.ratio)[0]}
+    values["beyond"] = _beyond(finding)
+    if finding.kind.startswith("pairs"):
+        return say("factors", finding.kind, **{**finding.values, **values, **_of_pairs(results, finding, output)})
+    return say("factors", finding.kind, **{**finding.values, **values, **_of_classes(results, finding, output)})
 
-    Between paired cases if there are any, else between classes.
 
-    Parameters
-    ----------
-    column, words : column of the output and its name in running text
-    factor : name of the factor
-    rows : cases that count, shape (n,) bool
+def _words(results: Results, column: str) -> str:
+    """Name a column of the cases in running text."""
+    lives = {name: words for name, words, _ in (results.life or ("", "", ""), *results.fatigue_lives)}
+    if column in lives:
+        return lives[column]
+    return f"peak stress of the {column.removeprefix('peak_stress_')}"
 
-    Returns
-    -------
-    The sentence, or None where too few cases can be compared.
-    """
-    effect = effects.paired_effect(results, column, factor, rows)
-    paired = effect is not None
-    effect = effect or effects.class_effect(results, column, factor, rows)
-    if effect is None or (not paired and not effects.comparable(results, effect, column, rows)):
-        return None
-    parts = effects.strata(results, column, effect, rows)
-    beyond = int((rows & results.beyond_data(column)).sum())
-    values = {"column": column, "words": words, **vars(effect), "beyond": beyond}
-    values |= {"fold": times(effect.ratio), "verb": _change(words, effect.ratio)[0]}
-    said = (_of_pairs if paired else _of_classes)(results, effect, parts, values, rows)
-    if beyond:
-        own = f"{count(beyond)} of the {count(int(rows.sum()))} lives lie {BEYOND}"
-        said = replace(said, text=f"{said.text.removesuffix('.')}; {own}.")
-    if paired:
-        return said
-    pairs = [pair for pair in results.config.rank_correlations if factor in pair[:2] and pair[2]]
-    tied = [one if other == factor else other for one, other, _ in pairs]
-    if not tied:
-        return said
-    text = f"{said.text} {capital(listing([long_name(n) for n in tied]))} changes with it: the factors are correlated."
-    return replace(said, text=text, values={**said.values, "correlated": tied})
+
+def _beyond(finding: Finding) -> str:
+    """Say how many of the lives lie beyond the S-N data; an empty text if none does."""
+    cases = finding.values["beyond"]
+    return f"{count(cases)} of the {count(finding.values['of'])} lives lie {BEYOND}" if cases else ""
 
 
 def _span(results: Results, effect: Effect) -> str:
@@ -81,21 +67,14 @@ def _within(parts: Strata, words: str) -> list[str]:
     return [f"{times(r)} {_change(words, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
 
 
-def _of_pairs(results: Results, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
-    """State the median change of cases that differ in one factor only."""
-    changed = [long_name(name) for name in effects.also_changed(results, effect.factor, rows)]
-    pairs = f"{count(effect.size)} pairs of valid cases that differ in nothing else"
+def _of_pairs(results: Results, finding: Finding, words: str) -> dict[str, Any]:
+    """Return the words of the median change of cases that differ in one factor only."""
+    values = finding.values
+    changed = [long_name(name) for name in values["changed"]]
+    pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that follows from it" if changed else ""
-    values |= {"span": _span(results, effect), "pairs": pairs}
-    parts = [p for p in parts if p[2].size >= effects.FEWEST_PAIRS]
-    against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
-    same = effect.rising if effect.ratio > 1 else effect.falling
-    if max(effect.ratio, 1 / effect.ratio) <= 1 + effects.UNCHANGED and not against:
-        return say("factors", "pairs_same", **values)
-    if against or same < effects.MOST * effect.size:
-        medians = _within(_most_spread(parts), values["words"]) if against else []
-        return say("factors", "pairs_both", **values, medians=medians)
-    return say("factors", "pairs", **values, same=same)
+    medians = _within(_most_spread(values["parts"]), words) if values["against"] else []
+    return {"span": _span(results, values["effect"]), "pairs": pairs, "medians": medians}
 
 
 def _most_spread(parts: Strata) -> Strata:
@@ -107,17 +86,15 @@ def _most_spread(parts: Strata) -> Strata:
     return [part for part in parts if part[0] == category]
 
 
-def _of_classes(results: Results, effect: Effect, parts: Strata, values: dict[str, Any], rows: np.ndarray) -> Sentence:
-    """State the change of the median between the lowest and the highest third of a factor, with its interval."""
-    own = results.table[effect.factor].to_numpy(dtype=float)[rows]
-    values |= {"low_class": at_most(effect.factor, effect.low, own.min()), "name": long_name(effect.factor)}
-    values |= {"high_class": at_least(effect.factor, effect.high, own.max())}
-    against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
-    opposed = [p for p in parts if p[2].interval[0] > 1 or p[2].interval[1] < 1]
-    if len({e.ratio > 1 for _, _, e in opposed}) == 2:
-        turns = _within(opposed, values["words"])
-        return say("factors", "classes_both", **values, turns=turns)
-    if effect.interval[0] <= 1 <= effect.interval[1] or against:
-        kinds = sorted({long_name(c) for c, _, _ in against})
-        return say("factors", "classes_none", **values, kinds=kinds)
-    return say("factors", "classes", **values)
+def _of_classes(results: Results, finding: Finding, words: str) -> dict[str, Any]:
+    """Return the words of the change of the median between the lowest and the highest third of a factor."""
+    effect, values = finding.values["effect"], finding.values
+    low, high = finding.spans[effect.factor][0], finding.spans[effect.factor][-1]
+    return {
+        "low_class": at_most(effect.factor, effect.low, low),
+        "high_class": at_least(effect.factor, effect.high, high),
+        "name": long_name(effect.factor),
+        "turns": _within(values.get("turns", []), words),
+        "kinds": [long_name(name) for name in values.get("kinds", ())],
+        "correlated": [long_name(name) for name in values["correlated"]],
+    }

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import xarray as xr
 
@@ -11,11 +9,11 @@ from trackroller.report.numbers import capital, count, level_text, percent, plus
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.findings import NEGLIGIBLE, Finding
 from trackroller.results.labels import INDEX_WORDS, RELIABLE, factor_name
-from trackroller.results.ranking import SIGNED, USABLE, Rank, estimate, headline, method_of, order, used_share
+from trackroller.results.ranking import SIGNED, estimate, headline, method_of, order
 
 HALF = "± is half the 95 % interval"
-SMALL = 0.02  # share of variance below which a factor is called negligible
 
 
 def index_text(part: xr.Dataset, name: str) -> str:
@@ -47,129 +45,47 @@ def caveat(sens: xr.Dataset, output: str) -> str:
     return " ".join(said)
 
 
-def tornado(sens: xr.Dataset, output: str) -> Sentence:
-    """Name the factors that decide an output, and say how far the index can be trusted."""
-    said = decides(sens, output)
-    return replace(said, text=f"{said.text} {caveat(sens, output)}".strip()) if said.kind == "index" else said
-
-
-def decides(sens: xr.Dataset, output: str) -> Sentence:
+def index_words(sens: xr.Dataset, finding: Finding) -> Sentence:
     """Name the factors that decide an output, by one index with its interval."""
-    ranks, index, used = order(sens, output), headline(sens), used_share(sens, output)
-    values = {"output": output, "what": of_output(sens, output), "index": index}
-    if not ranks:
-        return say("indices", "no_index", **values, note=sens.sel(output=output)["note"].item())
-    if used < USABLE:
-        return say("indices", "no_index", **values, used=used)
-    sized = index in ("mu_star", "effect")
+    values, output = finding.values, finding.values["output"]
+    ranks, sized, index = values["ranks"], values["sized"], values["index"]
+    together = [ranks[0].name, *(r.name for r in values["ties"])]
+    large = [r for r in ranks[1:] if r not in values["small"] and r not in values["ties"]]
     unit = f" {effect_unit(sens, output)}".replace(" –", "") if sized else ""
-    large = [r for r in ranks[1:] if not _small(r, ranks[0], sized)]
     shares = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in large]
     sizes = [f"{r.name} by {plus_minus(r.value, r.low, r.high)}{unit}" for r in large]
+    words = {"what": of_output(sens, output), "first": ranks[0], "together": together, "unit": unit}
+    words |= {
+        "small": [r.name for r in values["small"]],
+        "words": INDEX_WORDS[index],
+        "further": sizes if sized else shares,
+    }
     return say(
-        "indices",
-        "index",
-        **values,
-        ranks=[(r.factor, r.value, r.low, r.high) for r in ranks],
-        first=ranks[0],
-        further=sizes if sized else shares,
-        small=[r.name for r in ranks[1:] if r not in large],
-        sized=sized,
-        unit=unit,
-        words=INDEX_WORDS[index],
-        negligible=SMALL,
-        used=used,
-        reliable=RELIABLE,
-        correlated=sens["factor_name"].values[sens["correlated"].values == 1].tolist() if "correlated" in sens else [],
+        "indices", "index", **{**values, **words}, negligible=NEGLIGIBLE, reliable=RELIABLE, note=caveat(sens, output)
     )
 
 
-def _small(rank: Rank, first: Rank, sized: bool) -> bool:
-    """Return whether a factor has less than a tenth of the largest effect, or a negligible share of variance."""
-    if sized:
-        return bool(abs(rank.value) < 0.1 * abs(first.value))
-    return bool((rank.high if np.isfinite(rank.high) else rank.value) < SMALL)
+def named_words(sens: xr.Dataset, finding: Finding) -> Sentence:
+    """Say what else an analysis shows of an output: an interaction, or effects that differ from place to place."""
+    return say("indices", finding.kind, **finding.values, what=of_output(sens, finding.values["output"]))
 
 
-def convergence(sens: xr.Dataset, output: str) -> Sentence:
-    """Say how wide the widest interval is, and whether there were samples enough."""
-    ranks, times = order(sens, output), float(sens.sel(output=output).get("take_times", np.nan))
-    if not ranks or not np.isfinite(times):
-        return Sentence("no_index", "There are too few usable samples to judge convergence.", {"output": output})
-    widest = max(ranks, key=lambda r: r.high - r.low)
-    values = {"output": output, "factor": widest.factor, "name": widest.name, "half": (widest.high - widest.low) / 2}
-    values |= {"size": int(sens["sample_size"].values[-1]), "sized": headline(sens) == "mu_star"}
-    return say("indices", "widest", **values, times=times)
-
-
-def morris(sens: xr.Dataset, output: str) -> Sentence:
-    """Say which factors have the same effect everywhere, and whose effect is curved or depends on others."""
-    part, ranks = sens.sel(output=output), order(sens, output)
-    if not ranks:
-        return Sentence("no_index", f"No effect can be given for {of_output(sens, output)}.", {"output": output})
-    sigma = dict(zip(part["factor"].values, part["sigma"].values, strict=True))
-    strong = [r for r in ranks if r.value >= 0.1 * ranks[0].value]
-    bent = [r.name for r in strong if sigma[r.factor] > 0.5 * r.value]
-    straight = [r.name for r in strong if sigma[r.factor] <= 0.5 * r.value]
-    return say("indices", "morris", what=of_output(sens, output), output=output, bent=bent, straight=straight)
-
-
-def interactions(sens: xr.Dataset, output: str) -> Sentence:
-    """Name the strongest interaction of two factors, or say that none is found."""
-    part, what = sens.sel(output=output), of_output(sens, output)
-    name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
-    table = part[name].values if name else np.array([[np.nan]])
-    if not np.isfinite(table).any():
-        return Sentence("no_index", f"No interaction can be given for {what}.", {"output": output})
-    i, j = np.unravel_index(np.nanargmax(np.abs(table)), table.shape)
-    value, low, high = map(float, estimate(part, name)[:, i, j])
-    values = {"output": output, "index": name, "pair": (i, j), "value": value, "low": low, "high": high, "what": what}
-    shared = name != "interaction"
-    if shared and ((np.isfinite(low) and low <= 0) or value < 0.01):
-        return say("indices", "no_interaction", **values)
-    fit, higher = (float(part[n]) if n in part else None for n in ("fit_share", "higher_share"))
-    names = part["factor_name"].values[[i, j]].tolist()
-    return say("indices", "interaction", **values, names=names, share=shared, fit=fit, higher=higher)
-
-
-def part_sentences(sens: xr.Dataset, output: str) -> list[Sentence]:
-    """Return the sentences on the groups and on the levels for one output, as far as the analysis has them."""
-    sentences = (group_indices(sens, output), level_indices(sens, output))
-    return [said for said in sentences if said is not None]
-
-
-def group_indices(sens: xr.Dataset, output: str) -> Sentence | None:
+def group_words(sens: xr.Dataset, finding: Finding) -> Sentence:
     """State the total index of each group of factors, the largest first."""
-    if "group_ST" not in sens:
-        return None
-    part = sens.sel(output=output)
-    part = part.isel(group=np.argsort(-part["group_ST"].values, kind="stable"))
-    if part["group_ST"].isnull().any():
-        return None
-    found = estimate(part, "group_ST").T.tolist()
-    ranks = [(str(group), *one) for group, one in zip(part["group"].values, found, strict=True)]
-    parts = [(str(name), percent(*one)) for name, one in zip(part["group_name"].values, found, strict=True)]
-    values = {"output": output, "what": of_output(sens, output), "words": INDEX_WORDS["ST"], "ranks": ranks}
-    return say("indices", "groups", **values, parts=parts)
+    values = finding.values
+    parts = [(name, percent(*one)) for _, name, *one in values["ranks"]]
+    what = of_output(sens, values["output"])
+    return say("indices", "groups", **values, what=what, words=INDEX_WORDS["ST"], parts=parts)
 
 
-def level_indices(sens: xr.Dataset, output: str) -> Sentence | None:
+def level_words(sens: xr.Dataset, finding: Finding) -> Sentence:
     """Name the factor with the largest first-order index within each level of a category."""
-    if "conditional_S1" not in sens:
-        return None
-    part, parts, lead = sens.sel(output=output), [], {}
-    for level in part["level"].values:
-        value, low, high = estimate(part.sel(level=level), "conditional_S1")
-        if not np.isfinite(value).any():
-            continue
-        best = int(np.nanargmax(value))
-        lead[str(level)] = str(part["factor"].values[best])
-        words = level_text(str(sens["level"].attrs["factor"]), level)
-        parts.append(f"{part['factor_name'].values[best]} {percent(value[best], low[best], high[best])} with {words}")
-    if not parts:
-        return None
-    values = {"output": output, "what": of_output(sens, output), "words": INDEX_WORDS["S1"], "lead": lead}
-    return say("indices", "levels", **values, category=category(sens), parts=parts)
+    values, name = finding.values, str(sens["level"].attrs["factor"])
+    parts = [
+        f"{r.name} {percent(r.value, r.low, r.high)} with {level_text(name, v)}" for v, r in values["lead"].items()
+    ]
+    what = of_output(sens, values["output"])
+    return say("indices", "levels", **values, what=what, words=INDEX_WORDS["S1"], category=category(sens), parts=parts)
 
 
 def category(sens: xr.Dataset) -> str:

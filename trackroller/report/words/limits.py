@@ -10,12 +10,12 @@ from trackroller.report.numbers import capital, count, level_text, long_name, ro
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.results.candidates import Candidates
-from trackroller.results.first_limits import Turn, deciding, first_limit, turn
+from trackroller.results.findings import Finding
+from trackroller.results.first_limits import deciding, first_limit
 from trackroller.results.limit_notes import guessed_values
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
-from trackroller.results.unsure import COEFFICIENT, POSITION, settled, varied
+from trackroller.results.unsure import COEFFICIENT, POSITION
 
 
 def title(name: str) -> str:
@@ -23,18 +23,15 @@ def title(name: str) -> str:
     return LIMITS[name].title.partition(" (")[0]
 
 
-def limit_sentences(results: Results) -> list[Sentence]:
-    """Say how often each limit comes first, and how the order of the designs turns; nothing without limits."""
-    candidates = results.candidates()
-    if candidates is None or candidates.goal != FIRST_LIMIT:
-        return []
-    names = first_limit(results)[results.valid]
-    counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
-    titles = {title(name): cases for name, cases in counts.items()}
-    said = [say("limits", "first_limits", counts=titles, valid=int(results.valid.sum()))] if counts else []
-    order, same = turn(candidates), whichever_first(results)
-    turned = None if order is None else _turned(candidates, order)
-    return [*said, *(sentence for sentence in (turned, same) if sentence is not None)]
+def limit_words(results: Results, finding: Finding) -> Sentence:
+    """Say which limits come first, how they turn the order of the designs, or what the unmeasured values decide."""
+    values = finding.values
+    if finding.kind == "first_limits":
+        counts = {title(name): cases for name, cases in values["counts"].items()}
+        return say("limits", "first_limits", counts=counts, valid=values["of"])
+    if finding.kind == "turned":
+        return say("limits", "turned", **values, name=design_words(results.candidates(), values["design"]))
+    return say("limits", "whichever_first", **values, **_unsure(results, values["factors"]))
 
 
 def guesses(results: Results) -> Sentence | None:
@@ -58,34 +55,13 @@ def worn(results: Results) -> Sentence | None:
     return say("limits", "worn", **values, least=km.min(), most=km.max())
 
 
-def _unsure(candidates: Candidates) -> dict[str, str]:
+def _unsure(results: Results, names: list[str]) -> dict[str, str]:
     """Return words for the values that a study varies within their ranges, and for the ranges."""
-    names = varied(candidates)
     if names == [POSITION]:
         return {"what": "placeholders of materials", "span": "each within its range"}
-    factors = candidates.results.table[COEFFICIENT]
+    factors = results.table[COEFFICIENT]
     span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
     return {"what": "wear coefficients" + " and other placeholders" * (POSITION in names), "span": span}
-
-
-def whichever_first(results: Results) -> Sentence | None:
-    """Say in how many conditions the first limit is the same for all values within their ranges; None without them."""
-    candidates = results.candidates()
-    counts = settled(candidates) if candidates is not None else None
-    if candidates is None or counts is None or not counts[1]:
-        return None
-    return say("limits", "whichever_first", certain=counts[0], of=counts[1], **_unsure(candidates))
-
-
-def _turned(candidates: Candidates, order: Turn) -> Sentence:
-    """Say how many designs change their place, and which one changes most."""
-    before, after = order.before, order.after
-    steps = {i: before.index(i) - after.index(i) for i in after}
-    most = max(steps, key=lambda i: abs(steps[i]))
-    values = {"changed": sum(step != 0 for step in steps.values()), "designs": len(after)}
-    values |= {"before": before.index(most) + 1, "after": after.index(most) + 1}
-    name = design_words(candidates, candidates.table.iloc[after.index(most)])
-    return say("limits", "turned", **values, correlation=order.correlation, name=name)
 
 
 def first_limit_table(results: Results) -> Table | None:

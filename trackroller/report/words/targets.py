@@ -26,6 +26,7 @@ from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.ranking import best_points, estimate, main_lives, method_of
 from trackroller.results.results import Results
 from trackroller.results.targets import most_apart
+from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import in_words
 
 SAME = 1e-6  # probabilities that differ by less are called the same
@@ -113,20 +114,21 @@ MAX_POINTS = 24  # rows of the table of design points
 def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
     """List the probability of each target at each design point (or in all cases), and at each level of a factor.
 
-    Where designs repeat over conditions, a column counts the designs that meet all targets in all their conditions.
+    The rows of a table, or of several contact models, are not told apart by levels. Where designs repeat over
+    conditions, a column counts the designs that meet all targets in all their conditions.
     """
     if "target_probability" not in table:
         return []
     targets = range(table.sizes["target"])
     sure = "share of the cases" if _whole(table) else "95 % interval"
     heads = [f"{capital(target_words(table, t))} ({sure})" for t in targets]
-    said = [target(table, t).text for t in targets]
-    said.append("A case that is not valid, or has no value, misses every target.")
+    said = ["A case that is not valid, or has no value, misses every target."]
     if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
         said.append("Lives hold the material's own scatter.")
-    places = range(table.sizes.get("target_level", 0))
+    apart = not results.config.method.observed and not set(OPTION_FACTORS) & set(results.factors)
+    places = range(table.sizes.get("target_level", 0) if apart else 0)
     levels = [[capital(_level_words(table, i)), *_cells(table, "level", i)] for i in places]
-    title = "Targets by level of a factor"
+    title = "Targets by level of a factor" if levels else "Targets"
     if table["target_probability"].ndim == 1:
         rows = [["All cases", *_cells(table, "target")], *levels]
         if met := _designs_that_meet(table, results):

@@ -17,7 +17,7 @@ from trackroller.report.numbers import (
     setting,
     shortened,
 )
-from trackroller.report.words.designs import alone, condition_words, design_words, unanswered
+from trackroller.report.words.designs import alone, condition_words, design_words, ended_by, unanswered
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.candidates import Candidates
 from trackroller.results.results import Results
@@ -36,13 +36,6 @@ REASONS = {  # of `Cases.reason`, as what the candidate does
     "conformal": "touches the edge of its groove",
     "steep friction": "may not roll steadily",
 }
-
-
-def limit_words(name: str) -> str:
-    """Return the words of a limit without the remark in brackets: 'wear'; those of fatigue in short."""
-    if name == "fatigue" or name not in LIMITS:
-        return name
-    return LIMITS[name].title.partition(" (")[0]
 
 
 def verdict_sentences(results: Results) -> list[Sentence]:
@@ -129,7 +122,7 @@ class _Words:
             who="roller" if alone(self.candidates) else "pair",
             goal=found.goal[1],
             rises=found.goal_rises,
-            limit=limit_words(one.ends),
+            limit=ended_by(one.ends),
             target=self.target(),
             edges=[long_name(name) for name in one.edges] if found.kind == "build" else [],
             many=len(found.best),
@@ -179,7 +172,7 @@ class _Words:
             "name": self.name(one) if len(found.candidates) > 1 else "",
             "target": self.target(),
         }
-        limits = [limit_words(word) for word in fails.reasons if word in LIMITS]
+        limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = self.span(one) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
         return say("verdict", "nearest", **values, many=len(found.candidates), worst=self.where(one))
@@ -191,7 +184,7 @@ class _Words:
         first = found.best[0]
         ranged = any(one.high > one.low for one in found.best)
         values = {"ranged": ranged, "shown": shown, "left": len(found.best) - len(shown)}
-        values |= {"limit": limit_words(first.ends)}
+        values |= {"limit": ended_by(first.ends)}
         return say("verdict", "range", **values, target=self.target(), where=self.where(first), body=first.body)
 
     def turn(self, turn: Turn) -> Sentence | None:
@@ -253,12 +246,12 @@ class _Words:
         names = found.best[0].open_limits if found.best else ()
         if not names:
             return None
-        return say("verdict", "open", limits=[limit_words(name) for name in names])
+        return say("verdict", "open", limits=[ended_by(name) for name in names])
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
-        names = [SHORT.get(name) or limit_words(name) for name in self.found.not_checked]
-        names += [f"{limit_words(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
+        names = [SHORT.get(name) or ended_by(name) for name in self.found.not_checked]
+        names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
         return say("verdict", "not_checked", names=names) if names else None
 
 
@@ -287,7 +280,7 @@ def _reasons(misses: Misses) -> list[str]:
     """Write why conditions are not met, the most frequent reason first; what ends a life too early is no reason."""
     words = [word for word in misses.reasons if word and word not in LIMITS]
     return [
-        f"exceeds the limit of {limit_words(word.removeprefix('limit '))}"
+        f"exceeds the limit of {ended_by(word.removeprefix('limit '))}"
         if word.startswith("limit ")
         else REASONS.get(word, word)
         for word in words

@@ -1,0 +1,549 @@
+"""What a study shows beside its verdict: findings as data, each with the rows that carry it.
+
+A finding is made only if the rows can carry it: no effect between factors that go together, no index over a grid with
+gaps, no "only at" from a sample, no share over several contact models.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.stats import spearmanr
+
+from trackroller.parameters import BODIES, REGIMES
+from trackroller.results import effects
+from trackroller.results.candidates import Candidates, slip_margin
+from trackroller.results.columns import codes
+from trackroller.results.effects import Effect
+from trackroller.results.first_limits import first_limit, turn
+from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.ranking import (
+    SIZED,
+    Rank,
+    decisive,
+    estimate,
+    headline,
+    order,
+    robust_design,
+    used_share,
+)
+from trackroller.results.results import Results
+from trackroller.results.unsure import settled, varied
+from trackroller.study.design.entries import OPTION_FACTORS
+
+MOST = 5  # findings under *Why*
+MOST_EFFECTS = 3  # of them on effects of factors
+FEW = 20  # with fewer events or cases the share of an event at a level is not looked at
+TIED = 0.5  # rank correlation of two factors, from which on the effect of one may be that of the other
+WORTH = 0.05  # of the variance: a smaller interaction changes no decision
+EVEN = 0.1  # difference of the shares of cases that constraints leave, up to which they cut evenly
+ALIKE = 1e-6  # relative difference of two indices that count as equal
+NEGLIGIBLE = 0.02  # share of the variance below which a factor does not matter
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A statement on a study as data.
+
+    Attributes
+    ----------
+    kind : what is stated; `trackroller.report.words.findings` says it in words
+    values : the numbers and names of the statement
+    among : the set of cases that it speaks of: `valid`, `rolling` or `all`
+    rows : the cases of this set that it rests on, shape (n,) bool
+    spans : the levels that these rows have of each factor; the smallest and the largest value where there are many
+    models : contact models of these rows
+    """
+
+    kind: str
+    values: Mapping[str, Any]
+    among: str
+    rows: np.ndarray = field(repr=False)
+    spans: Mapping[str, tuple[Any, ...]]
+    models: tuple[str, ...]
+
+
+def finding(results: Results, kind: str, among: str, rows: np.ndarray, **values: Any) -> Finding:
+    """Return a statement with the levels and the contact models of the rows that it rests on."""
+    spans: dict[str, tuple[Any, ...]] = {}
+    for name in results.factors:
+        own = results.table[name][rows]
+        levels = [v for v in results.levels(name) if (own == v).any()] if own.nunique() <= MOST_LEVELS else []
+        spans[name] = tuple(levels) or (own.min(), own.max())
+    return Finding(kind, values, among, rows, spans, _models(results, rows))
+
+
+def _models(results: Results, rows: np.ndarray) -> tuple[str, ...]:
+    if "contact_model" in results.table:
+        return tuple(results.table["contact_model"][rows].unique())
+    return (str(results.data.attrs.get("contact_model", "")),)
+
+
+def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:
+    """Return those of the rows that the most exact contact model solved, and of other options the first level."""
+    kept = rows.copy()
+    for option in (n for n in results.factors if n in OPTION_FACTORS):
+        kept &= (results.table[option] == results.held_level(option)).to_numpy()
+    return kept
+
+
+def go_together(results: Results, name: str, rows: np.ndarray) -> list[str]:
+    """Return the factors that go with a factor in these rows, so that an effect of one may be that of another.
+
+    Factors go together if the level of one gives that of the other, or by a rank correlation of `TIED`.
+    """
+    table = results.table[rows]
+    own = codes(table, (name,))
+    tied = []
+    for other in (f for f in results.factors if f != name):
+        theirs = codes(table, (other,))
+        levels, others = len(np.unique(own)), len(np.unique(theirs))
+        if min(levels, others) < 2:
+            continue
+        pairs = len(np.unique(own * (int(theirs.max()) + 1) + theirs))
+        one_to_one = pairs == max(levels, others) and max(levels, others) < len(table)
+        same_order = results.numeric(name) and results.numeric(other) and _correlated(table[name], table[other])
+        if one_to_one or same_order:
+            tied.append(other)
+    return tied
+
+
+def _correlated(one: Any, other: Any) -> bool:
+    good = np.isfinite(one.to_numpy(dtype=float)) & np.isfinite(other.to_numpy(dtype=float))
+    if good.sum() < 3 or one[good].nunique() < 2 or other[good].nunique() < 2:
+        return False
+    return bool(abs(spearmanr(one[good], other[good]).statistic) >= TIED)
+
+
+def cut_evenly(results: Results, name: str) -> bool:
+    """Return whether constraints leave the same share of the cases in the lower and the upper half of a factor."""
+    if results.allowed is None:
+        return True
+    own = results.table[name].to_numpy(dtype=float)
+    halves = own <= np.nanmedian(own), own > np.nanmedian(own)
+    shares = [results.allowed[results.inside & half].mean() for half in halves if (results.inside & half).any()]
+    return max(shares, default=1.0) - min(shares, default=1.0) <= EVEN
+
+
+# why one design lasts longer than another
+
+
+def why(results: Results) -> list[Finding]:
+    """Return at most `MOST` findings on what decides the life of a study, or its peak stress.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study.
+
+    Returns
+    -------
+    The most important finding first: which limits end the lives, which factors decide, how the largest effects act, and
+    whether the order of the designs rests on a limit.
+    """
+    shown = shown_output(results)
+    found = [*limits_first(results)]
+    sens = results.analysis
+    if sens is not None and not robust_design(sens):
+        found += _of_analysis(results, sens)
+    strongest = strongest_effects(results, shown[0])[:MOST_EFFECTS] if shown is not None else []
+    for i, one in enumerate(strongest[1:], 1):  # that lives lie beyond the data is said once
+        strongest[i] = replace(one, values={**one.values, "beyond": 0})
+    return [*found, *strongest][:MOST]
+
+
+def shown_output(results: Results) -> tuple[str, str, str] | None:
+    """Return column, words and unit of the life of a study, or of its peak stress where it has no life."""
+    if results.life:
+        return results.life
+    stresses = [(f"peak_stress_{body}", f"peak stress of the {body}", "MPa") for body in BODIES]
+    return next((shown for shown in stresses if results.has(shown[0])), None)
+
+
+def limits_first(results: Results) -> list[Finding]:
+    """Count the limits that end the valid cases first, and say how they turn the order; nothing without limits."""
+    candidates = results.candidates()
+    if candidates is None or candidates.goal != FIRST_LIMIT:
+        return []
+    rows = of_one_model(results, results.valid)
+    names = first_limit(results)[rows]
+    counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
+    if len(counts) < 2:
+        return []
+    found = [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()))]
+    return [*found, *_turned(results, candidates, rows), *_whichever(results, candidates, rows)]
+
+
+def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[Finding]:
+    """Say how many designs change their place from the life by fatigue to the first limit, and which one most."""
+    turned = turn(candidates)
+    if turned is None:
+        return []
+    steps = {i: turned.before.index(i) - turned.after.index(i) for i in turned.after}
+    most = max(steps, key=lambda i: abs(steps[i]))
+    values = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
+    values |= {"before": turned.before.index(most) + 1, "after": turned.after.index(most) + 1}
+    values |= {"correlation": turned.correlation}
+    design = candidates.table.iloc[turned.after.index(most)]
+    return [finding(results, "turned", "valid", rows, **values, design=design)] if values["changed"] else []
+
+
+def _whichever(results: Results, candidates: Candidates, rows: np.ndarray) -> list[Finding]:
+    """Say in how many conditions the same limit comes first for all values that are known within a range only."""
+    counts = settled(candidates)
+    if counts is None or not counts[1]:
+        return []
+    return [
+        finding(results, "whichever_first", "valid", rows, certain=counts[0], of=counts[1], factors=varied(candidates))
+    ]
+
+
+def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
+    """Return the findings of the indices: the factors that decide, by group and by level, and an interaction."""
+    names = [str(n) for n in sens["output"].values]
+    lives = sorted((n for n in names if "life" in n), key=lambda n: ("pair" not in n, "roller" not in n))
+    output = next((n for n in dict.fromkeys([*lives, *names]) if decisive(sens, n)), None)
+    if output is None or not carries_indices(results, sens, output):
+        return []
+    values = {kind: found for kind, of in OF_ANALYSIS.items() if (found := of(sens, output)) is not None}
+    first = values["index"]["ranks"][0].factor
+    if results.config.method.observed and not values["index"]["correlated"]:
+        if go_together(results, first, results.counted):
+            values.pop("index")
+    kinds = [*values]
+    if headline(sens) == "first":  # a design with groups serves these better than single factors
+        kinds.sort(key=lambda kind: kind not in ("groups", "levels"))
+    return [finding(results, kind, "rolling", results.counted, **values[kind]) for kind in kinds]
+
+
+def carries_indices(results: Results, sens: xr.Dataset, output: str) -> bool:
+    """Return whether indices describe the design: solved by one model, and of a grid every combination of levels."""
+    if any(name in OPTION_FACTORS for name in results.factors):
+        return False
+    return not results.grid or used_share(sens, output) > 1 - ALIKE
+
+
+def index_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
+    """Return the factors that decide an output, by one index with its interval; None if no index is known.
+
+    Factors with equal indices stand together.
+    """
+    ranks, index = order(sens, output), headline(sens)
+    if not ranks:
+        return None
+    sized, correlated = index in SIZED, []
+    if "correlated" in sens:
+        correlated = sens["factor_name"].values[sens["correlated"].values == 1].tolist()
+    ties = [r for r in ranks[1:] if abs(r.value - ranks[0].value) <= ALIKE * abs(ranks[0].value)]
+    small = [r for r in ranks[1:] if _small(r, ranks[0], sized)]
+    values = {"output": output, "index": index, "sized": sized, "ranks": ranks, "ties": ties, "small": small}
+    return values | {"correlated": correlated, "used": used_share(sens, output)}
+
+
+def _small(rank: Rank, first: Rank, sized: bool) -> bool:
+    """Return whether a factor has less than a tenth of the largest effect, or a negligible share of variance."""
+    if sized:
+        return bool(abs(rank.value) < 0.1 * abs(first.value))
+    return bool((rank.high if np.isfinite(rank.high) else rank.value) < NEGLIGIBLE)
+
+
+def group_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
+    """Return the total index of each group of factors, the largest first."""
+    if "group_ST" not in sens:
+        return None
+    part = sens.sel(output=output)
+    part = part.isel(group=np.argsort(-part["group_ST"].values, kind="stable"))
+    if part["group_ST"].isnull().any():
+        return None
+    names = zip(map(str, part["group"].values), map(str, part["group_name"].values), strict=True)
+    ranks = [Rank(*name, *one) for name, one in zip(names, estimate(part, "group_ST").T.tolist(), strict=True)]
+    return {"output": output, "ranks": ranks}
+
+
+def level_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
+    """Return the factor with the largest first-order index within each level of a category."""
+    if "conditional_S1" not in sens:
+        return None
+    part, lead = sens.sel(output=output), {}
+    for level in part["level"].values:
+        value, low, high = estimate(part.sel(level=level), "conditional_S1")
+        if np.isfinite(value).any():
+            best = int(np.nanargmax(value))
+            names = str(part["factor"].values[best]), str(part["factor_name"].values[best])
+            lead[str(level)] = Rank(*names, value[best], low[best], high[best])
+    return {"output": output, "lead": lead} if lead else None
+
+
+def interaction_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
+    """Return the strongest interaction of two factors; None if it is below `WORTH`, or may be chance."""
+    part = sens.sel(output=output)
+    name = next((n for n in ("S2", "interaction_share", "interaction") if n in part), "")
+    table = part[name].values if name else np.array([[np.nan]])
+    if not np.isfinite(table).any():
+        return None
+    i, j = np.unravel_index(np.nanargmax(np.abs(table)), table.shape)
+    value, low, high = map(float, estimate(part, name)[:, i, j])
+    shared, ranks = name != "interaction", order(sens, output)
+    chance = np.isfinite(low) and low <= 0
+    if (chance or value < WORTH) if shared else (not ranks or abs(value) < 0.1 * abs(ranks[0].value)):
+        return None
+    fit, higher = (float(part[n]) if n in part else None for n in ("fit_share", "higher_share"))
+    names = part["factor_name"].values[[i, j]].tolist()
+    values = {"output": output, "index": name, "pair": (i, j), "names": names, "share": shared}
+    return values | {"value": value, "low": low, "high": high, "fit": fit, "higher": higher}
+
+
+def screening_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
+    """Return the factors whose elementary effects differ from place to place, and those with the same everywhere."""
+    part, ranks = sens.sel(output=output), order(sens, output)
+    if "sigma" not in part or not ranks:
+        return None
+    sigma = dict(zip(part["factor"].values, part["sigma"].values, strict=True))
+    strong = [r for r in ranks if r.value >= 0.1 * ranks[0].value]
+    bent = [r.name for r in strong if sigma[r.factor] > 0.5 * r.value]
+    return {"output": output, "bent": bent, "straight": [r.name for r in strong if r.name not in bent]}
+
+
+OF_ANALYSIS = {  # the statements on an output of an analysis, in their order
+    "index": index_values,
+    "groups": group_values,
+    "levels": level_values,
+    "interaction": interaction_values,
+    "morris": screening_values,
+}
+
+
+def strongest_effects(results: Results, column: str) -> list[Finding]:
+    """Return the effects of the factors on an output, those in one direction first, then by their size."""
+    found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
+    clear = [one for one in found if one.kind in ("pairs", "classes")]
+    turning = [one for one in found if one.kind in ("pairs_both", "classes_both")]
+    return [
+        *sorted(clear, key=lambda one: -abs(np.log(one.values["effect"].ratio))),
+        *sorted(turning, key=lambda one: -abs(np.log(one.values["effect"].ratio))),
+    ]
+
+
+def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | None = None) -> Finding | None:
+    """Say how an output changes with a factor.
+
+    Cases that differ in nothing else are compared where there are enough of them, otherwise the lowest with the highest
+    third of the cases along the factor.
+
+    Parameters
+    ----------
+    column : column of the output
+    factor : name of the factor
+    rows : cases that count, shape (n,) bool; default: the valid ones
+
+    Returns
+    -------
+    Finding or None
+        None where too few cases can be compared, the factor goes with another one, or constraints cut unevenly.
+    """
+    rows = of_one_model(results, results.valid if rows is None else rows)
+    if factor in OPTION_FACTORS or not rows.any():
+        return None
+    effect = effects.paired_effect(results, column, factor, rows)
+    if effect is not None:
+        return _of_pairs(results, column, effect, rows)
+    effect = effects.class_effect(results, column, factor, rows)
+    if effect is None or not effects.comparable(results, effect, column, rows) or not cut_evenly(results, factor):
+        return None
+    asked = [
+        one if other == factor else other
+        for one, other, r in results.config.rank_correlations
+        if factor in (one, other) and r
+    ]
+    if set(go_together(results, factor, rows)) - set(asked):
+        return None
+    return _of_classes(results, column, effect, rows, asked)
+
+
+def _values(results: Results, column: str, effect: Effect, rows: np.ndarray) -> dict[str, Any]:
+    parts = effects.strata(results, column, effect, rows)
+    beyond = int((rows & results.beyond_data(column)).sum())
+    return {"column": column, "effect": effect, "parts": parts, "beyond": beyond, "of": int(rows.sum())}
+
+
+def _of_pairs(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Finding:
+    """Return the median change of cases that differ in one factor only."""
+    values = _values(results, column, effect, rows)
+    parts = [p for p in values["parts"] if p[2].size >= effects.FEWEST_PAIRS]
+    against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
+    values |= {"parts": parts, "same": effect.rising if effect.ratio > 1 else effect.falling}
+    values |= {"against": bool(against), "changed": effects.also_changed(results, effect.factor, rows)}
+    if max(effect.ratio, 1 / effect.ratio) <= 1 + effects.UNCHANGED and not against:
+        kind = "pairs_same"
+    else:
+        kind = "pairs_both" if against or values["same"] < effects.MOST * effect.size else "pairs"
+    return finding(results, kind, "valid", rows, **values)
+
+
+def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray, asked: list[str]) -> Finding:
+    """Return the change of the median between the lowest and the highest third of a factor, with its interval."""
+    values = _values(results, column, effect, rows) | {"correlated": asked}
+    against = [p for p in values["parts"] if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
+    opposed = [p for p in values["parts"] if p[2].interval[0] > 1 or p[2].interval[1] < 1]
+    if len({e.ratio > 1 for _, _, e in opposed}) == 2:
+        return finding(results, "classes_both", "valid", rows, **values, turns=opposed)
+    none = effect.interval[0] <= 1 <= effect.interval[1] or bool(against)
+    kinds = sorted({category for category, _, _ in against})
+    return finding(results, "classes_none" if none else "classes", "valid", rows, **values, kinds=kinds)
+
+
+# where rolling and the model end
+
+
+def ends(results: Results) -> list[Finding]:
+    """Return a finding for each regime other than rolling that occurs: how often, and at which levels."""
+    found = [slip_law(results) or regime_of(results, REGIMES.index("full_slip"))]
+    found += [regime_of(results, REGIMES.index(name)) for name in ("lift_off", "failed")]
+    return [one for one in found if one is not None]
+
+
+def regime_of(results: Results, code: int) -> Finding | None:
+    """Say how often a regime occurs and at which levels of the factors; None if it never does."""
+    return occurrence(results, results.regime == code, REGIMES[code])
+
+
+def slip_law(results: Results) -> Finding | None:
+    """Say that full slip occurs where the drive exceeds the friction; None unless this holds in all rows."""
+    hit, margin = results.regime == REGIMES.index("full_slip"), slip_margin(results)
+    margin = np.where(results.column("motor_force", results.config.base.get("motor_force", np.nan)) == 0, 1.0, margin)
+    rounding = 1e-9
+    if (
+        not hit.any()
+        or np.isnan(margin).any()
+        or (hit & (margin > rounding)).any()
+        or (~hit & (margin < -rounding)).any()
+    ):
+        return None
+    every = np.ones(len(hit), dtype=bool)
+    return finding(results, "slip_law", "all", every, what="full_slip", count=int(hit.sum()), of=len(hit))
+
+
+def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Finding | None:
+    """Say how often an event occurs and at which levels of the factors.
+
+    That it occurs only at some levels is said of a grid, in which every combination was tried, and of a sample if one
+    factor decides all of its cases.
+
+    Parameters
+    ----------
+    hit : whether the event occurs, shape (n,) bool
+    what : name of the event
+    among : the cases that are looked at, shape (n,) bool; all if not given
+
+    Returns
+    -------
+    Finding or None
+        None if the event never occurs.
+    """
+    every = np.ones(len(hit), dtype=bool) if among is None else among
+    looked = of_one_model(results, every)
+    hit, whole, cases = hit & looked, int(looked.sum()), int((hit & looked).sum())
+    if not cases:
+        return None
+    values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
+    place = "all" if among is None else "rolling"
+    if cases == whole:
+        return finding(results, "everywhere", place, looked, **values)
+    only = confining(results, hit, looked)
+    if not results.grid:  # a sample carries no more than a law: one factor decides each of its cases
+        only = [pair for pair in only if cases >= FEW and (meets(results, *pair) & looked == hit).all()][:1]
+    inside = looked.copy()
+    for name, levels in only:
+        inside &= meets(results, name, levels)
+    met = int(inside.sum())
+    # few events may share levels by chance, unless all cases at these levels have the event
+    common = met == cases and all(isinstance(levels, list) for _, levels in only)
+    if only and (cases >= FEW or common):
+        return finding(results, "only", place, looked, **values, conditions=only, inside=met)
+    if cases < FEW:
+        return finding(results, "cases", place, looked, **values, cases=np.flatnonzero(hit).tolist())
+    most = most_frequent(results, hit, looked)
+    if most is None:
+        return finding(results, "share", place, looked, **values)
+    return finding(
+        results, "frequent", place, looked, **values, **dict(zip(("factor", "most", "least"), most, strict=True))
+    )
+
+
+def meets(results: Results, name: str, levels: Any) -> np.ndarray:
+    """Mark the cases at one of the levels (a list), or within the bounds (a pair), shape (n,) bool."""
+    column = results.table[name]
+    if isinstance(levels, tuple):
+        return column.between(*levels).to_numpy(bool)
+    return column.isin(levels).to_numpy(bool)
+
+
+def confining(results: Results, hit: np.ndarray, among: np.ndarray) -> list[tuple[str, Any]]:
+    """Return at most three factors whose levels confine an event, sorted by the cases that they leave out."""
+    by_loss = []
+    for name in (f for f in results.factors if f not in OPTION_FACTORS):
+        own = results.table[name].to_numpy()
+        if results.ordered(name) and len(results.levels(name)) > MOST_LEVELS:
+            low, high = float(own[hit].min()), float(own[hit].max())
+            levels: Any = (_outwards(low, -1), _outwards(high, 1))
+        else:
+            there = set(own[hit].tolist())
+            levels = [v for v in results.levels(name) if v in there]
+        outside = among & ~meets(results, name, levels)
+        if outside.sum() >= 0.1 * among.sum():
+            by_loss.append((int(outside.sum()), name, levels))
+    return [(name, levels) for _, name, levels in sorted(by_loss, key=lambda item: -item[0])[:3]]
+
+
+def _outwards(value: float, way: int) -> float:
+    """Round to three figures so that the value stays inside the bound."""
+    if value == 0:
+        return 0.0
+    step = 10.0 ** (np.floor(np.log10(abs(value))) - 2)
+    turned = (np.floor if way < 0 else np.ceil)(value / step + way * 1e-9) * step
+    return float(f"{turned:.3g}")
+
+
+def most_frequent(
+    results: Results, hit: np.ndarray, among: np.ndarray
+) -> tuple[str, tuple[Any, int, int], tuple[Any, int, int]] | None:
+    """Return the factor whose levels differ most in the share of hits, and the levels of its largest and least share.
+
+    Each level comes with its number of hits and its number of rows among `among`. The order of the two levels must be
+    the same within every category, and no other factor may go with it.
+    """
+    best = None
+    for name in (f for f in results.factors if f not in OPTION_FACTORS):
+        levels = results.levels(name)
+        if len(levels) > MOST_LEVELS:
+            continue
+        own = results.table[name].to_numpy()
+        cells = [(v, int((hit & (own == v)).sum()), int((among & (own == v)).sum())) for v in levels]
+        cells = [cell for cell in cells if cell[2] >= FEW]
+        if len(cells) < 2:
+            continue
+        high, low = max(cells, key=lambda c: c[1] / c[2]), min(cells, key=lambda c: c[1] / c[2])
+        gap = high[1] / high[2] - low[1] / low[2]
+        noise = 3 * np.sqrt(sum(k * (n - k) / n**3 for _, k, n in (high, low)))
+        larger = gap > max(noise, 0.1) and (best is None or gap > best[0])
+        if larger and _shared(results, name, hit, among, (high, low)) and not go_together(results, name, among):
+            best = gap, name, high, low
+    return None if best is None else best[1:]
+
+
+def _shared(results: Results, name: str, hit: np.ndarray, among: np.ndarray, two: tuple[Any, ...]) -> bool:
+    """Return whether the order of two levels is the same within every category (otherwise: Simpson's paradox)."""
+    own = results.table[name].to_numpy()
+    for category in (c for c in results.categories if c != name):
+        values = results.table[category].to_numpy()
+        for level in results.levels(category):
+            inside = among & (values == level)
+            cells = [inside & (own == end[0]) for end in two]
+            if all(c.any() for c in cells) and hit[cells[0]].mean() < hit[cells[1]].mean():
+                return False
+    return True
