@@ -218,13 +218,13 @@ class Audit:
         for name, count, *_ in tables["regimes"].rows:
             code = ("rolling", "full slip", "lift-off", "failed").index(name)
             assert count == (frame["regime"] == code).sum()
-        if "best_designs" not in tables:
+        if "candidates" not in tables:
             return
         rows_of_words, listed = dict(self.designs()), self.solved.best(5)
         kept = [row for _, row in listed.iterrows() if row["valid"]]
         names = [self.in_words({name: row[name] for name in self.choices}) for row in kept]
         ranked = [rows_of_words[", ".join(level(*pair) for pair in own)] for own in names]
-        for row in tables["best_designs"].rows:
+        for row in tables["candidates"].rows:
             if row[0] == "Valid in":
                 assert list(row[1:]) == [f"{rows['valid'].sum()} of {len(rows)}" for rows in ranked]
             if row[0].startswith(f"Life of the {self.life}") and ", worst condition" in row[0]:

@@ -81,8 +81,8 @@ def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
         "Roller profile radius",
         "full slip",
         "lift-off",
-        "Best 1",
-        "Best 5",
+        "Candidate 1",
+        "Candidate 5",
         "of 540 cases roll",
         '<p class="lead"><strong>',
         "Papers behind the methods",
@@ -97,7 +97,7 @@ def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
     heads = [text.index(f">{head}</h2>") for head in parts]
     assert heads == sorted(heads) and 0 < text[heads[2] : heads[3]].count("<li>") <= 5
     assert text.index("<details") < heads[-1] and "<h3>What decides each output" not in text
-    assert (report.parent / "tables" / "best_designs.csv").is_file()
+    assert (report.parent / "tables" / "candidates.csv").is_file()
 
 
 def test_it_is_one_file_without_network(report):
@@ -158,7 +158,7 @@ def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_lif
 def test_a_loads_only_study_and_a_missing_figure_folder_still_give_a_report(tmp_path):
     ds = grid_study({"axial_force": [0.0, 130.0], "radial_force": [-200.0, -100.0]}, only=("normal_force",))
     text = write_report(results_of(ds), tmp_path / "none", tmp_path / "deep" / "report.html").read_text()
-    assert "<figure" not in text and "Best 1" not in text and "lift-off" in text
+    assert "<figure" not in text and "Candidate 1" not in text and "lift-off" in text
 
 
 def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
@@ -170,7 +170,7 @@ def test_a_study_in_which_everything_failed_shows_the_reasons(tmp_path):
     ds["reason"] = xr.full_like(ds["regime"], "no convergence <x>", dtype=object)
     ds.to_netcdf(tmp_path / "study.nc")
     text = write_report(results_of(tmp_path / "study.nc"), tmp_path, tmp_path / "report.html").read_text()
-    assert "no convergence &lt;x&gt;" in text and "Best 1" not in text
+    assert "no convergence &lt;x&gt;" in text and "Candidate 1" not in text
 
 
 def test_a_sample_says_how_its_factors_were_drawn(tmp_path):

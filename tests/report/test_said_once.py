@@ -160,9 +160,9 @@ def test_a_sample_without_designs_says_so_and_nothing_contradicts_it(name):
     best = {s.kind: s.text for s in dict(found["summary"])["Verdict"]}
     assert "cannot say which design is best" in best["unanswered"] and "`design: inner_outer`" in best["unanswered"]
     assert not {"build", "a_or_b", "next"} & set(best)
-    assert not re.search(r"\bBuild |Best [1-9]|designs tie|best design", " ".join(text for _, text in prose))
+    assert not re.search(r"\bBuild |Candidate [1-9]|designs tie|best design", " ".join(text for _, text in prose))
     names = {t.name: t for t in found["tables"]["decide"]}
-    assert "best_designs" not in names
+    assert "candidates" not in names
     if "pareto" in names:
         assert names["pareto"].title == "Pareto-optimal cases"
         assert any("Each case is one design at one condition" in text for _, text in prose)

@@ -198,7 +198,7 @@ def test_tables_are_exported_as_csv_and_one_workbook_with_units_in_the_head(tmp_
     assert paths[-1].name == "tables.xlsx" and len(paths) == len(tables) + 1
     with paths[0].open(encoding="utf-8") as file:
         rows = list(csv.reader(file))
-    assert rows[0][1] == "Best 1" and any(row[0] == "Life of the roller, worst condition [h]" for row in rows)
+    assert rows[0][1] == "Candidate 1" and any(row[0] == "Life of the roller, worst condition [h]" for row in rows)
     sheet = openpyxl.load_workbook(paths[-1]).worksheets[0]
     numbers = [value for row in sheet.values for value in row if isinstance(value, float)]
     life = next(row for row in tables[0].rows if row[0] == "Life of the roller, worst condition [h]")

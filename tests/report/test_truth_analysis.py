@@ -96,7 +96,7 @@ def check_samples(sens, said):
     widest = np.nanmax(half[times == more])
     told = [float(t) / 100 for t in re.findall(r"± ([\d.]+) %", said.text)]
     assert told[0] == pytest.approx(widest, rel=0.06)
-    assert said.text.startswith("Yes" if more <= 1 else "No")
+    assert said.text.startswith("Enough" if more <= 1 else "Not enough")
     if more > 1:
         asked = sens.attrs.get("samples", 500)
         assert f"`samples: {int(asked * more)}`" in said.text

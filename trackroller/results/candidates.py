@@ -289,7 +289,12 @@ def _in_order(table: pd.DataFrame, found: Any) -> pd.DataFrame:
     beside = [one.holds if one.low in (0.0, np.inf) else 0.0 for one in listed]
     alike = [(one.status, one.low, one.met, more) for one, more in zip(listed, beside, strict=True)]
     rank = [1 + next(i for i, other in enumerate(alike) if other == own) for own in alike]
-    return table.loc[[one.number for one in listed]].assign(rank=rank)
+    table = table.loc[[one.number for one in listed]].assign(rank=rank)
+    if found.sampled and "b10" in table:  # conditions that no candidate meets do not count, here as there
+        ends = np.array([[one.low, *one.interval] for one in listed])
+        table = table.assign(b10=ends[:, 0], b10_low=ends[:, 1], b10_high=ends[:, 2])
+        table["b10_beyond"] = [one.beyond for one in listed]
+    return table
 
 
 def hardest_first(candidates: Candidates) -> np.ndarray:

@@ -13,7 +13,7 @@ from trackroller.results.columns import codes
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.results import Results
 
-FEWEST_PAIRS = 5  # fewer pairs of designs state no effect
+FEWEST_PAIRS = 3  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
 FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
 COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
@@ -88,7 +88,7 @@ def paired_effect(results: Results, column: str, factor: str, rows: np.ndarray) 
     value only the direction counts.
     """
     matrix, levels = pair_matrix(results, column, factor, rows)
-    if 2 * len(matrix) < FEWEST_PAIRS or len(matrix) < 0.2 * rows.sum() / max(len(levels), 1):
+    if len(matrix) < FEWEST_PAIRS or len(matrix) < 0.2 * rows.sum() / max(len(levels), 1):
         return None
     compared = []
     for j in range(len(levels)):

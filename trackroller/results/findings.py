@@ -43,6 +43,7 @@ TIED = 0.5  # rank correlation of two factors, from which on the effect of one m
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 EVEN = 0.1  # difference of the shares of cases that constraints leave, up to which they cut evenly
 ALIKE = 1e-6  # relative difference of two indices that count as equal
+ROUNDING = 1e-9  # of the margin to slip
 NEGLIGIBLE = 0.02  # share of the variance below which a factor does not matter
 
 
@@ -186,7 +187,7 @@ def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[
         return []
     steps = {i: turned.before.index(i) - turned.after.index(i) for i in turned.after}
     most = max(steps, key=lambda i: abs(steps[i]))
-    values = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
+    values: dict[str, Any] = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
     values |= {"before": turned.before.index(most) + 1, "after": turned.after.index(most) + 1}
     values |= {"correlation": turned.correlation}
     design = candidates.table.iloc[turned.after.index(most)]
@@ -215,6 +216,8 @@ def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
     if results.config.method.observed and not values["index"]["correlated"]:
         if go_together(results, first, results.counted):
             values.pop("index")
+    if "index" in values:
+        values["index"]["outside"] = int((results.counted & ~results.valid).sum())
     kinds = [*values]
     if headline(sens) == "first":  # a design with groups serves these better than single factors
         kinds.sort(key=lambda kind: kind not in ("groups", "levels"))
@@ -242,7 +245,7 @@ def index_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
     ties = [r for r in ranks[1:] if abs(r.value - ranks[0].value) <= ALIKE * abs(ranks[0].value)]
     small = [r for r in ranks[1:] if _small(r, ranks[0], sized)]
     values = {"output": output, "index": index, "sized": sized, "ranks": ranks, "ties": ties, "small": small}
-    return values | {"correlated": correlated, "used": used_share(sens, output)}
+    return values | {"correlated": correlated, "used": used_share(sens, output), "outside": 0}
 
 
 def _small(rank: Rank, first: Rank, sized: bool) -> bool:
@@ -413,19 +416,20 @@ def regime_of(results: Results, code: int) -> Finding | None:
 
 
 def slip_law(results: Results) -> Finding | None:
-    """Say that full slip occurs where the drive exceeds the friction; None unless this holds in all rows."""
-    hit, margin = results.regime == REGIMES.index("full_slip"), slip_margin(results)
+    """Say that full slip occurs where the drive exceeds the friction; None unless this holds in all rows.
+
+    A roller that lifts off does not slip.
+    """
+    hit, lifted = (results.regime == REGIMES.index(name) for name in ("full_slip", "lift_off"))
+    margin = slip_margin(results)
     margin = np.where(results.column("motor_force", results.config.base.get("motor_force", np.nan)) == 0, 1.0, margin)
-    rounding = 1e-9
-    if (
-        not hit.any()
-        or np.isnan(margin).any()
-        or (hit & (margin > rounding)).any()
-        or (~hit & (margin < -rounding)).any()
-    ):
+    if not hit.any() or np.isnan(margin).any() or (hit & (margin > ROUNDING)).any():
         return None
-    every = np.ones(len(hit), dtype=bool)
-    return finding(results, "slip_law", "all", every, what="full_slip", count=int(hit.sum()), of=len(hit))
+    over = margin < -ROUNDING
+    if (over & ~hit & ~lifted).any():
+        return None
+    every, lost = np.ones(len(hit), dtype=bool), int((over & lifted).sum())
+    return finding(results, "slip_law", "all", every, what="full_slip", count=int(hit.sum()), of=len(hit), lifted=lost)
 
 
 def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Finding | None:
@@ -490,7 +494,7 @@ def confining(results: Results, hit: np.ndarray, among: np.ndarray) -> list[tupl
         own = results.table[name].to_numpy()
         if results.ordered(name) and len(results.levels(name)) > MOST_LEVELS:
             low, high = float(own[hit].min()), float(own[hit].max())
-            levels: Any = (_outwards(low, -1), _outwards(high, 1))
+            levels: Any = (low, high) if results.grid else (_outwards(low, -1), _outwards(high, 1))
         else:
             there = set(own[hit].tolist())
             levels = [v for v in results.levels(name) if v in there]

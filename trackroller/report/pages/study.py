@@ -45,7 +45,7 @@ OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.
 SECTIONS = {  # the figures of each section by the beginning of their names; the others stand in the folder alone
     "verdict": ("designs",),
     "decide": ("pareto-front",),
-    "why": ("morris-", "tornado-", "bands-"),  # the first of them that is drawn
+    "why": ("morris-", "bands-", "tornado-"),  # the first of them that is drawn
     "ends": ("regime_map",),
     "models": ("models-",),
 }
@@ -138,7 +138,7 @@ def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     if sens is not None:
         decide += target_tables(sens, results)
     if sens is not None and robust_design(sens):
-        decide += robust_tables(sens, error)
+        more += robust_tables(sens, error)
     elif sens is not None:
         more += [index_table(sens, error), *part_tables(sens)]
         index = headline(sens)

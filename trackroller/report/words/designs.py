@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,14 +12,17 @@ import pandas as pd
 from trackroller.damage import LIMITS
 from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.numbers import (
+    BEYOND,
     Life,
     capital,
     count,
     head_unit,
+    lasting,
     long_name,
     part_of,
     percent,
     plain,
+    quantity,
     rounded,
     setting,
 )
@@ -27,9 +31,11 @@ from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, Candidates, factor_roles
 from trackroller.results.results import Results
 from trackroller.results.unsure import UNSURE
+from trackroller.results.verdict import Candidate
 
 MOST_TIES = 3  # designs with equal lives that are named
 BEST = 5  # designs that stand side by side
+SAME = 1e-6  # relative difference of the two ends of a life below which it is one number
 
 
 def design_words(candidates: Candidates, row: Mapping[Any, Any] | pd.Series) -> str:
@@ -94,12 +100,12 @@ def best_table(results: Results) -> Table | None:
         places = candidates.table.index[: len(best)]
         rows.append(["Meets the targets in", *(part_of(met[i], candidates.size[i]) for i in places)])
     ranks = [int(row["rank"]) for row in best]
-    heads = [f"Best {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
-    title = "Best valid designs" if candidates.choices else "Life of the design"
+    heads = [f"Candidate {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
+    title = "Candidates" if candidates.choices else "Life of the design"
     model = results.held_level("contact_model") if "contact_model" in results.factors else ""
     facts = {"several": several, "drawn": candidates.drawn, "rising": candidates.rising, "goal": candidates.goal[1]}
     note = phrase("designs", "note", model=model, **facts)
-    return compared("best_designs", title, heads if candidates.choices else ["All conditions"], rows, note)
+    return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
 
 
 def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], note: str) -> Table:
@@ -122,26 +128,42 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
         rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
     places = {"worst": "worst condition" if rising else "largest", "median": "median"}
     places = places if candidates.conditions else {"worst": ""}
+    spans = _spans(candidates, best) if rising else []
+    if spans:  # the ends of the range say more than a value within it
+        rows.append([f"{capital(candidates.goal[1])}, worst condition", *spans])
+        places.pop("worst")
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
-    rows += _of_verdict(candidates, best) if rising else []
+    if rising and (known := _of_verdict(candidates, best)):
+        rows.append(["Ends it", *(f"{ended_by(one.ends)}, {one.body}" if one and one.ends else "–" for one in known)])
     if candidates.conditions:
         rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
     return rows
 
 
-def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
-    """Return the rows on the range of the life and on what ends it, of a study whose verdict is on these designs."""
+def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate | None]:
+    """Return these designs as the verdict judges them; nothing if the verdict is on other designs."""
     found = candidates.results.verdict
     if found is None or found.goal != candidates.goal or found.choices != candidates.choices:
         return []
     known = {one.number: one for one in (found if found.rest is None else found.rest).candidates}
-    listed = [known.get(int(str(row.name))) for row in best]
-    rows: list[list[Any]] = []
-    if any(one is not None and one.high > one.low * (1 + 1e-6) for one in listed):
-        spans = [f"{rounded(one.low)} to {rounded(one.high)}" if one is not None else "–" for one in listed]
-        rows.append([f"Range by values that nobody has measured [{head_unit(candidates.goal[2])}]", *spans])
-    ends = [f"{ended_by(one.ends)}, {one.body}" if one is not None and one.ends else "–" for one in listed]
-    return [*rows, ["Ends it", *ends]]
+    return [known.get(int(str(row.name))) for row in best]
+
+
+def _spans(candidates: Candidates, best: list[pd.Series]) -> list[str]:
+    """Write both ends of the life of each design at its worst condition; nothing where none rests on a placeholder."""
+    known = _of_verdict(candidates, best)
+    if candidates.drawn or not any(one is not None and one.high > one.low * (1 + SAME) for one in known):
+        return []
+    return ["–" if one is None else span_words(one, candidates.goal[2]) for one in known]
+
+
+def span_words(one: Candidate, unit: str) -> str:
+    """Write both ends of a life by the values that nobody has measured, or the one life where it rests on none."""
+    if math.isinf(one.low) or one.high <= one.low * (1 + SAME):
+        return lasting(one.low, unit, one.beyond)
+    text = f"{rounded(one.low)} to {quantity(one.high, unit)}"
+    text = text if math.isfinite(one.high) else f"at least {quantity(one.low, unit)}"
+    return text + f" ({BEYOND})" * one.beyond
 
 
 def ended_by(name: str) -> str:

@@ -72,7 +72,7 @@ def _of_pairs(results: Results, finding: Finding, words: str) -> dict[str, Any]:
     values = finding.values
     changed = [long_name(name) for name in values["changed"]]
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
-    pairs += f" than the {listing(changed)} that follows from it" if changed else ""
+    pairs += f" than the {listing(changed)} that follow{'s' * (len(changed) == 1)} from it" if changed else ""
     medians = _within(_most_spread(values["parts"]), words) if values["against"] else []
     return {"span": _span(results, values["effect"]), "pairs": pairs, "medians": medians}
 

@@ -13,7 +13,7 @@ from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import target
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.pareto import given_pareto
-from trackroller.results.ranking import robust_design
+from trackroller.results.ranking import main_lives, robust_design
 from trackroller.results.results import Results
 
 Line = tuple[str, list[Sentence]]
@@ -55,7 +55,9 @@ def _enough(results: Results) -> Sentence | None:
     known = grown(results)
     if known is not None or sens is None or results.unfinished:
         return known
-    return samples(sens, results.config.samples)
+    told = [one.values["output"] for one in results.findings["why"] if one.kind == "index"]
+    lives = main_lives(sens) if robust_design(sens) else []
+    return samples(sens, results.config.samples, next(iter([*told, *lives]), ""))
 
 
 def _target(results: Results) -> Sentence | None:

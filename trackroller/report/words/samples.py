@@ -25,13 +25,14 @@ HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval
 FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
-def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
+def samples(sens: xr.Dataset, asked: int, about: str = "") -> Sentence | None:
     """Say whether the samples suffice, and if not, which number to write into the study file.
 
     Parameters
     ----------
     sens : analysis
     asked : `samples` of the study file, for an analysis that does not state its number of samples
+    about : output that counts beside the targets; all of them if not given
 
     Returns
     -------
@@ -44,27 +45,27 @@ def samples(sens: xr.Dataset, asked: int) -> Sentence | None:
     """
     method, asked = METHODS[str(sens.attrs["method"])], int(sens.attrs.get("samples", asked))
     if method.points:
-        return _of_points(sens, asked)
+        return _of_points(sens, asked, about)
     if not method.judged or "take_times" not in sens:
         return None
     needed = {str(o): float(sens["take_times"].sel(output=o)) for o in sens["output"].values if str(o) not in REGIMES}
-    needed = {name: value for name, value in needed.items() if np.isfinite(value)}
+    needed = {name: value for name, value in needed.items() if np.isfinite(value) and about in ("", name)}
     if not needed:
         return None
     worst = max(needed, key=lambda name: (needed[name], float(sens["half_width"].sel(output=name))))
     half, times = float(sens["half_width"].sel(output=worst)), needed[worst]
     number = int(times * asked)
     values = {"point": False, "too_few": False, "output": worst, "what": f"the indices of {of_output(sens, worst)}"}
-    values |= {"apart": bool(set(map(str, sens["output"].values)) & set(REGIMES)), "table": method.observed}
+    values |= {"table": method.observed}
     values |= {"share": "the largest effect" if method.effects else "the variance", "half": half}
     values |= {"take_times": times, "number": number, "predicted": half / math.sqrt(times)}
     return say("samples", "enough" if times <= 1 else "more", **values)
 
 
-def _of_points(sens: xr.Dataset, asked: int) -> Sentence | None:
+def _of_points(sens: xr.Dataset, asked: int, about: str) -> Sentence | None:
     """Judge B10 of each life at its best design point, and the probability of each target at all design points."""
     widths = []
-    for output in (str(n) for n in sens["output"].values if "life" in str(n)):
+    for output in (str(n) for n in sens["output"].values if "life" in str(n) and about in ("", str(n))):
         part = sens.sel(output=output)
         part = part.isel(point=best_points(part)[0])
         if not 0 < float(part["b10"]) < np.inf or not np.isfinite(float(part["b10_high"])):

@@ -7,8 +7,6 @@ import math
 from trackroller.damage import LIMITS
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
-    BEYOND,
-    lasting,
     level_text,
     long_name,
     plain,
@@ -17,7 +15,7 @@ from trackroller.report.numbers import (
     setting,
     shortened,
 )
-from trackroller.report.words.designs import alone, condition_words, design_words, ended_by, unanswered
+from trackroller.report.words.designs import alone, condition_words, design_words, ended_by, span_words, unanswered
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.candidates import Candidates
 from trackroller.results.results import Results
@@ -43,11 +41,12 @@ def verdict_sentences(results: Results) -> list[Sentence]:
 
     Returns
     -------
-    The sentences, the first one in a few words; none for a search and without a result that ranks candidates.
+    The sentences, the first one in a few words; none for a search.
     """
     found = results.verdict
     if found is None:
-        return []
+        searched = results.config.method.proposes or not len(results.table)
+        return [] if searched else [say("verdict", "no_goal", outputs=list(results.config.outputs))]
     words = _Words(results, found)
     said = [words.head(), *words.reasons(), words.aside(), words.open_limits(), words.unchecked()]
     return _fitting([sentence for sentence in said if sentence is not None])
@@ -76,11 +75,7 @@ class _Words:
         unit = self.found.goal[2]
         if not self.found.goal_rises:
             return quantity(one.low, unit)
-        if math.isinf(one.low) or one.high <= one.low * (1 + 1e-6):
-            return lasting(one.low, unit, one.beyond)
-        text = f"{rounded(one.low)} to {quantity(one.high, unit)}"
-        text = text if math.isfinite(one.high) else f"at least {quantity(one.low, unit)}"
-        return text + f" ({BEYOND})" * one.beyond
+        return span_words(one, unit)
 
     def head(self) -> Sentence:
         """Say what to do."""
