@@ -17,7 +17,7 @@ from reference_cases import solve_sliding
 from typer.testing import CliRunner
 
 import trackroller as tr
-from trackroller.cli.case import COMPLETE, SHEET_OUTPUTS, groups_of
+from trackroller.cli.case import COMPLETE, SHEET_OUTPUTS, groups_of, solve_case
 from trackroller.cli.main import app
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
@@ -31,6 +31,7 @@ from trackroller.report.pages.sheet_text import as_json
 from trackroller.report.words.accuracy import flags_of
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.limits import limits
+from trackroller.roller.settings import sheet_of
 
 SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}
 CASES = {
@@ -209,6 +210,45 @@ def test_the_page_stands_alone_and_escapes_names(solved):
     assert html.escape("<b>A & B</b>", quote=False) in page
     assert "default-src 'none'" in page
     assert not re.search(r"(?:src|href)=[\"'](?!data:)", page)
+
+
+def test_the_head_holds_texts_to_sign_and_inputs_the_outer_radius_and_the_duty(tmp_path):
+    """Texts of a case file stand escaped above lines to sign; what is missing stays blank, and --set replaces them."""
+    radii = "outer_radius: 2.6 cm\ngroove_depth: 3\nroller_profile_radius: -6.6\n"
+    options = "contact_model: sliding\naccuracy: preview\n"
+    texts = 'duty: {hours_per_day: 16}\nsheet: {project: "<i>Lift</i> 7", revision: 2, checker: null}\n'
+    (tmp_path / "case.yaml").write_text(radii + options + texts)
+    told = trackroller("solve", "case.yaml", "--report", "sheet.html", cwd=tmp_path).stdout
+    assert "│ 16 h a day, 365 days a year │" in told
+    page = (tmp_path / "sheet.html").read_text(encoding="utf-8")
+    signed = dict(re.findall(r"<span>(\w+)</span><b [^>]*>(.*?)</b>", page))
+    blank = dict.fromkeys(("Part", "Date", "Author", "Checker", "Signature"), "")
+    assert signed == {"Project": "&lt;i&gt;Lift&lt;/i&gt; 7", "Revision": "2", **blank}
+    head = page[: page.index("</header>")]
+    assert "First limit of the pair: rolling-contact fatigue" in head
+    inputs = dict(re.findall(r"<tr><th scope=\"row\">(.*?)</th><td>(.*?)</td>", page))
+    assert inputs["outer radius of the roller"] == "26&nbsp;mm" and inputs["groove depth of the roller"] == "3&nbsp;mm"
+    assert inputs["duty"] == "16 h a day, 365 days a year"
+    again = shlex.split(html.unescape(re.search(r"<code>(trackroller solve.*?)</code>", page)[1]))[1:]
+    assert trackroller(*again, cwd=tmp_path).stdout.splitlines()[0] == told.splitlines()[0]  # in years, too
+    ds = solve_case(tmp_path / "case.yaml", ["sheet={author: Ada}", "axis_distance=29"])
+    assert sheet_of(ds) == {"author": "Ada"} and "outer radius of the roller" not in {
+        r.words for r in collect(ds).inputs
+    }
+
+
+@pytest.mark.parametrize(
+    ("texts", "told"),
+    [
+        ("{projekt: Lift}", "'project'"),
+        ("Lift 7", "sheet = 'Lift 7'.*project, part, revision"),
+        ("{part: [1, 2]}", r"sheet.part = \[1, 2\].*at most 200 signs"),
+        ("{author: true}", "sheet.author = True"),
+    ],
+)
+def test_a_wrong_head_of_a_sheet_is_refused_by_name(texts, told):
+    with pytest.raises(InputError, match=told):
+        solve_case(None, [f"sheet={texts}"])
 
 
 def test_every_regime_has_a_page(solved):

@@ -20,10 +20,9 @@ from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import collect, render
 from trackroller.roller.case import Case
-from trackroller.roller.duty import with_duty
 from trackroller.roller.limits import Limits
 from trackroller.roller.record import given_inputs, solve_command
-from trackroller.roller.settings import checked_case
+from trackroller.roller.settings import checked_case, with_beside
 from trackroller.roller.solver import solve
 from trackroller.study.outputs import every_name, outputs
 from trackroller.yaml_file import parse_yaml, write_yaml
@@ -37,8 +36,8 @@ DERIVED = ("share", "factor", "life", "when")  # properties of a margin that the
 STILL = 0.01  # of the largest local creepage: elements that creep less count as adhering
 
 
-def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
-    """Return case, options and duty of the fields of the page; texts are read as the command line reads `--set`."""
+def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, Any]]:
+    """Return what `checked_case` does for the fields of the page; texts are read as those of `--set`."""
     given = {n: parse_yaml(v, n) if isinstance(v, str) else v for n, v in values.items() if v not in ("", None)}
     return checked_case(given)
 
@@ -46,8 +45,8 @@ def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, float] | None]
 @functools.lru_cache(maxsize=8)
 def _solved(text: str, accuracy: str, groups: tuple[str, ...]) -> xr.Dataset:
     """Return the solution of a case given as JSON; the steps of one picture ask for it several times."""
-    case, options, duty = read(json.loads(text))
-    return with_duty(solve(case, groups, **{"accuracy": accuracy, **options}), duty)
+    case, options, beside = read(json.loads(text))
+    return with_beside(solve(case, groups, **{"accuracy": accuracy, **options}), beside)
 
 
 def picture(values: Values, accuracy: str = "preview", complete: bool = False, inside: bool = False) -> dict[str, Any]:
@@ -187,13 +186,13 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
 
 def texts(values: Values) -> dict[str, str]:
     """Return the case as a case file (YAML), as a command and as lines of Python."""
-    case, options, duty = read(values)
+    case, options, beside = read(values)
     given = given_inputs(case)
     fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())
     more = "".join(f", {name}={value!r}" for name, value in options.items())
     return {
-        "YAML": write_yaml(given | options | ({"duty": duty} if duty else {})),
-        "command": solve_command(given | options),
+        "YAML": write_yaml(given | options | beside),
+        "command": solve_command(given | options | beside),
         "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n",
     }
 

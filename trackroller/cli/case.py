@@ -16,8 +16,7 @@ from trackroller.parameters import REGIMES
 from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
-from trackroller.roller.duty import with_duty
-from trackroller.roller.settings import checked_case
+from trackroller.roller.settings import checked_case, with_beside
 from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping
 
 if TYPE_CHECKING:
@@ -49,8 +48,8 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
     return settings
 
 
-def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
-    """Return the case, the options and the duty of a case file and of --set words."""
+def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, Any]]:
+    """Return the case, the options, duty and sheet of a case file and of --set words; see `checked_case`."""
     if path is not None and "=" in path.name and not path.exists():
         remedy = f"Write --set {path}: each key has a --set of its own."
         raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
@@ -94,11 +93,11 @@ def _served(path: Path | None, settings: list[str] | None) -> tuple[str, ...]:
 
 def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
-    case, options, duty = case_of(path, words)
+    case, options, beside = case_of(path, words)
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return with_duty(solve(case, **(options | more)), duty)
+    return with_beside(solve(case, **(options | more)), beside)
 
 
 def writable(out: Path) -> Path:
@@ -272,7 +271,7 @@ def run_wear(
     """Follow a roller while it wears; `out` receives the states one by one, and a later run goes on from there."""
     target = None if out is None else writable_data(out)
     page = None if report is None else writable_page(report)
-    new, options, duty = case_of(case, settings)
+    new, options, beside = case_of(case, settings)
     tell_doubts(new)
 
     from trackroller.report.numbers import on_duty
@@ -298,7 +297,7 @@ def run_wear(
     dataset = wear(new, to, resume=before, tell=tell, **options)
     if target is not None:
         write_result(dataset, target)
-    with on_duty(duty):
+    with on_duty(beside.get("duty")):
         if page is not None:
             write_wear(dataset, page)
         for sentence in sentences(dataset):

@@ -28,7 +28,7 @@ from trackroller.parameters import (
     PARAMETERS,
 )
 from trackroller.parameters.example import EXAMPLE, Default, DefaultName
-from trackroller.roller.aliases import ALIASES, RADII, renamed, with_axis_distance
+from trackroller.roller.aliases import ALIASES, RADII, radius, renamed, with_axis_distance
 from trackroller.roller.fields import FIELDS, mapping_text, number, own_friction, own_frictions
 from trackroller.roller.geometry import geometry_problem
 from trackroller.roller.table import CaseTable, MaterialArrays
@@ -110,6 +110,8 @@ class Case(_Numbers):
     ----------
     not_given : tuple of str
         Parameters that were not given, whose values are those of the paper's example.
+    radii : dict of str to float
+        Outer radius and groove depth [mm] if they gave the axis distance; a copy with other values has none.
 
     Raises
     ------
@@ -131,6 +133,7 @@ Write a number that is allowed, such as 30.
     """
 
     not_given: ClassVar[tuple[str, ...]] = ()
+    radii: ClassVar[Mapping[str, float]] = {}
 
     def __init__(self, *values: Any, **named: Any) -> None:
         if values and isinstance(values[0], (Mapping, Case)):
@@ -138,6 +141,8 @@ Write a number that is allowed, such as 30.
             raise InputError("case", given, "values by name, such as friction_coefficient=0.2", "Write Case(**values).")
         super().__init__(*values, **_by_field(named))
         self._check()
+        if RADII[0] in named:  # checked with the axis distance, which follows from them
+            object.__setattr__(self, "radii", {name: radius(name, named[name]) for name in RADII})
 
     def _check(self) -> None:
         """Check every field, and keep its value as it is computed with."""

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 CASE, MATERIALS = "case", "materials"  # names of attributes, JSON both
 NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given
 DOUBTS = "doubts"  # attribute: JSON list of sentences on unusual values
+RADII = "radii"  # attribute: JSON of the outer radius and groove depth that gave the axis distance
 
 
 def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Dataset:
@@ -43,7 +44,7 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     Returns
     -------
     xarray.Dataset
-        The same result with four more attributes.
+        The same result with four more attributes, five with an outer radius.
     """
     values = plain_inputs(case)
     if not isinstance(values["friction_coefficient"], float):  # from the friction of the pair
@@ -52,6 +53,7 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
         ds.attrs[FRICTION] = json.dumps([record])
     ds.attrs |= {CASE: json.dumps(values), MATERIALS: json.dumps(material_values(case, database))}
     ds.attrs |= {NOT_GIVEN: json.dumps(case.not_given), DOUBTS: json.dumps(doubts_of_case(case, database))}
+    ds.attrs |= {RADII: json.dumps(case.radii)} if case.radii else {}
     return ds
 
 
@@ -130,6 +132,11 @@ def names_not_given(attrs: Mapping[str, Any]) -> list[str]:
     """Return the parameters that were not given, from the attributes of a solved case or study."""
     names: list[str] = json.loads(str(attrs.get(NOT_GIVEN, "[]")))
     return names
+
+
+def radii_of(ds: xr.Dataset) -> dict[str, float]:
+    """Return outer radius and groove depth [mm] of a solved case; {} if its axis distance was given instead."""
+    return json.loads(ds.attrs.get(RADII, "{}"))
 
 
 def doubts_of(ds: xr.Dataset) -> list[str]:

@@ -1,11 +1,12 @@
-"""Sort the entries of a case file, of the command line and of the live page into case, options and duty."""
+"""Sort the entries of a case file, of the command line and of the live page: case, options, and what goes with them."""
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import Collector, check_names
+from trackroller.errors import Collector, InputError, check_names
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, RADII
@@ -13,14 +14,58 @@ from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.fields import other_than_default
 
+if TYPE_CHECKING:
+    import xarray as xr
 
-def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, float] | None]:
-    """Return the case, the options of `solve` and the duty among the entries of a case file.
+SHEET_FIELDS = ("project", "part", "revision", "date", "author", "checker")  # texts at the head of a sheet
+BESIDE = ("duty", "sheet")  # entries that change no result, and that a result keeps as attributes
+LONGEST = 200  # signs of a text at the head of a sheet
+
+
+def checked_sheet(value: Any) -> dict[str, str]:
+    """Return the texts at the head of a sheet by their names in `SHEET_FIELDS`.
+
+    Raises
+    ------
+    InputError
+        If the value is no mapping, or for an unknown name or a text that is none.
+
+    Examples
+    --------
+    >>> checked_sheet({"project": "Lift 7", "revision": 2})
+    {'project': 'Lift 7', 'revision': '2'}
+    """
+    if not isinstance(value, Mapping):
+        remedy = "Write sheet: {project: Lift 7, part: R-12, author: Ada}."
+        raise InputError("sheet", value, f"texts by name: {', '.join(SHEET_FIELDS)}", remedy)
+    check_names("sheet: key", value, SHEET_FIELDS)
+    given, wrong = {name: text for name, text in value.items() if text is not None}, Collector()
+    for name, text in given.items():
+        with wrong.part():
+            if isinstance(text, bool) or not isinstance(text, (str, int, float)) or len(str(text)) > LONGEST:
+                allowed = f"a text of at most {LONGEST} signs"
+                raise InputError(f"sheet.{name}", text, allowed, "Write a short text, in quotes.")
+    wrong.check()
+    return {name: str(text) for name, text in given.items()}
+
+
+def with_beside(ds: xr.Dataset, beside: Mapping[str, Any]) -> xr.Dataset:
+    """Return the result of one case with its duty and the head of its sheet as attributes; see `checked_case`."""
+    return ds.assign_attrs({name: json.dumps(value) for name, value in beside.items()})
+
+
+def sheet_of(ds: xr.Dataset) -> dict[str, str]:
+    """Return the texts at the head of the sheet of a result; {} if none were given."""
+    return json.loads(ds.attrs.get("sheet", "{}"))
+
+
+def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, Any]]:
+    """Return the case, the options of `solve`, and the entries `BESIDE` of a case file that are given.
 
     Parameters
     ----------
     values : mapping
-        Fields of a case, options and `duty` by name.
+        Fields of a case, options, `duty` and `sheet` by name.
 
     Raises
     ------
@@ -29,17 +74,19 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
 
     Examples
     --------
-    >>> case, options, duty = checked_case({"axial_force": 70, "contact_model": "sliding"})
-    >>> case.axial_force, options, duty
-    (70.0, {'contact_model': 'sliding'}, None)
+    >>> case, options, beside = checked_case({"axial_force": 70, "contact_model": "sliding", "sheet": {"part": 7}})
+    >>> case.axial_force, options, beside
+    (70.0, {'contact_model': 'sliding'}, {'sheet': {'part': '7'}})
     """
     left = dict(values)
-    wrong, duty = Collector(), None
+    wrong, beside = Collector(), {}
     options = {key: left.pop(key) for key in OPTIONS if key in left}
+    for key, checked in zip(BESIDE, (checked_duty, checked_sheet), strict=True):
+        if key in left:
+            with wrong.part():
+                beside[key] = checked(left.pop(key))
     with wrong.part():
-        duty = checked_duty(left.pop("duty")) if "duty" in left else None
-    with wrong.part():
-        check_names("case field", left, (*FIELDS, *ALIASES, *RADII, *OPTIONS, "duty"))
+        check_names("case field", left, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *BESIDE))
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]
@@ -61,4 +108,4 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
 
         given = {name: getattr(case, name) for name in FIELDS if name not in case.not_given}
         check_used(other_than_default(given), options["outputs"], options.get("not_checked", ()))
-    return case, options, duty
+    return case, options, beside

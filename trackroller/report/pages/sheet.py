@@ -45,7 +45,10 @@ from trackroller.report.words.wear import run_in
 from trackroller.results.columns import at_surface
 from trackroller.roller import record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by, validity_bit
+from trackroller.roller.duty import FIELD as DUTY
+from trackroller.roller.duty import duty_of
 from trackroller.roller.limits import Limits, limits
+from trackroller.roller.settings import SHEET_FIELDS, sheet_of
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
 
@@ -93,6 +96,7 @@ def render(ds: xr.Dataset, name: str = "") -> str:
         "facts": facts,
         "aside": _less_stressed(ds),
         "name": name or "Track roller",
+        "signed": [(head.capitalize(), sheet_of(ds).get(head, "")) for head in (*SHEET_FIELDS, "signature")],
         "drawing": drawing(ds) if "normal_force" in ds else "",
         "figures": [drawn[name] for name in SHOWN if name in drawn],
         "worn": run_in(ds),
@@ -150,7 +154,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
     return SimpleNamespace(
         verdict=_verdict(regime, ds, lives, lifeless, own, reason=reason, **summed),
         reason=reason,
-        inputs=input_rows(inputs, given),
+        inputs=[*_size_rows(ds), *input_rows(inputs, given)],
         not_given=not_given_text(given),
         doubts=record.doubts_of(ds),
         materials=body_materials(stored),
@@ -169,6 +173,15 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
         command=command_of(ds),
         versions=versions_text(),
     )
+
+
+def _size_rows(ds: xr.Dataset) -> list[Row]:
+    """Return the outer radius and groove depth of a roller, and its duty, as far as they were given."""
+    rows = [Row(f"{plain(name)} of the roller", number(value), "mm") for name, value in record.radii_of(ds).items()]
+    if duty := duty_of(ds):
+        hours, days = (number(duty[n.name]) for n in DUTY.numbers)
+        rows.append(Row("duty", f"{hours} h a day, {days} days a year"))
+    return rows
 
 
 def _used(ds: xr.Dataset, option: str) -> str:
@@ -196,7 +209,7 @@ def command_of(ds: xr.Dataset, words: tuple[str, ...] = ("solve",)) -> str:
     named = ("contact_model", "spin_model", "accuracy", "normal", "life_rule")
     plain |= {name: ds.attrs.get(name) for name in named}
     plain |= {n: ds.attrs.get(n) for n in ("wear_law", "life_criterion") if ds.attrs.get(n) != OPTIONS[n].default}
-    return record.solve_command(plain, words)
+    return record.solve_command(plain | {"duty": duty_of(ds)}, words)
 
 
 def _contact_lines(ds: xr.Dataset) -> list[list[str]]:
