@@ -7,14 +7,17 @@ import math
 from pathlib import Path
 
 import numpy as np
+import openpyxl
 import pytest
 from command_line import trackroller
 
 import trackroller as tr
+from trackroller.damage import LIMITS
 from trackroller.report.explorer.rows import collect
 from trackroller.report.numbers import hour_unit, lasting, on_duty, quantity, rounded
 from trackroller.roller.duty import checked_duty, years
 
+FATIGUE = LIMITS["fatigue"].title
 DUTY = {"hours_per_day": 8, "days_per_year": 220}
 
 
@@ -55,6 +58,22 @@ def test_solve_and_plan_take_the_duty(tmp_path):
     assert float(life.split(" h (")[1].split(" years")[0]) == pytest.approx(hours / 1760, rel=0.02)
     study = tr.load_study({"name": "d", "duty": DUTY, "outputs": ["forces"]})
     assert tr.load_study(study.as_dict()).config.duty == {"hours_per_day": 8.0, "days_per_year": 220.0}
+
+
+def test_the_workbook_of_one_roller_has_inputs_results_and_limits(tmp_path):
+    (tmp_path / "case.yaml").write_text("duty: {hours_per_day: 8, days_per_year: 220}\naxial_force: 40\n")
+    words = ("--set", "contact_model=sliding", "--set", "accuracy=preview")
+    assert trackroller("solve", "case.yaml", *words, "-o", "roller.xlsx", cwd=tmp_path).stdout == ""
+    book = openpyxl.load_workbook(tmp_path / "roller.xlsx")
+    inputs, results, limits = (list(sheet.values) for sheet in book)
+    assert book.sheetnames == ["inputs", "results", "limits"] and all(sheet.freeze_panes == "A2" for sheet in book)
+    assert ("axial_force", 40, "N", "given") in inputs and ("radial_force", -200, "N", "example") in inputs
+    ds = tr.solve(tr.Case(axial_force=40), contact_model="sliding", accuracy="preview")
+    found = {name: (value, unit) for name, _, value, unit in results}
+    assert found["normal_force_2"] == (float(ds.normal_force.sel(contact=2)), "N")
+    hours = next(dict(zip(limits[0], row, strict=True)) for row in limits if row[:2] == (FATIGUE, "roller"))
+    assert hours["hours"] == pytest.approx(float(ds.roller_life_hours)) and hours["state"] == "kept"
+    assert hours["years"] == pytest.approx(hours["hours"] / 1760)
 
 
 SPECTRUM = """\

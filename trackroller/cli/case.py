@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 COMPLETE = ("forces", "contact", "peak_stress", "life")
+WORKBOOK = "A name that ends in .xlsx writes a workbook."
 PRINTED = " --json prints the result as text, and --report writes a page."
 # the first bytes of a file, by the end of its name
 KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b""}
@@ -163,6 +164,16 @@ def write_result(dataset: xr.Dataset, target: Path) -> None:
     write_whole(target, lambda beside: dataset.to_netcdf(beside, engine="netcdf4"))
 
 
+def _write_roller(dataset: xr.Dataset, target: Path, book: bool) -> None:
+    """Write the result of one case as a workbook or as netCDF."""
+    if not book:
+        write_result(dataset, target)
+        return
+    from trackroller.report.workbook import write_roller  # heavy: pandas and jinja2
+
+    write_roller(dataset, target)
+
+
 def _options(
     path: Path | None, settings: list[str] | None, limits: str | None, sheet: bool, plain: bool
 ) -> dict[str, Any]:
@@ -199,13 +210,14 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
             remedy = "Give one of them at a time."
             raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
         return _find_and_tell(case, settings, find, condition, as_json)
-    target = None if out is None else writable_data(out, PRINTED)
+    book = out is not None and out.suffix.lower() == ".xlsx"
+    target = None if out is None else writable(out) if book else writable_data(out, f" {WORKBOOK}{PRINTED}")
     page = None if sheet is None else writable_page(sheet)
-    plain = as_json or target is not None or "outputs" in case_of(case, settings)[1]
+    plain = as_json or (target is not None and not book) or "outputs" in case_of(case, settings)[1]
     more = {"shortcuts": False} if no_shortcuts else {}
     dataset = solve_case(case, settings, **more | _options(case, settings, limits, page is not None, plain))
     if target is not None:
-        write_result(dataset, target)
+        _write_roller(dataset, target, book)
     from trackroller.report.pages import sheet_text
     from trackroller.report.pages.sheet import collect, write_sheet  # heavy: rich and jinja2
 

@@ -83,7 +83,7 @@ def solve(  # noqa: PLR0913 - one argument for each option of the command
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) instead")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) or a workbook (.xlsx)")] = None,
     sheet: Annotated[Path | None, typer.Option("--report", help="write a sheet (.html or .pdf) as well")] = None,
     limits: Annotated[str | None, typer.Option(help="print limits in one table: all, or names with commas")] = None,
     find: Annotated[str | None, typer.Option("--find", help="parameter whose range is sought; needs --for")] = None,

@@ -69,9 +69,10 @@ def make_report(study: str, results: Path, out: Path | None) -> None:
     table = out is not None and out.suffix.lower() in (".xlsx", ".csv")
     target = out if out is None else writable(out) if table else writable_page(out)
     if target is not None and table:
+        from trackroller.report.workbook import write_results
         from trackroller.results.stored_study import open_study  # heavy: SALib
 
-        print(open_study(folder.root).export(target))
+        print(write_results(open_study(folder.root), target))
         return
     report = _report(folder)
     print(report)

@@ -1,20 +1,35 @@
-"""Export of the report's tables, and of the cases of a study, as CSV files and XLSX workbooks."""
+"""Export of the report's tables, of the cases of a study and of one roller, as CSV files and XLSX workbooks."""
 
 from __future__ import annotations
 
 import csv
+import json
+import math
 import re
 import zipfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+import xarray as xr
 
+from trackroller.damage.verdict import STATES
 from trackroller.errors import InputError
+from trackroller.parameters import PARAMETERS, REGIME_LABELS
+from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
+from trackroller.report.numbers import plain, unit_text
+from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.table import Table, cell
+from trackroller.results.results import Results
+from trackroller.roller import record
+from trackroller.roller.aliases import RADII
+from trackroller.roller.dataset import FLAGS
+from trackroller.roller.duty import duty_of, years
+from trackroller.roller.output_names import PARTS
+from trackroller.study.outputs import flat, parts_in
 from trackroller.study.store.seal import put
 
 
@@ -47,9 +62,12 @@ MOST_ROWS = 1_048_575  # of a sheet below its head, by the format XLSX
 def write_cases(table: pd.DataFrame, path: Path) -> Path:
     """Write the cases of a study as a workbook with one sheet, or as CSV, by the name of the file.
 
+    The workbook has a line of units below the names, and words in place of the numbers of flags; a CSV file has the
+    numbers.
+
     Parameters
     ----------
-    table : one row a case
+    table : one row a case, with the names of inputs and results as columns
     path : the file, .xlsx or .csv
 
     Returns
@@ -65,8 +83,96 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     if len(table) > MOST_ROWS:
         remedy = "Write them as .csv."
         raise InputError("cases", len(table), f"at most {MOST_ROWS:,} cases in a workbook", remedy)
-    sheet = Table("cases", "Cases", list(map(str, table.columns)), table.astype(object).to_numpy().tolist())
-    return put(path, lambda beside: _save(beside, [sheet]))
+    names = list(map(str, table.columns))
+    columns = [in_words(str(name), table[name].astype(object).tolist()) for name in table]
+    sheet = Table("cases", "Cases", names, [list(map(unit_of, names)), *map(list, zip(*columns, strict=True))])
+    return put(path, lambda beside: _save(beside, [sheet], heads=2))
+
+
+def write_results(results: Results, path: Path) -> Path:
+    """Write the cases of a study with every limit, as a workbook or as CSV; see `write_cases`."""
+    data, dims = results.data, results.dims
+    limits = [str(name) for name, variable in data.data_vars.items() if "limit" in variable.dims]
+    columns = {}
+    for name, part in parts_in(data, limits, dims).items():
+        values = flat(part.values(data).to_dataset(name=name), name, dims).astype(float)
+        if part.variable.name == "limit_state":
+            values[values == STATES.index("unknown")] = np.nan
+        if np.isfinite(values).any():
+            columns[name] = values
+    return write_cases(results.to_table().assign(**columns), path)
+
+
+def write_roller(ds: xr.Dataset, path: Path) -> Path:
+    """Write the result of one case as a workbook with the sheets `inputs`, `results` and `limits`."""
+    inputs, example = record.inputs_of(ds), record.names_not_given(ds.attrs)
+    own = record.radii_of(ds) | {name: value for name, value in inputs.items() if value is not None}
+    units = dict.fromkeys(RADII, "mm")
+    duty = duty_of(ds) or {}
+    rows = [[n, _plain(v), units.get(n, unit_of(n)), "example" if n in example else "given"] for n, v in own.items()]
+    rows += [[name, value, "-", "given"] for name, value in duty.items()]
+    sheets = [Table("inputs", "Inputs", ["input", "value", "unit", "from"], rows)]
+    known = parts_in(ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ())
+    found = [(name, part.words, part.values(ds).item()) for name, part in known.items() if "limit" not in part.at]
+    told = [[name, words, in_words(name, [value])[0], unit_of(name)] for name, words, value in found if value == value]
+    sheets.append(Table("results", "Results", ["result", "meaning", "value", "unit"], told))
+    heads = ["limit", "of", "now", "at most", "used", "state", "hours", "hours, low end", "hours, high end"]
+    heads += ["years"] * bool(duty)
+    limits = []
+    for m in collect(ds).margins:
+        lives = [m.hours, m.low, m.high, *([float(years(m.hours, duty))] if duty else [])]
+        limits.append([m.title, m.body, m.now, m.required, m.used, m.state, *lives])
+    sheets.append(Table("limits", "Limits", heads, limits))
+    return put(path, lambda beside: _save(beside, sheets))
+
+
+def _plain(value: Any) -> Any:
+    """Return an input as a cell: a number, a name, or a mapping as JSON."""
+    return value if isinstance(value, (int, float, str)) else json.dumps(value, default=str)
+
+
+def unit_of(name: str) -> str:
+    """Return the unit of an input or a result as `--set` and tables of cases take it, "-" for a pure number.
+
+    Examples
+    --------
+    >>> unit_of("radial_force"), unit_of("peak_stress_roller"), unit_of("regime")
+    ('N', 'MPa', '-')
+    """
+    if name in PARAMETERS:
+        return PARAMETERS[name].unit
+    if "_life_years" in name or name.endswith("_limit_years"):
+        return "year"
+    return unit_text(PARTS[name].variable.units).replace("–", "-") if name in PARTS else "-"
+
+
+def in_words(name: str, values: Sequence[Any]) -> list[Any]:
+    """Return the values of a column, with words in place of the numbers of a flag.
+
+    Examples
+    --------
+    >>> in_words("regime", [0.0, 2.0]), in_words("validity_roller", [0, 3]), in_words("slip", [0.1])
+    (['rolling', 'lift-off'], ['', 'half space, yield'], [0.1])
+    """
+    variable = max((flag for flag in _WORDS if name == flag or name.startswith(f"{flag}_")), key=len, default="")
+    told: Callable[[Any], Any] = (lambda value: _WORDS[variable](int(value))) if variable else (lambda value: value)
+    return [value if isinstance(value, float) and math.isnan(value) else told(value) for value in values]
+
+
+def _flags_set(bits: int) -> str:
+    """Return the validity flags that are set, by name."""
+    return ", ".join(plain(name) for i, name in enumerate(VALIDITY) if bits >> i & 1)
+
+
+def _word(words: Sequence[str]) -> Callable[[int], str]:
+    return lambda code: plain(words[code]) if 0 <= code < len(words) else str(code)
+
+
+_WORDS: dict[str, Callable[[int], str]] = {name: _word(words) for name, (_, words) in FLAGS.items()} | {
+    "regime": _word(REGIME_LABELS),
+    "validity": _flags_set,
+    "at_surface": _word(("no", "yes")),
+}
 
 
 def _inert(value: Any) -> Any:
@@ -76,8 +182,8 @@ def _inert(value: Any) -> Any:
     return value if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?", value) else f"'{value}"
 
 
-def _save(path: Path, tables: Sequence[Table]) -> None:
-    """Write a workbook with one sheet a table."""
+def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
+    """Write a workbook with one sheet a table, whose first lines stay in sight and whose last head filters."""
     names = [re.sub(r"[\[\]:*?/\\]", " ", table.name)[:31] for table in tables]
     parts: dict[str, tuple[str, list[Any]]] = {
         "[Content_Types].xml": ("types", []),
@@ -89,9 +195,17 @@ def _save(path: Path, tables: Sequence[Table]) -> None:
         parts[f"xl/worksheets/sheet{i}.xml"] = "sheet", [table.heads, *table.rows]
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
         for name, (part, rows) in parts.items():
-            content = {"part": part, "names": names, "rows": rows}
+            widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]] if rows else []
+            span = f"A{heads}:{_letters(len(widths))}{max(len(rows), heads)}"
+            content = {"part": part, "names": names, "rows": rows, "heads": heads, "widths": widths, "span": span}
             text = html.render("workbook.xml.j2", content, figure=_figure, printable=_printable)
             file.writestr(zipfile.ZipInfo(name, (1980, 1, 1, 0, 0, 0)), text)
+
+
+def _letters(column: int) -> str:
+    """Return the letters of a column of a sheet, from 1."""
+    above, own = divmod(column - 1, 26) if column else (0, 0)
+    return (_letters(above) if above else "") + chr(ord("A") + own)
 
 
 def _figure(value: Any) -> str | None:

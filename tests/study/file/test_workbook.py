@@ -13,7 +13,7 @@ from command_line import trackroller
 
 import trackroller as tr
 from trackroller.errors import Collector
-from trackroller.report.workbook import write_cases
+from trackroller.report.workbook import write_cases, write_results
 from trackroller.study.design.read_table import table
 from trackroller.study.file.user_table import column_names, read_table
 from trackroller.study.spectrum.file import load_spectrum
@@ -57,7 +57,40 @@ def test_cases_that_the_program_wrote_are_read_again(tmp_path):
     write_cases(table, tmp_path / "out.xlsx")
     read = read_table(tmp_path / "out.xlsx", "table", "case", Collector())
     assert read.names == [*table.columns] and read.head == 1
-    assert [[float(a), b] for a, b in read.lines.values()] == table.to_numpy().tolist()
+    assert [[float(a.removesuffix(" N")), b] for a, b in read.lines.values()] == table.to_numpy().tolist()
+
+
+@pytest.mark.parametrize("columns", [{"friction_coefficient": [0.1, 0.2]}, {"roller_material": ["PA6", "POM"]}])
+def test_pure_numbers_and_names_have_a_line_of_units_too(columns, tmp_path):
+    write_cases(pd.DataFrame(columns), tmp_path / "out.xlsx")
+    read = read_table(tmp_path / "out.xlsx", "table", "case", Collector())
+    assert [line[0] for line in read.lines.values()] == [str(value) for value in next(iter(columns.values()))]
+
+
+def test_a_workbook_of_a_study_has_units_words_and_limits_and_its_inputs_are_a_table_again(tmp_path):
+    """The inputs are those of a new study; numbers of flags are words, and every computed limit stands there."""
+    factors = {"axial_force": {"values": [0, 300]}, "radial_force": {"values": [-200, -150]}}
+    study = {"name": "once", "factors": factors, "contact_model": "sliding", "accuracy": "preview"}
+    results = tr.run(tr.load_study(study), results=tmp_path)
+    path = write_results(results, tmp_path / "cases.xlsx")
+    sheet = openpyxl.load_workbook(path)["cases"]
+    names, units, *rows = ([cell for cell in row] for row in sheet.values)
+    assert sheet.freeze_panes == "A3" and sheet.auto_filter.ref == f"A2:{sheet.cell(2, len(names)).column_letter}6"
+    unit = dict(zip(names, units, strict=True))
+    assert [unit[n] for n in ("axial_force", "peak_stress_roller", "roller_life_hours")] == ["N", "MPa", "h"]
+    first, last = (dict(zip(names, row, strict=True)) for row in (rows[0], rows[-1]))
+    assert (first["regime"], last["regime"], first["converged"]) == ("rolling", "lift-off", "yes")
+    assert first["limit_state_roller_static"] == "kept" and first["limiting_mechanism_roller"] == "fatigue"
+    used = results.data.utilisation.sel(axial_force=0, radial_force=-200, body="roller", limit="static")
+    assert first["utilisation_roller_static"] == float(used)
+    inputs = path.with_name("inputs.xlsx")
+    names = ["axial_force", "radial_force"]
+    again = read_table(write_cases(results.to_table()[names], inputs), "table", "case", Collector())
+    assert again.names == names and len(again.lines) == 4
+    (tmp_path / "s.yaml").write_text(STUDY.replace("cases.xlsx", inputs.name))
+    design = tr.load_study(tmp_path / "s.yaml").design()
+    assert design.axial_force.values.tolist() == [0, 0, 300, 300]
+    assert design.radial_force.values.tolist() == [-200, -150, -200, -150]
 
 
 def test_errors_name_the_row_of_the_sheet(tmp_path):

@@ -332,7 +332,9 @@ def _read_units(table: UserTable, units: list[str], used: Collection[str], path:
     """Take a line of units below the names out of the table, if there is one, and complete `units`."""
     number, line = next(iter(table.lines.items()), (0, []))
     below = {name: unbracketed(cell) for name, cell in zip(table.names, line, strict=True) if name in UNITS}
-    if any(map(is_number, below.values())) or not any(_is_unit(name, unit) for name, unit in below.items()):
+    known = {cell for name, cell in zip(table.names, line, strict=True) if name in KNOWN}
+    stated = any(_is_unit(name, unit) for name, unit in below.items()) or known == {"-"}  # pure numbers and names
+    if any(map(is_number, below.values())) or not stated:
         return
     wrong = Collector()
     for j, (name, cell) in enumerate(zip(table.names, line, strict=True)):
