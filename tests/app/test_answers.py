@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 import base64
+import io
 import threading
 from itertools import pairwise
 
 import fake_solver
 import numpy as np
+import openpyxl
 import pytest
 import yaml
 
 import trackroller as tr
 from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
-from trackroller.app.picture import curve, picture, texts
-from trackroller.app.studies import checked, headlines, listing, page_of
+from trackroller.app.picture import curve, file_of_roller, picture, texts
+from trackroller.app.studies import checked, file_of_study, headlines, listing, page_of
 from trackroller.errors import WorkError
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
 from trackroller.report.pages.sheet import collect
@@ -26,7 +28,7 @@ from trackroller.study.store.seal import sealing
 
 def test_every_parameter_stands_on_the_page():
     fields = all_fields()
-    assert [p["name"] for p in fields["parameters"]] == list(PARAMETERS)
+    assert [p["name"] for p in fields["parameters"]] == [*PARAMETERS, "outer_radius", "groove_depth"]
     assert all(p["meaning"] and p["allowed"] and p["group"] for p in fields["parameters"])
     assert set(fields["bodies"]) == set(MATERIAL_FIELDS)
     assert {o["name"] for o in fields["options"]} == set(OPTIONS)
@@ -122,6 +124,30 @@ def test_a_curve_names_what_it_leaves_out():
     found = curve({}, "roller_profile_radius", [-28.0, -1.75])
     values = found["columns"]["max_pressure"]["values"]
     assert "conform" in found["refused"] and np.isnan(values[-1]) and np.isfinite(values[0])
+
+
+def test_no_label_of_a_curve_names_an_equation():
+    labels = [column["label"] for column in curve({}, "axial_force", [0.0, 30.0])["columns"].values()]
+    assert "tilting moment about the rolling direction" in labels
+    assert not [label for label in labels if "eq." in label]
+
+
+def test_the_page_asks_about_a_drive_that_nobody_gave():
+    asked = [picture(values)["doubts"] for values in ({"axial_force": 40}, {"axial_force": 40, "motor_force": 0})]
+    assert "Is the roller driven? motor_force is not given, so -30 N is used" in asked[0][0] and asked[1] == []
+
+
+def test_sheet_and_workbook_of_roller_and_study_are_saved(tmp_path, monkeypatch):
+    values = {"axial_force": "40", "contact_model": "sliding"}
+    book = openpyxl.load_workbook(io.BytesIO(file_of_roller(values, "roller.xlsx")))
+    assert ("axial_force", 40, "N", "given") in book["inputs"].values
+    monkeypatch.chdir(tmp_path)
+    study = {"name": "small", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
+    tr.run(tr.load_study(study | {"accuracy": "preview"}), results="results")
+    rows = list(openpyxl.load_workbook(io.BytesIO(file_of_study("small", "cases.xlsx")))["cases"].values)
+    assert rows[0][0] == "axial_force" and rows[1][0] == "N" and [row[0] for row in rows[2:]] == [0, 30]
+    with pytest.raises(tr.InputError, match="of a study that was run"):
+        file_of_study("small", "report.pdf")  # its report was not made
 
 
 def test_each_text_repeats_the_case():

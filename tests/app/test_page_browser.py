@@ -16,6 +16,8 @@ pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="
 
 AXE = Path(__file__).resolve().parents[2] / "web" / "node_modules" / "axe-core" / "axe.min.js"
 SETTLED = "document.querySelector('.stage')?.dataset.stage === 'complete'"
+DAY = "hours_per_day"
+ASKED = "document.querySelector('[data-field={}]').closest('.field').querySelector('.asked')"
 STORED = """name: markup
 description: "<img src=x onerror=document.title='broken'>"
 factors: {friction_coefficient: {values: [0.1, 0.2]}}
@@ -180,6 +182,65 @@ def test_a_factor_keeps_its_range_when_its_kind_changes(page):
     page.run("window.fetch = own")
     assert seen["linspace"] == "24, 36, 5" and seen["normal"] == "30, 3"
     assert seen["uniform"] == "24, 36" and seen["triangular"] == seen["values"] == "24, 30, 36"
+
+
+def asked(page, field):
+    return page.run(f"{ASKED.format(field)}.textContent")
+
+
+def answer(page, field):
+    page.run(f"{ASKED.format(field)}.querySelector('button').click()")
+
+
+def case_of(page):
+    return page.run("({...trackroller.state.values})")
+
+
+def test_the_page_takes_the_words_of_a_drawing(page):
+    """Outer radius, groove depth, rail diameter, duty and a straight track; a groove typed with the wrong sign asks."""
+    page.run("trackroller.state.replace({axis_distance: '22', motor_force: '0'})")
+    type_into(page, "roller_profile_radius", "6,6")
+    assert case_of(page)["roller_profile_radius"] == "6.6"
+    assert "Is a groove meant? −6.6" in asked(page, "roller_profile_radius")
+    answer(page, "roller_profile_radius")
+    assert case_of(page)["roller_profile_radius"] == "-6.6" and asked(page, "roller_profile_radius") == ""
+    typed = {"outer_radius": "26", "groove_depth": "3", "rail_diameter": "11.8", "guide_curve_radius": "Straight"}
+    for field, text in typed.items():
+        type_into(page, field, text)
+    type_into(page, "days_per_year", "250")
+    type_into(page, "hours_per_day", "16")
+    sizes = {"outer_radius": "26", "groove_depth": "3", "guide_profile_radius": "5.9", "guide_curve_radius": "inf"}
+    duty = {"duty": "{hours_per_day: 16, days_per_year: 250}"}
+    assert case_of(page) == {"motor_force": "0", "roller_profile_radius": "-6.6", **sizes, **duty}
+    page.until(SETTLED)
+    assert "years" in verdict(page)
+    fields = [f"document.querySelector('[data-field={n}]').value" for n in ("axis_distance", "rail_diameter", DAY)]
+    assert [page.run(field) for field in fields] == ["", "11.8", "16"]
+
+
+def test_a_range_in_a_field_becomes_a_factor_and_lists_take_decimal_commas(page):
+    before = case_of(page)
+    type_into(page, "friction_coefficient", "0,12–0,25")
+    assert case_of(page) == before and "Is 0,12–0,25 a range?" in asked(page, "friction_coefficient")
+    answer(page, "friction_coefficient")
+    page.until("document.querySelector('textarea').value.includes('linspace')")
+    field = "document.querySelector('[aria-label=\"Friction coefficient: values\"]')"
+    assert page.run(f"{field}.value") == "0.12, 0.25, 5"
+    kind = "document.querySelector('[aria-label=\"Friction coefficient: kind of values\"]')"
+    page.run(f"{kind}.value = 'values'; {field}.value = '0,1; 0,25; 0.3'; {field}.dispatchEvent(new Event('change'))")
+    page.until("document.querySelector('.plan').textContent.includes('3, 0 of them')")
+    written = yaml.safe_load(page.run("document.querySelector('textarea').value"))
+    assert written["factors"] == {"friction_coefficient": {"values": [0.1, 0.25, 0.3]}}
+
+
+def test_results_offer_sheet_and_workbook_of_the_roller(page):
+    type_into(page, "axial_force", "44")
+    show(page, "results")
+    page.until("document.querySelectorAll('.results .tools a').length === 3")
+    told = "[a.textContent, decodeURIComponent(a.href)]"
+    links = page.run(f"[...document.querySelectorAll('.results .tools a')].map((a) => {told})")
+    assert [words for words, _ in links] == ["Sheet", "Sheet as PDF", "Workbook"]
+    assert all('"axial_force":"44"' in address for _, address in links)
 
 
 def test_a_wrong_material_is_named_beside_its_field(page):

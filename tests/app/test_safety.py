@@ -6,6 +6,7 @@ import http.client
 import json
 import signal
 import socket
+import urllib.request
 
 import pytest
 from live_page import LONG, STUDY, LivePage
@@ -206,6 +207,9 @@ def test_a_study_runs_to_its_report_and_is_deleted_after_asking(live):
     status, text, headers = live.get("results/small/report.html")
     assert status == 200 and "<title>" in text and "sandbox" in headers["Content-Security-Policy"]
     assert live.get("results/small/explorer.html")[0] == 200
+    for address, head in {"results/small/cases.xlsx": b"PK", "roller.xlsx?case={}": b"PK"}.items():
+        with urllib.request.urlopen(live.address + address) as answer:
+            assert "attachment" in answer.headers["Content-Disposition"] and answer.read().startswith(head)
     one = live.ask("headlines", name="small")[1]
     assert one["cases"] == 6 and one["factors"]["Axial force F_ax"] == "0, 30 N"
     assert live.ask("delete", name="small", confirm="")[0] == 422

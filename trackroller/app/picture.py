@@ -7,7 +7,10 @@ import functools
 import itertools
 import json
 import math
+import re
+import tempfile
 from dataclasses import asdict
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -18,7 +21,8 @@ from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import lives_in_years, unit_text
-from trackroller.report.pages.sheet import collect, render
+from trackroller.report.pages.sheet import collect, render, write_sheet
+from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
 from trackroller.roller.limits import Limits
 from trackroller.roller.record import given_inputs, solve_command
@@ -140,7 +144,20 @@ def _sections(ds: xr.Dataset) -> list[dict[str, Any]]:
 
 def sheet(values: Values) -> str:
     """Return the sheet of a case as a page to print."""
-    return render(_solved(json.dumps(values, sort_keys=True), "standard", (*LIVE, *_JUDGED, "limits", "subsurface")))
+    return render(_of_sheet(values))
+
+
+def _of_sheet(values: Values) -> xr.Dataset:
+    return _solved(json.dumps(values, sort_keys=True), "standard", (*LIVE, *_JUDGED, "limits", "subsurface"))
+
+
+def file_of_roller(values: Values, name: str) -> bytes:
+    """Return the sheet of a case as PDF, `sheet.pdf`, or its workbook, `roller.xlsx`."""
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place, name)
+        if path.suffix == ".pdf":
+            return write_sheet(_of_sheet(values), path).read_bytes()
+        return write_roller(_of_sheet(values), path).read_bytes()
 
 
 def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
@@ -180,7 +197,8 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
         column = np.full(POINTS, np.nan)
         column[kept] = one.values
         if not np.isnan(column).all():
-            columns[one.name] = {"label": one.long_name, "unit": unit_text(one.units), "values": column.tolist()}
+            label = re.sub(r", eqs?\. \(\d+\)", "", one.long_name)  # the number of an equation of the paper
+            columns[one.name] = {"label": label, "unit": unit_text(one.units), "values": column.tolist()}
     return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
 
 

@@ -46,6 +46,7 @@ REPORT = (
 ASSETS = {"": ("index.html", "text/html"), "app.js": ("app.js", "text/javascript"), "app.css": ("app.css", "text/css")}
 
 
+KINDS = {"pdf": "application/pdf", "xlsx": "application/vnd.openxmlformats-officedocument.spreadsheetml.sheet"}
 MAPPING = pydantic.TypeAdapter(dict[str, Any])  # what every request holds as JSON
 STATUS = {InputError: 422, WorkError: 409, pydantic.ValidationError: 400}
 
@@ -61,9 +62,13 @@ class Refused(tornado.web.HTTPError):
         return self.words
 
 
-SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet"), "picture")  # the thread of the solver answers
-STUDIES = ("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines", "page_of")
-PAGES = ("sheet", "page_of")  # have addresses of their own
+# the thread of the solver answers
+SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet", "file_of_roller"), "picture")
+STUDIES = (
+    *("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines"),
+    *("page_of", "file_of_study"),
+)
+PAGES = ("sheet", "page_of", "file_of_roller", "file_of_study")  # have addresses of their own
 FILES = {"all_fields": "fields"} | dict.fromkeys(STUDIES, "studies")  # the thread of the files answers
 _loading = threading.Lock()
 
@@ -181,6 +186,21 @@ class _Sheet(_Handler):
         self.finish(page)
 
 
+class _File(_Handler):
+    """A file to save: the sheet of a case as PDF or its workbook, or those of a study."""
+
+    async def get(self, token: str, *where: str) -> None:
+        *study, file = where
+        if study:
+            content = await self.answered("file_of_study", name=study[0], file=file)
+        else:
+            values = MAPPING.validate_json(self.get_query_argument("case", "{}"))
+            content = await self.answered("file_of_roller", values=values, name=file)
+        self.set_header("Content-Type", KINDS[file.rpartition(".")[2]])
+        self.set_header("Content-Disposition", f'attachment; filename="{"-".join(where)}"')
+        self.finish(content)
+
+
 class _Result(_Handler):
     """Report and explorer of a study."""
 
@@ -229,6 +249,8 @@ class Server:
         application = tornado.web.Application(
             [
                 (r"/([^/]*)/sheet", _Sheet),
+                (r"/([^/]*)/(sheet\.pdf|roller\.xlsx)", _File),
+                (r"/([^/]*)/results/([^/]+)/(report\.pdf|cases\.xlsx)", _File),
                 (r"/([^/]*)/results/([^/]+)/([^/]+)", _Result),
                 (r"/([^/]*)/api/(\w+)", _Answer),
                 (r"/([^/]*)/?(.*)", _Page),

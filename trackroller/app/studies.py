@@ -13,6 +13,7 @@ import json
 import math
 import os
 import subprocess
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -21,9 +22,11 @@ from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
+from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
 from trackroller.report.words.in_short import in_short
+from trackroller.report.workbook import write_results
 from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported
 from trackroller.roller.aliases import ALIASES
@@ -279,6 +282,15 @@ def page_of(name: str, page: str) -> Path:
         allowed = f"{' or '.join(PAGES)} of a study that was run"
         raise InputError("page", f"{name}/{page}", allowed, "Let the study run to its end.")
     return check_sealed(path)
+
+
+def file_of_study(name: str, file: str) -> bytes:
+    """Return the report of a study as PDF, `report.pdf`, or its cases as a workbook, `cases.xlsx`."""
+    with tempfile.TemporaryDirectory() as place:
+        path = Path(place, file)
+        if path.suffix == ".pdf":
+            return write_page(path, page_of(name, "report.html").read_text(encoding="utf-8")).read_bytes()
+        return write_results(open_as_reported(folder_of(name).root), path).read_bytes()
 
 
 def headlines(name: str) -> dict[str, Any]:

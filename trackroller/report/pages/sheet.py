@@ -14,8 +14,8 @@ import numpy as np
 import xarray as xr
 
 from trackroller.materials import Material
-from trackroller.parameters import BODIES, FIRST_TO_FAIL, OPTIONS, REGIMES
-from trackroller.parameters.example import not_given_text
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, OPTIONS, PARAMETERS, REGIMES
+from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import BEYOND, listing, lives_in_years, number, plain, rounded, row_unit
@@ -145,6 +145,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
     materials = {body: as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
     regime = REGIMES[int(ds["regime"])]
     ranges = ranges or limits(record.case_of_result(ds), str(ds.attrs["contact_model"]))
+    drive = drive_question(given, set(PARAMETERS) - set(given))
     lifeless = {body: _no_life(regime, ds, body, material) for body, material in materials.items()}
     lives, own = life_rows(ds, inputs, materials, lifeless), margins(ds, ranges, inputs, materials, lifeless)
     below, above = inputs["axial_force"] - ranges.axial_force[0], ranges.axial_force[1] - inputs["axial_force"]
@@ -156,7 +157,8 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
         reason=reason,
         inputs=[*_size_rows(ds), *input_rows(inputs, given)],
         not_given=not_given_text(given),
-        doubts=record.doubts_of(ds),
+        doubts=[*record.doubts_of(ds), *filter(None, [drive])],
+        drive=drive,
         materials=body_materials(stored),
         lines=_contact_lines(ds),
         whole=quantity_rows(ds, shown()),

@@ -36,8 +36,9 @@ def print_facts(ds: xr.Dataset) -> None:
         print_text(f"reason: {facts.reason}")
     rows = [[row.words, row.value, row.unit, "example" if row.default else "given"] for row in facts.inputs]
     print_table(["input", "value", "unit", "from"], rows, (1,))
-    if facts.not_given:
-        print_text("Values from 'example' were not given: the paper's example has them. Give yours.")
+    example = "Values from 'example' were not given: the paper's example has them. Give yours."
+    for text in filter(None, (example if facts.not_given else "", facts.drive)):
+        print_text(text)
     print_text(facts.options, "options")
     if regime == "failed":  # nothing else is known
         return

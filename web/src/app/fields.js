@@ -3,6 +3,8 @@ import { el, replace } from "../dom.js";
 import { number } from "../words.js";
 
 const STEPS = 160; // of a slider with a logarithmic scale
+const RANGE = /^([-+]?\d[\d.,]*)\s*(?:-|–|—|…|\.{2,3}|to|bis)\s*([-+]?\d[\d.,]*)$/i; // such as 0.12-0.25
+const STRAIGHT = /^\+?(straight|flat|∞|infinity|infinite)$/i;
 const FACTOR = 4; // a slider spans a quarter to four times a value that lies outside of its ends
 
 export const symbol = (text) => {
@@ -47,6 +49,7 @@ function endsFor(parameter, value) {
 }
 
 // A row tells `change(value, moving)`; `set` shows a value, `complain` a message beside the field.
+// `ask` puts a question with an answer to click, such as what is meant by a range.
 export function parameterRow(parameter, { change, curve, factor }) {
   const { name, label, unit, meaning } = parameter;
   const id = `field-${name}`;
@@ -54,18 +57,21 @@ export function parameterRow(parameter, { change, curve, factor }) {
   const range = el("input", { type: "range", "aria-label": `${label}, slider` });
   const field = el("input", { type: "text", id, inputmode: "decimal", autocomplete: "off", spellcheck: false, "aria-describedby": `${id}-said`, "data-field": name });
   const said = el("span", { class: "said", id: `${id}-said`, role: "status" });
+  const asked = el("span", { class: "asked", role: "status" });
+  const ask = (words, answer, act) => replace(asked, words, " ", el("button", { type: "button", class: "mini", onclick: () => (replace(asked), act()) }, answer));
+  let known = "";
   const straight = parameter.infinite
     ? el("button", { type: "button", class: "mini", title: "straight: infinite radius", "aria-label": `${label}: straight`, onclick: () => change(field.value === "inf" ? null : "inf") }, "∞")
     : null;
   const tools = [
     straight,
-    parameter.ends || parameter.optional
+    curve && (parameter.ends || parameter.optional)
       ? el("button", { type: "button", class: "mini", title: `Curve over ${label.toLowerCase()}`, "aria-label": `Curve over ${label}`, onclick: curve }, "∿")
       : null,
-    el("button", { type: "button", class: "mini", title: "Make it a factor of the study", "aria-label": `Make ${label} a factor of the study`, onclick: factor }, "+"),
+    factor ? el("button", { type: "button", class: "mini", title: "Make it a factor of the study", "aria-label": `Make ${label} a factor of the study`, onclick: () => factor() }, "+") : null,
   ];
   const name_ = el("label", { for: id, title: `${meaning} (${parameter.allowed})` }, label, " ", symbol(parameter.symbol));
-  const node = el("div", { class: "field" }, name_, range, field, el("span", { class: "unit" }, unit), el("span", { class: "tools" }, tools), said);
+  const node = el("div", { class: "field" }, name_, range, field, el("span", { class: "unit" }, unit), el("span", { class: "tools" }, tools), said, asked);
   range.addEventListener("input", () => {
     const value = scale.value(Number(range.value));
     field.value = String(value);
@@ -73,16 +79,30 @@ export function parameterRow(parameter, { change, curve, factor }) {
     change(value, true);
   });
   range.addEventListener("change", () => change(scale.value(Number(range.value))));
-  field.addEventListener("change", () => change(field.value.trim() === "" ? null : field.value.trim().replace("−", "-").replace(",", ".")));
+  field.addEventListener("change", () => {
+    const typed = field.value.trim().replaceAll("−", "-");
+    const range = typed.match(RANGE)?.slice(1).map((end) => Number(end.replace(",", ".")));
+    replace(asked);
+    if (factor && range?.every(Number.isFinite)) {
+      field.value = known;
+      const [low, high] = range.sort((a, b) => a - b);
+      return ask(`Is ${typed} a range?`, "Make it a factor of the study", () => factor([low, high]));
+    }
+    if (parameter.infinite && STRAIGHT.test(typed)) return change("inf");
+    const value = typed.replace(",", ".");
+    change(value === "" ? null : value);
+    if (name === "roller_profile_radius" && Number(value) > 0 && Number.isFinite(Number(value))) ask("A radius > 0 is a convex roller. Is a groove meant?", `−${value}`, () => change(`-${value}`));
+  });
   return {
     node,
     name,
     set(given) {
-      const value = given ?? parameter.value;
+      const value = given === "" ? null : (given ?? parameter.value); // "" follows from other fields
       const size = value === null ? NaN : asNumber(value);
-      if (document.activeElement !== field) field.value = textOf(value);
-      node.classList.toggle("given", given !== undefined);
-      field.placeholder = parameter.optional ? "none" : "";
+      known = textOf(value);
+      if (document.activeElement !== field) field.value = known;
+      node.classList.toggle("given", given !== undefined && given !== "");
+      field.placeholder = given === "" ? "follows" : parameter.optional ? "none" : "";
       const ends = endsFor(parameter, size);
       range.hidden = ends === null;
       range.disabled = !Number.isFinite(size);

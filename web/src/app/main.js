@@ -16,6 +16,9 @@ const TABS = [
   ["results", "Results"],
 ];
 const OPEN = ["Loads and use", "Roller and guide"];
+const INSTEAD = { axis_distance: ["outer_radius", "groove_depth"], outer_radius: ["axis_distance"], groove_depth: ["axis_distance"] };
+const DRAWN = "Sizes of a drawing, duty";
+const DUTY = ["hours_per_day", "days_per_year"];
 const DECIDED = ["outputs", "accuracy", "stop_if", "shortcuts"]; // options that the page sets itself
 
 // The values of a material that have a unit.
@@ -47,7 +50,7 @@ async function start() {
       for (const { field, message } of errors) {
         const unknown = (name) => state.values[name] && !offered.materials.some((m) => m.name === state.values[name]);
         const [head] = field.split(/[., (]/); // of "roller_profile.file" and "axial_force, line 1"
-        rows.get(head === "material" ? offered.bodies.find(unknown) : head)?.complain(message);
+        rows.get(head === "material" ? offered.bodies.find(unknown) : head === "duty" ? DUTY[0] : head)?.complain(message);
       }
       view.refuse(errors);
     },
@@ -67,22 +70,43 @@ async function start() {
   const group = (title, ...content) => (OPEN.includes(title) ? el("fieldset", {}, el("legend", {}, title), content.flat()) : el("details", {}, el("summary", {}, title), content.flat()));
   const change = (name) => (value, moving = false) => {
     if (moving && !since) since = performance.now();
-    state.change({ [name]: value }, moving);
+    const instead = value === null ? [] : (INSTEAD[name] ?? []);
+    state.change({ ...Object.fromEntries(instead.map((other) => [other, null])), [name]: value }, moving);
   };
   const add = (name, row) => (rows.set(name, row), row.node);
   const grouped = Map.groupBy ? Map.groupBy(offered.parameters, (p) => p.group) : offered.parameters.reduce((m, p) => m.set(p.group, [...(m.get(p.group) ?? []), p]), new Map());
-  const parameters = (title) => (grouped.get(title) ?? []).map((p) => add(p.name, parameterRow(p, { change: change(p.name), curve: () => variants.curve(p.name), factor: () => study.add(p.name) })));
+  const parameters = (title) => (grouped.get(title) ?? []).map((p) => add(p.name, parameterRow(p, { change: change(p.name), curve: () => variants.curve(p.name), factor: (range) => study.add(p.name, range) })));
+  // a round rail has twice the radius of its contour as diameter; a unit behind the number stays
+  const scaled = (value, k) => (value === null || value === undefined ? value : String(value).replace(/^[-+\d.eE]+/, (size) => String(Number(size) * k)));
+  const contour = offered.parameters.find((p) => p.name === "guide_profile_radius");
+  const rail = parameterRow(
+    { ...contour, name: "rail_diameter", label: "Rail diameter", symbol: "", meaning: "of a round rail: twice the guide profile radius", value: 2 * contour.value, ends: contour.ends?.map((end) => 2 * end) ?? null },
+    { change: (value, moving) => change(contour.name)(scaled(value, 0.5), moving), curve: () => variants.curve(contour.name), factor: (range) => study.add(contour.name, range?.map((end) => end / 2)) },
+  );
+  const dutyOf = (name) => String(state.values.duty ?? "").match(new RegExp(`${name}"?:\\s*([^,}\\s]+)`))?.[1];
+  const setDuty = (name) => (value) => {
+    const given = Object.entries({ ...Object.fromEntries(DUTY.map((key) => [key, dutyOf(key)])), [name]: value }).filter(([, size]) => size !== undefined && size !== null);
+    state.change({ duty: given.length ? `{${given.map((pair) => pair.join(": ")).join(", ")}}` : null });
+  };
+  const dutyRow = (name, label, unit, allowed) => add(name, parameterRow({ name, label, unit, allowed, symbol: "", meaning: `${label} of travel: lives in years, too`, value: null, ends: null, optional: true }, { change: setDuty(name) }));
+  const duty = [dutyRow(DUTY[0], "Duty, hours a day", "h", "> 0, at most 24"), dutyRow(DUTY[1], "Duty, days a year", "", "> 0, at most 366; 365 if not given")];
+  const shown = {
+    rail_diameter: () => scaled(state.values[contour.name], 2),
+    axis_distance: () => (INSTEAD.axis_distance.some((name) => state.values[name] !== undefined) ? "" : state.values.axis_distance),
+    ...Object.fromEntries(DUTY.map((name) => [name, () => dutyOf(name)])),
+  };
   const datalist = el("datalist", { id: "materials" }, offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.family}, ${m.description}` })));
   const bodies = offered.bodies.map((name) => add(name, wordRow({ name, label: `${name.replace("_", " ")}`.replace(/^./, (c) => c.toUpperCase()), meaning: "a name of the database; type a part of it, or of its description", list: "materials", fallback: offered.materials[0].name }, { change: change(name), factor: () => study.add(name) })));
   const options = offered.options.filter((o) => !DECIDED.includes(o.name)).map((o) => add(o.name, wordRow({ name: o.name, label: o.name.replaceAll("_", " "), meaning: o.meaning, words: o.kind === "word" ? o.values : o.kind === "switch" ? { true: "", false: "" } : null, fallback: Array.isArray(o.value) ? "" : String(o.value) }, { change: change(o.name) })));
-  const more = [...offered.mappings, { name: "duty", meaning: "{hours_per_day: 16, days_per_year: 250}: lives in years, too" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning, list: m.name.endsWith("_profile") ? "files" : null }, { change: change(m.name) })));
+  const more = [...offered.mappings, { name: "sheet", meaning: "{project: Lift 7, part: R-12, revision: B, date: 2026-11-27, author: Ada, checker: Bo}: the head of the sheet" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning, list: m.name.endsWith("_profile") ? "files" : null }, { change: change(m.name) })));
   const files = el("datalist", { id: "files" }, offered.files.map((file) => el("option", { value: `{file: ${JSON.stringify(file)}}`, label: file })));
   fields.append(
     group(OPEN[0], parameters(OPEN[0])),
     group(OPEN[1], parameters(OPEN[1]), bodies, datalist),
-    group("Limits: what they need", [...grouped.keys()].filter((title) => !OPEN.includes(title)).flatMap(parameters)),
+    group(DRAWN, add("rail_diameter", rail), parameters(DRAWN), duty),
+    group("Limits: what they need", [...grouped.keys()].filter((title) => ![...OPEN, DRAWN].includes(title)).flatMap(parameters)),
     group("Model and conventions", options),
-    group("Profiles, friction law, bearing, catalogue, duty", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
+    group("Profiles, friction law, bearing, catalogue, head of the sheet", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
   );
 
   const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => state.undo() }, "Undo");
@@ -122,11 +146,11 @@ async function start() {
   }
   state.onChange((what) => {
     if (what === "case" || what === "moving") {
-      for (const row of rows.values()) row.set(state.values[row.name]);
+      for (const row of rows.values()) row.set(shown[row.name] ? shown[row.name]() : state.values[row.name]);
       for (const name of offered.bodies) rows.get(name).tell(facts(offered.materials.find((m) => m.name === (state.values[name] ?? offered.materials[0].name))));
       undo.disabled = !state.canUndo();
       redo.disabled = !state.canRedo();
-      sheet.href = `sheet?case=${encodeURIComponent(JSON.stringify(state.values))}`;
+      sheet.href = state.file("sheet");
       flow.changed();
     }
     if (what === "tab") {

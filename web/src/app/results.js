@@ -8,6 +8,7 @@ const size = (bytes) => (bytes < 1e6 ? `${Math.ceil(bytes / 1e3)} kB` : `${(byte
 
 export function resultsView(state, { open, told }) {
   const table = el("div", { class: "wide", tabindex: "0", role: "region", "aria-label": "Studies of this folder" });
+  const own = el("p", { class: "tools" });
   const said = el("p", { role: "status" });
   const beside = el("div", { class: "beside" });
   const chosen = new Set();
@@ -58,6 +59,8 @@ export function resultsView(state, { open, told }) {
         { class: "actions" },
         study.pages.includes("report.html") ? link("report.html", "Report") : null,
         study.pages.includes("report.html") ? el("a", { href: `results/${encodeURIComponent(study.name)}/report.html`, download: `${study.name}.html`, title: "one file, which can be sent", "aria-label": `Save the report of ${study.name}` }, "Save") : null,
+        study.pages.includes("report.html") ? link("report.pdf", "PDF") : null,
+        done ? link("cases.xlsx", "Workbook") : null,
         study.pages.includes("explorer.html") ? link("explorer.html", "Explorer") : null,
         done && study.pages.length < 2 ? button("Make the pages", () => act("resume", { name: study.name }), "of ") : null,
         study.state === "running" ? button("Pause", () => act("pause", { name: study.name })) : null,
@@ -67,6 +70,11 @@ export function resultsView(state, { open, told }) {
       ),
     );
   }
+
+  const files = [["sheet", "Sheet"], ["sheet.pdf", "Sheet as PDF"], ["roller.xlsx", "Workbook"]];
+  state.onChange((what) => {
+    if (what === "case") replace(own, files.map(([name, label]) => el("a", { href: state.file(name), target: "_blank", rel: "noopener" }, label)));
+  });
 
   function draw() {
     const focus = document.activeElement?.getAttribute("aria-label");
@@ -118,5 +126,5 @@ export function resultsView(state, { open, told }) {
     dialog.showModal();
   }
 
-  return { node: el("div", { class: "results" }, el("section", {}, el("h2", {}, "Studies of this folder"), said, table), beside), look };
+  return { node: el("div", { class: "results" }, el("section", {}, el("h2", {}, "The roller on the screen"), own, el("h2", {}, "Studies of this folder"), said, table), beside), look };
 }

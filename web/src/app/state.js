@@ -65,6 +65,9 @@ export function createState() {
     tell("tab");
   };
 
+  // The address of the sheet or workbook of the roller on the screen.
+  state.file = (name) => `${name}?case=${encodeURIComponent(JSON.stringify(state.values))}`;
+
   state.written = () => {
     const found = new URLSearchParams(Object.entries(state.values));
     if (state.tab !== "roller" || ![...found].length) found.set("tab", state.tab); // an empty address is the first example

@@ -44,10 +44,12 @@ const DESIGNS = {
 };
 const SAMPLED = ["lhs", "sobol", "saltelli", "morris", "inner_outer"];
 
-// A list as it is typed: numbers, names, or pairs of materials in brackets.
+// A list as it is typed: numbers, names, or pairs of materials in brackets. Between semicolons a comma is a decimal sign.
 function read(text) {
-  const parts = text.match(/\[[^\]]*\]|[^,]+/g) ?? [];
-  const one = (word) => (word.trim() !== "" && Number.isFinite(Number(word)) ? Number(word) : word.trim() === "inf" ? "inf" : word.trim());
+  const wide = /;/.test(text.replace(/\[[^\]]*\]/g, ""));
+  const parts = text.match(wide ? /\[[^\]]*\]|[^;]+/g : /\[[^\]]*\]|[^,]+/g) ?? [];
+  const size = (word) => Number(word.trim().replaceAll("−", "-").replace(wide ? "," : /$^/, "."));
+  const one = (word) => (word.trim() !== "" && Number.isFinite(size(word)) ? size(word) : /^(inf|∞|straight)$/i.test(word.trim()) ? "inf" : word.trim());
   return parts.map((part) => (part.trim().startsWith("[") ? part.trim().slice(1, -1).split(",").map(one) : one(part))).filter((v) => v !== "");
 }
 const filled = (mapping) => Object.fromEntries(Object.entries(mapping).filter(([, value]) => value !== "" && (typeof value !== "object" || Object.keys(value ?? {}).length)));
@@ -191,19 +193,20 @@ export function studyView(state, offered, { started }) {
     const options = [...offered.options.map((o) => o.name), "duty"];
     const given = Object.entries(answer.study);
     for (const key of taken) delete study[key];
-    study.base = Object.fromEntries(given.filter(([key]) => !options.includes(key) && !(key in study.factors)));
+    study.base = Object.fromEntries(given.filter(([key]) => !options.includes(key) && key !== "sheet" && !(key in study.factors)));
     taken = given.map(([key]) => key).filter((key) => options.includes(key));
     for (const key of taken) study[key] = answer.study[key];
     fill();
     check({ study });
   }
 
-  function add(key) {
+  function add(key, range = null) {
     const parameter = offered.parameters.find((p) => p.name === key);
     const now = state.values[key] ?? parameter?.value ?? offered.materials[0].name;
     const size = Number(now);
     const round = (v) => Number(v.toPrecision(3));
-    if (!(key in study.factors)) {
+    if (range) study.factors[key] = { linspace: RANGED.linspace(...range) };
+    else if (!(key in study.factors)) {
       const list = parameter ? (Number.isFinite(size) && now !== null ? (size === 0 ? [0, 10] : [round(size * 0.8), size, round(size * 1.2)]) : [now ?? 1]) : [...new Set([String(now), ...offered.materials.map((m) => m.name)])].slice(0, 2);
       study.factors[key] = { values: list };
     }

@@ -107,7 +107,6 @@ export function whatIf(state, offered, { rows }) {
         return solveCurve();
       }
       const names = Object.entries(found.columns);
-      for (const [, column] of names) column.label = column.label.replace(/\((?=[12])/, "(contact ").replace(/,(?=\w+\)$)/, ", ");
       wanted = found.columns[result.field.value] ? result.field.value : found.columns[wanted] ? wanted : "roller_life_hours" in found.columns ? "roller_life_hours" : names[0][0];
       replace(result.field, names.map(([name, { label, unit }]) => el("option", { value: name }, unit === "–" ? label : `${label} [${unit}]`)));
       result.field.value = wanted;
