@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import subprocess
 import sys
 import time
@@ -94,6 +95,43 @@ def test_bad_input_ends_with_exit_2_and_names_it(tmp_path, words, named):
     assert not list(tmp_path.rglob("study.nc"))
 
 
+def test_a_short_study_needs_no_cluster_and_a_finished_one_no_scheduler(tmp_path):
+    (tmp_path / "tiny.yaml").write_text(STUDY)
+    assert re.search(r"cluster +not needed: \d+ s on two cores", trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout)
+    assert "left to solve" not in trackroller("run", "tiny.yaml", "-q", cwd=tmp_path).stderr
+    again = trackroller("run", "tiny.yaml", "-q", "--scheduler", "slurm", cwd=tmp_path).stderr
+    assert "nothing is left to solve of 'tiny'; --scheduler slurm is not used\n" in again
+    assert "cluster" not in trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout
+    values, one = "values: [0, 20, 40]", "linspace: [0, 40, 40000]"
+    long = STUDY.replace(values, one).replace("sliding", "kalker").replace("[forces]", "[life]")
+    (tmp_path / "long.yaml").write_text(long.replace("tiny", "long") + "accuracy: reference\n")
+    assert "cluster" not in trackroller("plan", "long.yaml", cwd=tmp_path).stdout
+
+
+def test_words_of_a_designer_are_understood_or_answered(tmp_path):
+    """A drawn groove takes the place of the example's radius; each refusal says what to write."""
+    points = [f"{0.05 * i:.2f},{-(7 - (49 - (0.05 * i) ** 2) ** 0.5):.6f}" for i in range(-120, 121)]
+    (tmp_path / "groove.csv").write_text("x [mm],z [mm]\n" + "\n".join(points))
+    fast = ("--set", "contact_model=sliding", "--set", "accuracy=preview")
+    drawn = ("--set", "normal=halfspace", "--set", "roller_profile={file: groove.csv}")
+    told = trackroller("solve", *fast, *drawn, cwd=tmp_path).stdout
+    assert "roller profile  " in told and "roller profile radius" not in told
+    assert "roller profile radius" in trackroller("solve", *fast, cwd=tmp_path).stdout
+    refused = {
+        (
+            "solve",
+            "--set",
+            "roller_profile=groove.csv",
+        ): "Write roller_profile: {file: groove.csv} for a file of points.",
+        ("solve", "radial_force=-650"): "Write --set radial_force=-650",
+    }
+    for words, remedy in refused.items():
+        assert remedy in trackroller(*words, cwd=tmp_path, code=2).stderr
+    depth = ("--set", "permissible_wear_depth=0.1", "--set", "mu=0", "--set", "motor_force=0")
+    kept = [line for line in trackroller("solve", *fast, *depth, cwd=tmp_path).stdout.splitlines() if "wear (" in line]
+    assert kept and "not given" not in "".join(kept)
+
+
 def test_materials_are_listed_shown_and_added(tmp_path):
     assert "PA6" in trackroller("materials", "list", cwd=tmp_path).stdout
     assert "placeholder" in trackroller("materials", "show", "PA6", cwd=tmp_path).stdout.lower()
@@ -112,6 +150,8 @@ def test_materials_are_listed_shown_and_added(tmp_path):
     assert "mine" in trackroller("materials", "list", cwd=tmp_path).stdout
     soft = trackroller("materials", "add", "soft", "--set", "like=POM", "--set", "youngs_modulus=3.6", cwd=tmp_path)
     assert "youngs_modulus = 3.6 MPa is 55.6 times below" in soft.stderr
+    twice = trackroller("materials", "add", "soft", "--set", "like=POM", cwd=tmp_path, code=2).stderr
+    assert "(--replace)" in twice and "replace=True" not in twice
 
 
 @pytest.mark.slow

@@ -11,7 +11,7 @@ from typing import Any, TextIO
 import numpy as np
 
 from trackroller.cli.case import case_of, free_for_page, names_study, tell_doubts, writable, writable_page
-from trackroller.cli.usage import print_doubts
+from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report.tables.table import cell
@@ -46,16 +46,25 @@ def run_with_progress(
     checked = load_study(study)
     _print_not_given({**checked.config.base, **checked.factors}, checked.not_given, sys.stderr)
     print_doubts(checked.doubts())
+    solved_before: list[bool] = []  # of each round of the study
+
+    def started(total: int, done: int) -> None:
+        solved_before.append(done == total)
+        bar.started(total, done)
+
     with progress_bar(checked.name, not quiet) as bar:
         plan = run_any(
             checked,
             results,
             rerun_failed=rerun_failed,
             scheduler=scheduler,
-            started=bar.started,
+            started=started,
             tell=bar.tell,
             progress=bar.advanced,
         )
+    if solved_before and all(solved_before):
+        unused = f"; --scheduler {scheduler} is not used" if scheduler else ""
+        print_line(f"nothing is left to solve of '{checked.name}'{unused}")
     if report:
         print(_report(plan.folder))
     else:

@@ -133,7 +133,7 @@ def _with_entry(text: str, path: Path, name: str, entry: dict[str, Any], replace
     materials = data["materials"]
     if name in materials and not replace:
         allowed = "a name that the file does not use already"
-        remedy = "Choose another name, or replace the values: --replace, in Python replace=True."
+        remedy = "Choose another name, or ask for a change of this material (--replace)."
         raise InputError(f"{path}: materials.{name}", name, allowed, remedy)
     if not materials:
         materials.fa.set_block_style()  # also if the section is written as {}

@@ -54,7 +54,8 @@ def mapping_text(name: str, value: Any) -> str:
         try:
             value = json.loads(value)
         except ValueError:
-            raise InputError(name, value, "a mapping, or one written as JSON") from None
+            remedy = f"Write {name}: {{file: {value}}} for a file of points." if name.endswith("_profile") else ""
+            raise InputError(name, value, "a mapping, or one written as JSON", remedy) from None
     if not isinstance(value, Mapping):
         raise InputError(name, value, "a mapping, or not given")
     if name == "friction_law":

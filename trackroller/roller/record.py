@@ -125,7 +125,8 @@ def case_of_result(ds: xr.Dataset) -> Case:
 def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
     """Return the values of a solved case that were not given but taken from the paper's example, by name."""
     values = inputs_of(ds)
-    return {name: values[name] for name in names_not_given(ds.attrs)}
+    drawn = {"roller_profile_radius"} if values.get("roller_profile") else set()  # the profile stands in its place
+    return {name: values[name] for name in names_not_given(ds.attrs) if name not in drawn}
 
 
 def names_not_given(attrs: Mapping[str, Any]) -> list[str]:

@@ -27,6 +27,8 @@ from trackroller.study.store.seal import altered
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
+SHORT = 600.0  # s on two cores; a shorter study waits longer for the workers of a cluster than it gains by them
+
 
 @dataclass
 class Status:
@@ -182,6 +184,8 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
     source = "measured" if status.measured else "estimated"
     times = f"{duration(seconds)} on one core, {duration(seconds / 2)} on two"
     pages = seconds_of_report(study.config.design, status.total)
+    grows = study.config.until is not None or study.config.method.proposes
+    small = bool(parts) and not grows and seconds / 2 < SHORT
     most = study.config.budget.designs
     generations = f"these are the first generation; it goes on to {most} design{'s' * (most != 1)}, and checks the best"
     until, where = study.config.until, " at unsure design points" if study.config.method.points else ""
@@ -196,6 +200,7 @@ def plan_rows(study: Study, status: Status) -> list[tuple[str, str]]:
         ("unused", status.unused),
         ("chunks", f"{parts} of {size}; each is saved once it is solved" if parts else ""),
         ("time", f"{times} ({source} cases/s: {status.speed:.3g})"),
+        ("cluster", f"not needed: {duration(seconds / 2)} on two cores" if small else ""),
         ("report", f"{duration(pages)} more on one core, for analysis, figures and page"),
         ("disk", f"about {decimal(status.total * bytes_a_case(study.config.outputs))}"),
     ]

@@ -36,12 +36,15 @@ class Row:
 def input_rows(inputs: Mapping[str, Any], not_given: Collection[str] | None = None) -> list[Row]:
     """Return the inputs that stand on a sheet: mappings, the guide and fields of limits only if they are given.
 
+    A drawn profile of the roller takes the place of the example's radius.
+
     With `not_given`, the values of these names are marked as defaults, otherwise those that equal their default.
     """
     rows = []
     for name, value in inputs.items():
+        drawn = name == "roller_profile_radius" and inputs.get("roller_profile") and is_default(name, value)
         optional = name in (*MAPPING_FIELDS, "guide_overrollings_per_hour") and value is None
-        if not (optional or (name in OF_LIMITS and is_default(name, value))):
+        if not (drawn or optional or (name in OF_LIMITS and is_default(name, value))):
             row = input_row(name, value)
             rows.append(row if not_given is None else replace(row, default=name in not_given))
     return rows

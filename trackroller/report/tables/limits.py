@@ -181,7 +181,7 @@ def _of_limits(
             values = np.asarray(_at(ds, variable, places, **here), dtype=float)
             value = float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
             bound = f"{rounded(value / used if used > 0 else math.nan)} {unit}".strip()
-            bound = bound + words if not math.isnan(used) else "–" if math.isfinite(hours) else f"not given{words}"
+            bound = bound + words if not math.isnan(used) else f"not given{words}" if math.isnan(hours) else "–"
             texts = f"{rounded(value)} {unit}".strip(), bound
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
