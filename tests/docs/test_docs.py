@@ -164,6 +164,18 @@ def test_the_site_has_every_page_once():
     assert sorted(named) == sorted(page.relative_to(ROOT / "docs").as_posix() for page in DOCS)
 
 
+@pytest.mark.parametrize("word", ["spectrum", "wear", "uncertainty", "limits", "slurm"])
+def test_what_a_designer_looks_for_stands_at_home_and_in_the_sidebar(word):
+    """Each word leads on from the home page and from the sidebar, whose entries have titles."""
+    nav = (ROOT / "mkdocs.yml").read_text(encoding="utf-8").partition("\nnav:")[2]
+    assert re.search(rf"- .*{word}.*: \S+\.md$", nav, re.M | re.I)
+    home = (ROOT / "docs" / "index.md").read_text(encoding="utf-8")
+    assert [line for line in home.splitlines() if word in line.lower() and re.search(r"\(\S+\.md\S*\)", line)]
+    generated = [page for page in DOCS if not page.read_text(encoding="utf-8").startswith("# ")]
+    for page in generated:  # its first line is no head, so that the site would take the name of the file
+        assert re.search(rf"- \S.*: {page.relative_to(ROOT / 'docs').as_posix()}$", nav, re.M), page
+
+
 @pytest.mark.parametrize("name", ["scene", "patch", "sn_curve"])
 def test_the_drawings_are_those_of_the_program(tmp_path, name):
     """The figures that introduce terms are what docs/drawing.py draws, and the theory shows them."""
