@@ -232,9 +232,8 @@ def test_the_head_holds_texts_to_sign_and_inputs_the_outer_radius_and_the_duty(t
     again = shlex.split(html.unescape(re.search(r"<code>(trackroller solve.*?)</code>", page)[1]))[1:]
     assert trackroller(*again, cwd=tmp_path).stdout.splitlines()[0] == told.splitlines()[0]  # in years, too
     ds = solve_case(tmp_path / "case.yaml", ["sheet={author: Ada}", "axis_distance=29"])
-    assert sheet_of(ds) == {"author": "Ada"} and "outer radius of the roller" not in {
-        r.words for r in collect(ds).inputs
-    }
+    assert sheet_of(ds) == {"author": "Ada"}
+    assert "outer radius of the roller" not in {row.words for row in collect(ds).inputs}
 
 
 @pytest.mark.parametrize(
