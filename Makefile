@@ -10,7 +10,6 @@ SNAKEFILES := Snakefile workflow/Snakefile workflow/rules validation/Snakefile
 # what another version of Python may change: syntax trees, files, processes, imports; a solution, a study, the workflow
 INTERPRETER := tests/numerics tests/parameters tests/study/file tests/cli/test_cli.py tests/cli/test_file_names.py \
 	tests/study/test_resume.py tests/roller/test_solver.py tests/test_environment.py tests/workflow/test_workflow.py
-PHYSICS := tests/numerics tests/halfspace tests/contact tests/roller tests/damage tests/materials
 
 # Snakemake needs a home that can be written and the name of a user; a container or a cluster may give neither
 ifeq ($(shell [ -n "$$HOME" ] && [ -d "$$HOME" ] && [ -w "$$HOME" ] && echo yes),)
@@ -22,7 +21,7 @@ export USER := $(or $(USER),$(LOGNAME),$(shell id -u))
 # an environment that forbids bytecode would have each process compile each module anew
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: env env-ci lock study validate test test-quick test-python test-browser lint docs explorer explorer-check test-slurm test-long clean-results
+.PHONY: env env-ci lock study validate test test-python test-browser lint docs explorer explorer-check test-slurm test-long clean-results
 
 env: $(STAMP)
 
@@ -57,17 +56,13 @@ study: $(STAMP)
 validate: $(STAMP)
 	$(BIN)/snakemake -s validation/Snakefile --quiet rules host --cores $(CORES)
 
-# -ra lists what was skipped and why; CI runs the slow tests and those in a browser as well
+# the tests of a second or two, in four minutes; CI runs the slow ones and those in a browser as well
 test: $(CI_STAMP)
 	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal
 
-# without the studies of accuracy and the whole processes, which make test runs
-test-quick: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m "not long and not slow and not slurm" $(wildcard $(PHYSICS))
-
 # another version of Python runs these tests, which depend on it
 test-python: $(STAMP)
-	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m "not long and not slow and not slurm" $(wildcard $(INTERPRETER))
+	$(BIN)/python -m pytest -q -ra -n 2 --dist worksteal $(wildcard $(INTERPRETER))
 
 lint: $(STAMP)
 	$(BIN)/ruff check .
@@ -97,9 +92,9 @@ explorer-check:
 test-slurm: $(STAMP)
 	$(BIN)/python -m pytest -q -m slurm tests/workflow/test_workflow_slurm.py
 
-# the slow tests, with 200 interrupted and 200 killed commands, 600 extremes and 10,000 generated inputs
+# the slow and the long tests, with 200 interrupted and 200 killed commands, 600 extremes and 10,000 generated inputs
 test-long: $(STAMP)
-	EDITS=10000 INTERRUPT_TRIES=200 EXTREME_FIFTIES=12 $(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m slow
+	EDITS=10000 INTERRUPT_TRIES=200 EXTREME_FIFTIES=12 $(BIN)/python -m pytest -q -ra -n 2 --dist worksteal -m "slow or long"
 	TRACKROLLER_EXAMPLES=10000 $(BIN)/python -m pytest -q -n 2 tests/cli/test_refusals.py tests/cli/test_fuzz.py
 
 clean-results:

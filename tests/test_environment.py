@@ -97,7 +97,7 @@ def test_numba_compiles_without_a_cache_where_no_folder_can_be_written(homeless,
         assert not compiled.can_cache(package)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_read_only_package_solves_without_a_home(tmp_path):
     """As in a container that runs as any user."""
     site, place = tmp_path / "site", tmp_path / "place"

@@ -91,6 +91,7 @@ def house():
     return survey(ROOT)
 
 
+@pytest.mark.slow
 def test_no_room_imports_a_later_room(house):
     assert house.upward == []
 

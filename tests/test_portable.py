@@ -68,6 +68,7 @@ def posix_only(tree: ast.AST) -> set[str]:
     return found
 
 
+@pytest.mark.slow
 def test_calls_that_other_systems_lack_stand_guarded_in_one_file():
     found = {}
     for path in sorted((ROOT / "trackroller").rglob("*.py")):
@@ -92,7 +93,7 @@ def test_the_check_finds_what_other_systems_lack(text, names):
     assert posix_only(ast.parse(text)) == names
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_is_run_and_reported_without_the_calls_of_linux_and_without_extras(tmp_path):
     """Run, report and verify, with everything removed from `os` that Windows has not, and without Snakemake."""
     kept = "O_DIRECTORY O_NOFOLLOW O_NONBLOCK fork forkpty nice uname getuid geteuid"  # Python's own library uses these

@@ -40,6 +40,7 @@ def assert_same(name: str, now: Computed, before: dict[str, np.ndarray]) -> None
             assert difference <= allowed, f"{key}: differs by {difference:.1e} of its scale, above {allowed:.0e}"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", names())
 def test_numbers_are_the_recorded_ones(name):
     with warnings.catch_warnings():

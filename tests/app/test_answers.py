@@ -54,6 +54,7 @@ def shown():
     return picture({"axial_force": 20, "guide_curve_radius": "inf"}, "standard", complete=True, inside=True)
 
 
+@pytest.mark.slow
 def test_the_tables_hold_the_numbers_of_solve(shown):
     ds = tr.solve(tr.Case(axial_force=20, guide_curve_radius=float("inf")), accuracy="standard")
     lines = numbers(shown)
@@ -84,6 +85,7 @@ def test_the_stress_below_is_that_of_the_peak(shown):
         assert section["field"]["top"] == pytest.approx(peak, rel=0.03)
 
 
+@pytest.mark.slow
 def test_margins_are_those_of_the_sheet(shown):
     groups = ("forces", "contact", "friction_work", "peak_stress", "life", "limits")
     ds = tr.solve(tr.Case(axial_force=20, guide_curve_radius=float("inf")), groups)

@@ -11,7 +11,6 @@ from live_page import STUDY, LivePage
 import trackroller as tr
 
 pytest.importorskip("tornado")
-pytestmark = pytest.mark.slow
 ROOT = Path(__file__).parents[2]
 LINKED = {
     "studies/x.yaml": "/etc/passwd",
@@ -30,6 +29,7 @@ LINKED = {
 POINTS = {"roller_profile": "{file: points.csv}", "normal": "halfspace"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("link", LINKED)
 def test_links_out_of_the_folder_are_not_followed(tmp_path, link):
     """Nothing behind a link is shown, listed, changed or deleted."""
@@ -72,7 +72,11 @@ def poison(folder, mark):
         (folder / f"{name}.py").write_text(text)
 
 
-@pytest.mark.parametrize("way", ["another folder", "allow code", "notebook", "empty path"])
+WAYS = [pytest.param(way, marks=pytest.mark.long) for way in ("allow code", "notebook", "empty path")]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("way", ["another folder", *WAYS])
 def test_no_python_file_of_the_folder_is_executed(tmp_path, monkeypatch, way):
     mark, folder = tmp_path / "executed", tmp_path / "folder"
     folder.mkdir()

@@ -41,6 +41,7 @@ def origins(page):
     }
 
 
+@pytest.mark.slow
 def test_the_page_answers_at_localhost_and_where_the_user_allows_it(forwarded):
     for (host, origin), allowed in origins(forwarded).items():
         status, found = forwarded.send("listing", b"{}", Host=host, Origin=origin)
@@ -53,6 +54,7 @@ def test_the_page_answers_at_localhost_and_where_the_user_allows_it(forwarded):
             assert "--allow-host" in text and "localhost:" in text
 
 
+@pytest.mark.slow
 def test_other_hosts_are_refused_where_none_is_allowed(live):
     own = {f"{name}:{live.host.split(':')[1]}" for name in ("localhost", "127.0.0.1")}
     for host, origin in origins(live):

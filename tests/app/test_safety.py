@@ -57,6 +57,7 @@ def test_another_site_is_refused(live, headers):
     assert message(found).endswith(".")
 
 
+@pytest.mark.long
 def test_the_page_trusts_its_own_script_only(live):
     _, text, headers = live.get("")
     policy = headers["Content-Security-Policy"]
@@ -114,6 +115,7 @@ def test_a_link_in_the_results_is_not_followed(live):
     assert "linked" not in [one["name"] for one in live.ask("listing")[1]]
 
 
+@pytest.mark.slow
 def test_a_million_cases_are_refused_before_they_are_drawn(live):
     _, found = live.ask("checked", study={"name": "big", "factors": LARGE})
     assert "at most 200,000 cases" in message(found)
@@ -199,7 +201,7 @@ def test_a_study_survives_its_server_and_is_found_again(tmp_path):
     assert said.rstrip().splitlines()[-1] == "trackroller: the page is closed; studies that run go on."
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_runs_to_its_report_and_is_deleted_after_asking(live):
     assert live.ask("start", text=STUDY)[0] == 200
     done = live.until("small", "done")

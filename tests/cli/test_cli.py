@@ -22,6 +22,7 @@ contact_model: sliding
 """
 
 
+@pytest.mark.slow
 def test_solve_prints_json_and_writes_netcdf(tmp_path):
     (tmp_path / "case.yaml").write_text("motor_force: 0\noutputs: [forces]\ncontact_model: sliding\n")
     words = ("solve", "case.yaml", "--set", "contact_model=kalker", "--set", "accuracy=preview", "--json")
@@ -42,6 +43,7 @@ def test_json_says_in_words_whether_a_limit_is_kept_and_which_one_is_first(tmp_p
     assert told["limiting_mechanism"]["meaning"] == ["fatigue", "unknown"]  # the guide's hours are not known
 
 
+@pytest.mark.slow
 def test_study_from_plan_to_repeat(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
     assert "cases    6, 0 of them" in trackroller("plan", "tiny.yaml", cwd=tmp_path).stdout
@@ -154,7 +156,7 @@ def test_materials_are_listed_shown_and_added(tmp_path):
     assert "(--replace)" in twice and "replace=True" not in twice
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_dask_workers_give_the_same_numbers(tmp_path):
     (tmp_path / "tiny.yaml").write_text(STUDY)
     trackroller("run", "tiny.yaml", "-q", cwd=tmp_path)
@@ -163,7 +165,7 @@ def test_dask_workers_give_the_same_numbers(tmp_path):
     xr.testing.assert_identical(*(ds.drop_attrs() for ds in sets))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_dask_scheduler_and_workers_apart_with_a_worker_killed(tmp_path):
     """Scheduler and workers are processes of their own; one worker dies in mid-run, every case is there."""
     study = STUDY.replace("[0, 20, 40]", "[" + ", ".join(f"{v / 10}" for v in range(300)) + "]")

@@ -82,6 +82,7 @@ def run(commands, encodings, folder):
     return {encoding: out.decode(encoding) for out, encoding in zip(outs, encodings, strict=True)}
 
 
+@pytest.mark.long
 def test_commands_print_in_every_encoding(tmp_path):
     printed = run(COMMANDS, ["ascii", "cp1252", "cp437", "utf-8"], tmp_path)
     for encoding, out in printed.items():

@@ -35,7 +35,6 @@ def named(path):
     return path
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("words", COMMANDS, ids=lambda words: words[0])
 def test_a_name_on_the_command_line_is_refused_in_one_line(tmp_path, words):
     named(tmp_path / BAD)

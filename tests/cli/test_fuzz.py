@@ -112,6 +112,7 @@ def read_cleanly(read, path):
         return None
 
 
+@pytest.mark.slow
 @MOST
 @given(broken(STUDIES))
 def test_study_files(tmp_path_factory, data):

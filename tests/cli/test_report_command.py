@@ -37,6 +37,7 @@ def place(tmp_path_factory) -> Path:
     return folder
 
 
+@pytest.mark.slow
 def test_a_run_with_report_writes_analysis_figures_and_page(place):
     folder = place / "results" / "reported"
     assert {"study.nc", "sensitivity.nc", "figures", "report.html"} <= {p.name for p in folder.iterdir()}
@@ -51,6 +52,7 @@ def test_materials_stand_in_the_report_with_their_sources(place):
     assert source and source in html.unescape(table[: table.index("</table>")])
 
 
+@pytest.mark.slow
 def test_the_report_of_a_study_can_be_made_again(place, monkeypatch):
     monkeypatch.chdir(place)
     page = place / "results" / "reported" / "report.html"

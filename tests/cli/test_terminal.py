@@ -34,6 +34,7 @@ def words_of(text: str) -> list[str]:
     return re.sub(r"[┃│┏┓┗┛┳┻┡┩╇━─┌┐└┘┴┬├┤┼]+", " ", text).split()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", COMMANDS)
 def test_nothing_is_cut_at_80_and_120_columns(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
@@ -50,6 +51,7 @@ def test_nothing_is_cut_at_80_and_120_columns(name, tmp_path, monkeypatch):
     assert said["80"] == said["120"] == said["400"]
 
 
+@pytest.mark.slow
 def test_solve_ends_with_the_margins_and_what_was_not_checked():
     done = CliRunner().invoke(app, COMMANDS["solve"], env={"COLUMNS": "120"})
     lines = [line.strip() for line in done.output.splitlines()]

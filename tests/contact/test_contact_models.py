@@ -136,9 +136,9 @@ UNLIKE = [
 ]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("normal", ["hertz", "halfspace"])
 @pytest.mark.parametrize("change", UNLIKE)
-@pytest.mark.long
 def test_energy_balance_of_unlike_materials_counts_the_pressures(change, normal):
     """Shear moves unlike surfaces along the normal. The pressures then work and enter the energy balance."""
     case = tr.Case(**change)

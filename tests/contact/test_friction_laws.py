@@ -185,7 +185,6 @@ def test_tractions_have_the_friction_of_their_slip(kind):
 
 
 @pytest.mark.parametrize(("kind", "normal"), [(k, n) for k in ("sliding", "kalker") for n in ("hertz", "halfspace")])
-@pytest.mark.long
 def test_the_largest_shear_is_that_of_the_solution(kind, normal):
     """Where friction falls with the slip, mu p_max is not reached."""
     case = tr.Case(motor_force=0, friction_law={"kind": "exponential", "speed": 5, "lowest": 0.3})
@@ -402,7 +401,7 @@ def test_friction_too_steep_for_elastic_surfaces_is_told():
     assert constant().steepest_fall == table([0, 1], [0.2, 0.3]).steepest_fall == 0.0
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_roller_without_balance_for_steep_friction_says_so():
     """Its pressures are unknown; the bit judges by those without friction."""
     steel = "1.7225-normalised"

@@ -214,7 +214,6 @@ def test_scaling_of_lengths_leaves_the_problem_the_same():
     ("creep", "friction", "order", "error"),
     [((1e-4, 0.0, 0.03), 0.1, 1.8, 4e-4), ((0.001, 0.0, 0.003), 0.3, 0.9, 1e-2)],
 )
-@pytest.mark.slow
 def test_observed_order_of_convergence(creep, friction, order, error):
     """Lateral force: second order where all slides, first with stick; and its error on 40, extrapolated."""
     settings = [KalkerSettings(elements=n, extrapolate=False) for n in (20, 40, 80, 160)]
@@ -415,7 +414,6 @@ def test_energy_balances_where_most_of_a_patch_sticks(case):
     assert float(ds.stick_area_fraction.min()) > 0.75 and float(ds.energy_residual) < 1e-2
 
 
-@pytest.mark.long
 def test_slender_patches_about_the_pole_are_not_extrapolated():
     """Twenty elements across do not see the traction turn within a length b; b/a 0.09 and 0.18, pole at 0.14 a."""
     ellipses = patch([0.47, 0.35], [0.044, 0.064], 900.0)

@@ -15,6 +15,7 @@ def _derivative(height, rng):
     return np.stack([along, across, np.cos(angle), np.sin(angle)]).astype(np.float32)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("ny", "nx"), [(6, 5), (9, 8), (12, 21), (31, 11)])
 def test_each_column_is_solved_as_its_own_system(ny, nx):
     """Columns of different lengths are solved side by side in one group; one column has no load.

@@ -78,6 +78,7 @@ def shift_of_carter(elements, share, sharpened):
     return np.mean(shifts)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("elements", [40, 160])
 @pytest.mark.parametrize("share", [0.3, 0.4])
 def test_sharpened_elements_see_where_sliding_begins_without_an_error_of_first_order(elements, share):

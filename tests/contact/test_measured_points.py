@@ -101,6 +101,7 @@ def test_smooth_0_says_that_every_point_is_meant():
     assert "smooth" not in clean
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(40))
 def test_clean_curves_with_edges_pass(seed):
     r = np.random.default_rng(seed)
@@ -176,6 +177,7 @@ def test_two_heights_and_outlines_are_refused():
         assert "turns back" in refusal(*outline, **smooth)
 
 
+@pytest.mark.slow
 def test_a_noisy_fine_trace_is_smoothed_before_it_is_turned():
     """Noise in fine steps turns back on a steep flank; the flank is not cut into pieces there."""
     x = np.arange(0.0, 5.4, 0.001)

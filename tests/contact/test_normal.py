@@ -101,6 +101,7 @@ def test_surfaces_touch_inside_and_are_apart_outside():
     assert distance[pressure == 0].min() > -2 * TOLERANCE * depth
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("guide", "roller"), [(6.0, -7.0), (6.0, -6.2), (6.0, 10.0), (4.0, math.inf)])
 def test_family_of_parabolas_is_hertz_for_every_load(guide, roller):
     gap = Gap(with_edges(parabola(guide), -9, 9), parabola(roller), math.radians(30), 16.55, math.inf)
@@ -183,6 +184,7 @@ def rounded_punch(line_load, flat, radius):
     return 2.0 / np.pi * shape.max() * line_load * math.sin(s) / flat
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("radius", "load"), [(0.5, 1e-2), (2.0, 1e-2), (0.2, 2e-2)])
 def test_ridges_beside_a_flat_get_the_elements_that_they_need(radius, load):
     """A contact much longer than wide is a punch line by line; square elements miss its pressure by up to 40 %."""
@@ -198,6 +200,7 @@ def test_ridges_beside_a_flat_get_the_elements_that_they_need(radius, load):
     assert factor > 1 and off[1] < 5e-3 < 0.04 < off[0]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("load", [4e-4, 7e-4, 1e-3, 2e-3])
 def test_rounding_does_not_choose_the_elements_of_a_flat(load, monkeypatch):
     """All places of a flat are the lowest one; noise of 1e-15 in the gap must not move the box or change the factor."""

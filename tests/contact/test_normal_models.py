@@ -140,8 +140,8 @@ def test_peak_below_a_grid_matches_the_peak_below_the_ellipse(shift):
     assert np.all(error < 2e-3) and np.all(error <= found.error)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["sliding", "kalker"])
-@pytest.mark.long
 def test_hertz_is_the_special_case_of_the_whole_chain(model):
     """Parabolas give the results of normal='hertz'; so do small circles, up to the change by their shape."""
     outputs = ("forces", "contact", "peak_stress", "life", "friction_work")
@@ -165,6 +165,7 @@ def test_hertz_is_the_special_case_of_the_whole_chain(model):
         assert float(circles.energy_residual) < 1e-2
 
 
+@pytest.mark.slow
 def test_forces_stay_in_balance_on_an_uneven_profile_cut_by_its_edge():
     """Equations (7) and (9) hold, the pressures carry the load, an edge is told, and stress rises at it."""
     arcs = {"arcs": [{"radius": -7, "to": 0.1}, {"radius": -6.4}], "edge": {"outer": 0.25}}
@@ -203,6 +204,7 @@ def circle_points(radius, n=81):
     return [[float(x), math.sqrt(radius**2 - x * x)] for x in np.linspace(-4, 4, n)]
 
 
+@pytest.mark.slow
 def test_a_drawn_circle_gives_what_the_circle_gives_through_every_entrance(tmp_path, monkeypatch):
     """Case, mapping, JSON in a design data set, and a CSV file: the same numbers; and both sides alike."""
     monkeypatch.chdir(tmp_path)
@@ -222,6 +224,7 @@ def test_a_drawn_circle_gives_what_the_circle_gives_through_every_entrance(tmp_p
         np.testing.assert_array_equal(by_design[name][0], drawn[name][0])
 
 
+@pytest.mark.slow
 def test_batches_give_the_same_bits_however_they_are_cut():
     profiles = [None, {"arc": -7, "edge": {"outer": 0.3}}]
     cases = [tr.Case(roller_profile=p, axial_force=a, motor_force=0.0) for p in profiles for a in (0.0, 25.0)]
@@ -233,6 +236,7 @@ def test_batches_give_the_same_bits_however_they_are_cut():
             np.testing.assert_array_equal(alone[name][0], together[name][i], err_msg=name)
 
 
+@pytest.mark.slow
 def test_profiles_work_as_factors_of_a_study(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     (tmp_path / "study.yaml").write_text(
@@ -280,8 +284,8 @@ def test_a_sticking_patch_feels_the_rim_as_on_the_ellipse(monkeypatch):
     np.testing.assert_allclose(grid.stick_area_fraction, hertz.stick_area_fraction, atol=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("guide", "roller", "curve", "alpha"), [(2.0, -3.0, 800.0, 55.0), (12.0, -12.2, 60.0, 25.0)])
-@pytest.mark.long
 def test_peaks_of_slender_sliding_patches_keep_within_one_per_cent(guide, roller, curve, alpha):
     """The slip turns within an element where its pole lies in a slender patch: finer tractions are taken there."""
     loads = {"radial_force": -40.0, "axial_force": 5.0, "motor_force": 0.0, "friction_coefficient": 0.7}
@@ -360,6 +364,7 @@ def test_unlike_and_like_materials_in_one_batch_keep_their_digits():
             np.testing.assert_array_equal(together[name][i], alone[name][0])
 
 
+@pytest.mark.slow
 def test_the_peak_below_a_groove_edge_is_found_and_said_to_be_unknown():
     """The edge cuts the patch of contact 2: its pressure is singular there, and so is the stress."""
     cut = tr.Case(motor_force=0, friction_coefficient=0.1, roller_profile={"arc": -7, "edge": {"outer": 0.3}})
@@ -378,7 +383,7 @@ def test_the_peak_below_a_groove_edge_is_found_and_said_to_be_unknown():
     assert float(ds.error_estimate.sel(contact=1).max()) < 0.01
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     """Waves of 0.5 um every 0.1 mm: the field that stresses come from has the pressure that is told."""
     x = np.arange(-4.5, 4.501, 0.0125)
@@ -394,6 +399,7 @@ def test_pressure_on_ridges_a_few_elements_wide_stays_as_it_was_solved():
     assert np.all(off < 0.1) and np.all(off < rough.error_estimate)
 
 
+@pytest.mark.slow
 def test_a_flat_with_a_small_blend_is_as_accurate_as_a_smooth_profile():
     """Reference numbers: 80 x 160 elements. With square elements p_max was 12 %, and the work 1.5 % off."""
     arcs = [{"radius": 0.46328709, "to": -0.28140686}, {"radius": math.inf, "to": 0.28140686}, {"radius": 0.46328709}]
@@ -419,6 +425,7 @@ def test_a_flat_with_a_small_blend_is_as_accurate_as_a_smooth_profile():
     assert np.all(np.abs(ds.peak_stress / peaks - 1.0) < ds.error_estimate)
 
 
+@pytest.mark.slow
 def test_a_flat_pressure_is_not_stopped_by_the_bound_of_an_ellipse():
     """`stop_if` bounds the peak below a solved pressure by points of this pressure, not of a Hertzian ellipse."""
     flat = tr.Case(guide_profile={"parabola": 6.0, "edge": {"inner": 0.15, "outer": 0.15}}, friction_coefficient=0.0)

@@ -109,8 +109,8 @@ def test_the_curvature_in_the_rolling_direction_is_that_of_bodies_of_revolution(
     assert g.curvature(np.array(0.0)) == pytest.approx(math.cos(ALPHA) / 16.55)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("n", [61, 91, 361])
-@pytest.mark.long
 def test_automatic_smoothing_leaves_the_curvature_of_a_circle(n):
     """Noise of 1 um on points of a circle changes the curvature near the contact by less than 35 %, in 32 draws."""
     u, near = np.linspace(-4.5, 4.5, n), np.linspace(-1.0, 1.0, 81)
@@ -315,7 +315,7 @@ def test_coarse_and_uneven_points_give_the_circle():
     np.testing.assert_allclose(ds.max_pressure[1:], ds.max_pressure[:1].values.repeat(2, 0), rtol=1e-2)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_groove_worn_hollow_carries_in_two_patches():
     """A hollow at the nominal contact has no pressure in its middle and the load on both sides; all stages run."""
     hollow = [[float(u), float(-u * u / 14 + 0.02 * math.exp(-((u / 0.3) ** 2)))] for u in np.linspace(-2, 2, 201)]
@@ -334,6 +334,7 @@ def test_a_groove_worn_hollow_carries_in_two_patches():
             assert np.count_nonzero(np.diff(loaded, prepend=0) == 1) == 2
 
 
+@pytest.mark.slow
 def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
     """A case fails for the same reason alone and beside other cases."""
     from trackroller.study.solve import solve_cases
@@ -354,6 +355,7 @@ def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
         assert all("guide_profile" in why and "inclined" in why for why in reasons.values())
 
 
+@pytest.mark.slow
 def test_a_body_ends_before_its_axis():
     """The patch of a small roller with a steep contact ends before the roller's axis; two parabolas have no axis."""
     radius, angle = 1.6373, np.radians(75.4)

@@ -45,12 +45,12 @@ def brute_force(ellipse, slip, spin_model):
 @pytest.mark.parametrize(
     ("a", "b", "alpha", "shift", "spin_model"),
     [
-        pytest.param(0.35, 0.2, 0.52, 0.05, "concentric", marks=pytest.mark.slow),
+        pytest.param(0.35, 0.2, 0.52, 0.05, "concentric", marks=pytest.mark.long),
         (0.35, 0.2, 0.52, 0.05, "edge"),
         pytest.param(0.35, 0.2, 0.52, 0.05, "skewed", marks=pytest.mark.long),
         (0.2, 0.5, -0.9, -0.08, "edge"),
-        pytest.param(0.2, 0.5, -0.9, -0.08, "concentric", marks=pytest.mark.slow),
-        pytest.param(0.2, 0.5, -0.9, -0.08, "skewed", marks=pytest.mark.slow),
+        pytest.param(0.2, 0.5, -0.9, -0.08, "concentric", marks=pytest.mark.long),
+        pytest.param(0.2, 0.5, -0.9, -0.08, "skewed", marks=pytest.mark.long),
     ],
 )
 def test_resultants_and_power_match_adaptive_quadrature(a, b, alpha, shift, spin_model):

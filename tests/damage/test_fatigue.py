@@ -118,6 +118,7 @@ def test_rules_are_ordered_elementary_haibach_unlimited(stress):
     assert a <= b * (1 + 1e-12) and b <= c * (1 + 1e-12)
 
 
+@pytest.mark.slow
 @given(st.floats(10.0, 1e12), st.sampled_from(("elementary", "haibach")), st.sampled_from((0.01, 0.1, 0.5, 0.9)))
 def test_allowable_stress_inverts_life(cycles, rule, probability):
     options = {"failure_probability": probability, "scatter_cycles": 4.0}

@@ -79,11 +79,12 @@ def check(count, seed, **options):
     return ds
 
 
+@pytest.mark.slow
 def test_thirty_random_extremes_have_all_limits():
     check(30, 1, contact_model="kalker")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("seed", range(10, 10 + int(os.environ.get("EXTREME_FIFTIES", "1"))))
 def test_hundreds_of_random_extremes_have_all_limits(seed):
     check(50, seed, contact_model="kalker" if seed % 2 else "sliding")

@@ -66,7 +66,7 @@ def test_a_limit_of_the_user_stands_in_the_results(place):
     assert [row[0] for row in used] == pytest.approx([p / 500.0 for p in pressure], rel=1e-12)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_names_the_digest_and_an_edited_limit_solves_anew(place):
     file = place / "config" / "limits" / "lining.py"
     assert "2 cases" in command(place, "run", "study.yaml", "--allow-code")
@@ -79,7 +79,6 @@ def test_a_study_names_the_digest_and_an_edited_limit_solves_anew(place):
     assert "0 of them solved already" in command(place, "plan", "study.yaml", "--allow-code")
 
 
-@pytest.mark.slow
 def test_names_that_exist_and_empty_folders_are_refused(place):
     file = place / "config" / "limits" / "lining.py"
     file.write_text(file.read_text(encoding="utf-8").replace('"permissible_pressure", "p_zul"', '"density", "p_zul"'))
@@ -107,7 +106,7 @@ def test_the_file_of_a_limit_is_an_input_of_a_study(place):
     assert len(list((place / "results" / "own" / "chunks").iterdir())) == 1
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_file_may_import_parameters_from_the_catalogue_and_must_not_take_a_name(place):
     """`parameters` loads the files while it is imported itself, and it has `Parameter` by then."""
     file = place / "config" / "limits" / "lining.py"

@@ -24,7 +24,7 @@ print(json.dumps([used.sel(body=body).values.tolist() for body in ("roller", "gu
 """
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_limit_of_one_file_reaches_the_data_set(tmp_path):
     text = (ROOT / "CONTRIBUTING.md").read_text(encoding="utf-8")
     recipe = text.partition("## Add a damage limit")[2].partition("\n## ")[0]

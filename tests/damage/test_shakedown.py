@@ -112,6 +112,7 @@ def test_loads_on_the_ladder_keep_resultants_and_first_moments():
         assert coarse.half_sides[0] * coarse.half_sides[1] <= 1.5 * a * b
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("a", "b"), [(1.0, 1.0), (4.1, 1.0), (1.0, 3.3)])
 def test_deep_planes_converge_with_the_fourth_order(a, b):
     """Against the exact stresses of a fine grid under a smooth load, from a depth of 0.3 downwards."""

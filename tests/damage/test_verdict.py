@@ -244,6 +244,7 @@ def test_a_skidding_roller_keeps_the_lives_of_its_other_limits():
     assert np.isfinite(guide) and ds.life_to_first_limit_hours.sel(body="guide") == guide
 
 
+@pytest.mark.slow
 def test_the_head_of_a_sheet_names_each_limit_that_may_come_first():
     """Fatigue lies within the range of the wear life here; a measured coefficient tells which one it is."""
     given = {"permissible_wear_depth": 0.1, "radial_force": -90, "axial_force": 5, "guide_overrollings_per_hour": 500}

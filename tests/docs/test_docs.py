@@ -64,6 +64,7 @@ def commands(code: str) -> list[str]:
     return [line for line in lines if line.startswith("trackroller ")]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("page", PAGES, ids=lambda p: p.relative_to(ROOT).as_posix())
 def test_every_code_block_runs(page, tmp_path, monkeypatch):
     """In the order of the page, in an empty folder, as a reader would do it."""

@@ -21,6 +21,7 @@ MODULES = sorted(
 )
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("module", MODULES)
 def test_examples_print_what_they_show(module, tmp_path, monkeypatch):
     """The examples of a module run in an empty folder and print the shown text."""

@@ -11,6 +11,7 @@ ROOT = Path(__file__).parents[2]
 STEEL, ALUMINIUM, POM, PA6 = ("1.7225-quenched-tempered", "EN AW-7075", "POM", "PA6")
 
 
+@pytest.mark.slow
 def test_the_tutorial_on_limits_states_what_its_study_finds():
     results = tr.run(ROOT / "config" / "studies" / "what_ends_it.yaml", progress=False)
     ds = results.data

@@ -49,7 +49,7 @@ def _numerical_stress(load: str, point, nu):
     ]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_regeneration_gives_the_same_file():
     """`kernels.py` is what the derivation writes today (up to the formatter's white space)."""
     written = ast.parse(Path(kernels.__file__).read_text(encoding="utf-8"))

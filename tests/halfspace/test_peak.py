@@ -27,6 +27,7 @@ def stress(row, points, nu, sign=1.0, order=24):
     return parts[:, 0] + nu * parts[:, 1] + sign * (parts[:, 2] + nu * parts[:, 3])
 
 
+@pytest.mark.slow
 def test_hertz_circle_on_its_axis():
     """sigma_z and sigma_r on the axis (Johnson 3.45), and 0.620 p0 at z = 0.481 a for nu = 0.3."""
     z, nu = np.array([1e-9, 1e-4, 0.1, 0.481, 1.0, 5.0, 50.0]), 0.3
@@ -185,6 +186,7 @@ def random_cases(n, seed=3):
     return out
 
 
+@pytest.mark.slow
 def test_error_estimate_covers_the_error():
     """`standard` lies within 0.2 % of `reference` and within its own estimate in nearly all of a random sample."""
     cases = random_cases(120)
@@ -196,6 +198,7 @@ def test_error_estimate_covers_the_error():
     assert np.mean(error <= estimate) >= 0.99
 
 
+@pytest.mark.slow
 def test_accuracy_is_a_ladder():
     """preview, standard and reference err less and less against a still finer search."""
     cases = random_cases(24, seed=8)

@@ -33,6 +33,7 @@ def scratch(**values):
 ORDER = {"ss": 0, "tt": 1, "zz": 2, "st": 3, "tz": 4, "zs": 5}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "load, row, nu_row, direction",
     [("z", PRESSURE, PRESSURE_NU, (0.0, 0.0)), ("s", SHEAR, SHEAR_NU, (1.0, 0.0)), ("t", SHEAR, SHEAR_NU, (0.0, 1.0))],
@@ -59,6 +60,7 @@ def test_wave_kernel_is_the_derived_one(load, row, nu_row, direction):
         assert found == pytest.approx(derived, rel=1e-11, abs=1e-10), name
 
 
+@pytest.mark.slow
 def test_chord_kernel_is_the_point_kernel():
     """The radial functions of the friction integral equal the generated point kernel along and across the ray."""
     rng = np.random.default_rng(0)

@@ -526,6 +526,7 @@ def test_a_link_stays_a_link_and_the_mode_stays(user, tmp_path):
     assert path.stat().st_mode & 0o777 == 0o640
 
 
+@pytest.mark.slow
 @given(
     st.floats(1e-2, 1.9e6),
     st.floats(0, 0.5),

@@ -43,6 +43,7 @@ def halton():
         tr.load_study(STUDY)
 
 
+@pytest.mark.slow
 def test_a_study_with_the_method_of_the_recipe_is_drawn_analysed_and_reported(halton, tmp_path):
     study = tr.load_study(STUDY)
     half = tr.load_study(STUDY | {"samples": 32}).drawn
@@ -56,6 +57,7 @@ def test_a_study_with_the_method_of_the_recipe_is_drawn_analysed_and_reported(ha
     assert np.array_equal(tr.open_study(solved.data).design.unit, study.drawn.unit)
 
 
+@pytest.mark.slow
 def test_the_method_of_the_recipe_grows(halton, tmp_path):
     until = {"half_width": 0.05, "of": ["normal_force_1"], "at_most": 4096}
     study = tr.load_study({key: value for key, value in STUDY.items() if key != "samples"} | {"until": until})

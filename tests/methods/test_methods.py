@@ -102,6 +102,7 @@ def test_the_room_reads_no_files_and_labels_nothing():
         assert not {m for m in modules if m.startswith(("trackroller.study", "trackroller.roller"))}, path.name
 
 
+@pytest.mark.slow
 def test_no_room_asks_for_a_method_by_its_name():
     """A method's name is compared in no file outside the room: traits and functions of `Method` serve instead."""
     package, asked = Path(method.__file__).parents[1], []

@@ -278,6 +278,7 @@ class Audit:
             getattr(self, f"check_{name}")()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(STUDIES))
 def test_every_claim_on_a_solved_random_study(seed):
     Audit(seed).everything()

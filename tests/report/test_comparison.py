@@ -91,6 +91,7 @@ def own(tmp_path_factory):
     return study(place, factors), place
 
 
+@pytest.mark.long
 def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(own):
     drawn, text = shown(*own)
     assert set(drawn) >= FIGURES
@@ -116,6 +117,7 @@ def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(o
     assert free[0] == pytest.approx(float(expected), rel=1e-3)
 
 
+@pytest.mark.slow
 def test_best_designs_and_pareto_set_are_those_of_one_model(own):
     with xr.open_dataset(own[0]) as ds:
         page, front = contents(results_of(ds)), study_pareto(results_of(ds))
@@ -132,6 +134,7 @@ def test_best_designs_and_pareto_set_are_those_of_one_model(own):
     assert front["roller_life_hours"].item() == pytest.approx(lives.min())
 
 
+@pytest.mark.slow
 def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "motor_force": {"values": [0, -10, 10]}}
     with xr.open_dataset(study(tmp_path, factors, outputs=["forces", "contact"])) as ds:
@@ -145,6 +148,7 @@ def test_three_drives_get_room_and_many_are_told_by_their_sign(tmp_path):
     assert texts == ["driven, 5 to 20 N", "free rolling", "braked, 5 to 9 N"]
 
 
+@pytest.mark.slow
 def test_motor_force_in_the_base_and_another_factor(tmp_path):
     factors = {"friction_coefficient": {"values": [0.05, 0.3]}, "contact_angle": {"values": [20, 30, 60]}}
     gathered = study(tmp_path, factors, {"motor_force": -5, "radial_force": -400, "axial_force": 0})
@@ -163,6 +167,7 @@ def test_motor_force_in_the_base_and_another_factor(tmp_path):
     assert set(paired["contact_angle"].values) == {20, 30, 60}
 
 
+@pytest.mark.slow
 def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_why_not(tmp_path):
     factors = {
         "friction_coefficient": {"uniform": [0.05, 0.4]},
@@ -177,6 +182,7 @@ def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_
     assert not set(drawn) & FIGURES and "The contact models cannot be compared: no case was solved" in text
 
 
+@pytest.mark.slow
 def test_without_kalker_its_table_is_the_reference(tmp_path):
     factors = {"axial_force": {"values": [0, 20]}}
     with xr.open_dataset(study(tmp_path, factors, models=["sliding", "kalker_table"], outputs=["forces"])) as ds:
@@ -239,7 +245,7 @@ def test_unlimited_lives_are_no_error_where_both_are():
     assert ladder.errors(ds).life.values[0].tolist() == [0.0, np.inf, 1.0, 1.0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_shipped_study_may_be_edited(tmp_path):
     """Another roller, three drives in one file; a fixed drive and the contact angle as a factor in the other."""
     for factors, base in (
@@ -270,6 +276,7 @@ def test_the_sentences_of_a_solved_study_say_where_sliding_is_good_enough(own):
     assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
 
 
+@pytest.mark.slow
 def test_the_table_of_the_exact_theory_is_compared_like_any_other_model(tmp_path):
     """Its section stands in the report; full sliding is not judged by an adhesion area that it does not have."""
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 10, 200]}}

@@ -50,6 +50,7 @@ def test_a_wrong_duty_is_refused_by_name(value, words):
             refused()
 
 
+@pytest.mark.slow
 def test_solve_and_plan_take_the_duty(tmp_path):
     (tmp_path / "case.yaml").write_text("duty: {hours_per_day: 8, days_per_year: 220}\ncontact_model: sliding\n")
     told = trackroller("solve", "case.yaml", "--set", "accuracy=preview", cwd=tmp_path).stdout
@@ -83,6 +84,7 @@ contact_model: sliding
 """
 
 
+@pytest.mark.slow
 def test_a_spectrum_has_years_doubts_and_what_was_not_given_everywhere(tmp_path):
     (tmp_path / "a.yaml").write_text(SPECTRUM.replace("velocity: 0.25", "velocity: 25"))
     plain = trackroller("spectrum", "a.yaml", cwd=tmp_path)
@@ -102,6 +104,7 @@ def test_a_spectrum_has_years_doubts_and_what_was_not_given_everywhere(tmp_path)
     assert "write '0.25 m/s' or 15" in doubt and doubt in told.stderr and doubt.replace("'", "&#39;") in page
 
 
+@pytest.mark.slow
 def test_a_sheet_and_json_ask_about_doubtful_values(tmp_path):
     words = ["solve", "--set", "contact_model=sliding", "--set", "accuracy=preview", "--set", "velocity=0.25"]
     told = trackroller(*words, "--json", cwd=tmp_path)
@@ -122,6 +125,7 @@ def test_lives_of_a_case_have_years_in_json(tmp_path):
     assert "years" not in found["life_cycles"]
 
 
+@pytest.mark.slow
 def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     text = "{name: d, base: {motor_force: 0, friction_coefficient: 0.1}, outputs: [peak_stress, life], "

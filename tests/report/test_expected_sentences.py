@@ -59,6 +59,7 @@ def page(results):
     return " ".join([*lines, *(t.note for key in ("decide", "ends") for t in told["tables"][key])])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", [*GRIDS, *SAMPLES])
 def test_a_sentence_that_should_appear_does(name):
     ds, table = study_of(name)

@@ -125,6 +125,7 @@ def test_a_state_of_small_share_keeps_its_least_number_of_cases():
     assert np.bincount(state[rows])[1] == RARE
 
 
+@pytest.mark.slow
 def test_a_sampled_page_says_so_and_keeps_the_pareto_set(monkeypatch):
     monkeypatch.setattr(
         "trackroller.report.explorer.page.sample_rows", lambda s, k, most: sample_rows(s, k, min(most, 300))
@@ -235,6 +236,7 @@ contact_model: sliding
 """
 
 
+@pytest.mark.slow
 def test_the_commands_of_a_case_are_those_of_repeat(tmp_path, monkeypatch):
     """`explore` writes the page, and its settings are the ones that `repeat` prints for the same case."""
     monkeypatch.chdir(tmp_path)
@@ -269,6 +271,7 @@ def test_a_folder_without_results_is_refused(tmp_path):
     assert done.exit_code != 0
 
 
+@pytest.mark.slow
 def test_a_page_of_many_cases_and_columns_stays_below_its_size():
     """Random numbers do not compress: 40 such columns leave room for a fifth of 60,000 cases."""
     rng = np.random.default_rng(0)

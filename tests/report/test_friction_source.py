@@ -36,6 +36,7 @@ def expected(levels=("typical",)):
     return rows
 
 
+@pytest.mark.slow
 def test_the_report_lists_every_coefficient_with_source_and_placeholder(tmp_path):
     """Kept and unkept results record the same; the page names the guess beside what rests on it."""
     for found in (solved(), solved(tmp_path)):

@@ -69,6 +69,7 @@ def grid(tmp_path_factory):
     return folder, drawn(grid_study(SMALL), folder)
 
 
+@pytest.mark.slow
 def test_a_full_grid_gets_every_figure_as_svg_and_png_with_captions(grid):
     folder, names = grid
     assert names == ALL
@@ -92,6 +93,7 @@ def test_figures_are_the_wide_column_and_nothing_is_cut_off(grid):
         assert border.min() > 0.97, name
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("make", [lambda: grid_study(SMALL), lambda: sampled_study(200)])
 def test_every_text_has_at_least_seven_points(make):
     results = results_of(make())
@@ -131,6 +133,7 @@ def test_materials_of_the_same_stresses_share_a_line():
     assert any(" and " in name for name in names) and len(names) == 4  # two lines, two kinds of marks
 
 
+@pytest.mark.slow
 def test_the_same_study_gives_the_same_svg(grid, tmp_path):
     folder, _ = grid
     for draw in (regime_map, forces_against_axial):
@@ -140,10 +143,12 @@ def test_the_same_study_gives_the_same_svg(grid, tmp_path):
         assert again.read_bytes() == (folder / "figures" / f"{info.name}.svg").read_bytes()
 
 
+@pytest.mark.slow
 def test_a_sample_along_case_gets_every_figure(tmp_path, unsaved):
     assert drawn(sampled_study(200), tmp_path) == ALL - {"designs"}
 
 
+@pytest.mark.slow
 def test_unlimited_lives_are_drawn_above_the_finite_ones(tmp_path, unsaved):
     values, top = capped(np.array([10.0, np.inf, np.nan, 0.0]))
     assert top == 100.0 and values[1] == 100.0 and np.isnan(values[2:]).all()
@@ -158,6 +163,7 @@ def test_a_loads_only_study_gets_forces_and_regimes_only(tmp_path):
     assert drawn(ds, tmp_path) == {"forces_against_axial_force", "regime_map"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("value", [np.nan, np.inf])
 def test_nothing_but_nan_or_inf_never_fails_a_run(tmp_path, value):
     ds = grid_study(SMALL)
@@ -286,6 +292,7 @@ def solved():
     return solve_sliding(tr.Case(), outputs=OUTPUTS)
 
 
+@pytest.mark.slow
 def test_a_case_gets_shear_energy_and_sections_of_both_contacts(solved, tmp_path):
     infos = plot_case(solved, tmp_path)
     assert [i.name for i in infos] == ["contact_shear", "contact_energy", "contact_1_stress", "contact_2_stress"]
@@ -322,6 +329,7 @@ def test_a_case_is_named_by_what_differs_from_the_defaults():
     assert named == "axial force 10 N, free rolling and PA6 on 1.7225-normalised"
 
 
+@pytest.mark.slow
 def test_frictionless_and_tall_contacts_are_drawn(tmp_path, unsaved):
     """mu = 0 has no tractions to show; an ellipse longer in the rolling direction has its panels side by side."""
     free = solve_sliding(tr.Case(friction_coefficient=0.0, motor_force=0.0), outputs=OUTPUTS)
@@ -330,6 +338,7 @@ def test_frictionless_and_tall_contacts_are_drawn(tmp_path, unsaved):
     assert {i.name for i in plot_case(tall, tmp_path / "tall")} == {"contact_shear", "contact_energy"}
 
 
+@pytest.mark.slow
 def test_a_lifted_contact_is_left_out(solved, tmp_path, unsaved):
     ds = solved.copy()
     for name, variable in ds.data_vars.items():

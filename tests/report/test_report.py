@@ -73,6 +73,7 @@ def test_a_long_cell_that_equals_the_one_above_says_so(tmp_path):
     assert cells == [long[0], "as above", long[1]]
 
 
+@pytest.mark.slow
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
     text = report.read_text(encoding="utf-8")
     wanted = (
@@ -240,6 +241,7 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
     assert said.kind == "cases" and said.text == "Jamming occurs in 3 of 400 cases (0, 1 and 2)."
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "part",
     [

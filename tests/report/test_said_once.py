@@ -102,6 +102,7 @@ def sentences(prose):
             yield place, one.rstrip(".")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", STUDIES)
 def test_no_sentence_stands_three_times(name):
     """Once in In short, once where it is explained."""

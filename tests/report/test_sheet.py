@@ -69,6 +69,7 @@ def facts(solved):
     return {name: collect(ds) for name, ds in solved.items()}
 
 
+@pytest.mark.slow
 def test_inputs_are_told_with_defaults_marked(facts):
     rows = {row.words.split()[0]: row for row in facts["plastic"].inputs}
     assert not rows["radial"].default and not rows["overrollings"].default
@@ -119,6 +120,7 @@ def test_overload_and_skidding_rule_before_any_life(solved, facts):
     assert "no fatigue life" in page and "turns" not in page
 
 
+@pytest.mark.slow
 def test_limits_over_friction_include_lift_off():
     """Free rolling at 55 N: friction alone lifts contact 1; just below the stated coefficient both contacts carry."""
     case = tr.Case(motor_force=0, axial_force=55, friction_coefficient=0.05)
@@ -172,6 +174,7 @@ def test_deep_life_is_flagged_where_the_worse_contact_stays_below_the_fatigue_li
     assert found >= {(True, True), (False, True)}
 
 
+@pytest.mark.slow
 def test_friction_energy_of_full_sliding_is_flagged_and_that_of_the_exact_theory_is_not():
     for model, told in (("sliding", True), ("kalker", False)):
         ds = tr.solve(CASES["example"], ("forces", "friction_work"), contact_model=model, accuracy="preview")
@@ -277,6 +280,7 @@ def written(tmp_path_factory):
     return place / "sheet.html", done.stdout
 
 
+@pytest.mark.slow
 def test_the_command_line_writes_sheet_and_text(written):
     page = written[0].read_text(encoding="utf-8")
     assert "my-roller" in page and page.count("<figure") == 4  # one of them is small: the worn depth
@@ -355,6 +359,7 @@ def test_a_life_beyond_the_data_says_so():
     assert "beyond the S-N data" in fatigue.life
 
 
+@pytest.mark.slow
 def test_the_sheet_names_what_it_rests_on(complete):
     facts, ds = complete
     page = render(ds, "R 1")

@@ -46,6 +46,7 @@ def random_spectrum(seed, **material):
     return spec, solve_spectrum(spec, DB, solve=solve)
 
 
+@pytest.mark.slow
 def test_every_sentence_on_a_spectrum_is_true():
     kinds = set()
     for seed in range(150):

@@ -326,6 +326,7 @@ def sentences_of(seed):
     return Counter(s.kind for s in said if s is not None)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("part", range(5))
 def test_no_sentence_on_a_random_study_is_false(part):
     """Every claim holds for all raw rows and within each category; every kind of sentence occurs."""

@@ -152,6 +152,7 @@ def check_interaction(sens, output):
     return said.kind if found else ""
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["saltelli", "grid", "lhs"])
 def test_every_sentence_on_groups_and_levels_is_true(method):
     """The groups stand in the order of their indices, each level has its largest factor, each ± is half an interval."""
@@ -262,6 +263,7 @@ def test_every_sentence_on_a_pareto_set_is_true():
         assert tuples[:4] == pytest.approx(exact, rel=0.006)
 
 
+@pytest.mark.slow
 def test_every_row_on_design_points_is_true():
     rng = np.random.default_rng(4)
     for _ in range(60):

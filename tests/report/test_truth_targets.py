@@ -92,6 +92,7 @@ def check_levels(ds, met, text):
     return 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", ["inner_outer", "lhs", "grid"])
 def test_every_sentence_on_targets_is_true(design):
     levels = 0

@@ -53,7 +53,7 @@ def whole(place):
     return read(place / "whole.nc")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_run_of_the_command_goes_on_with_the_same_bits_and_writes_its_page(place, whole):
     call(place, "4km", "parts.nc", "--quiet")
     said = call(place, "9km", "parts.nc", "--report", str(place / "page.html"))
@@ -79,6 +79,7 @@ def test_the_surfaces_touch_and_hold_the_worn_depth(whole):
     np.testing.assert_array_equal(whole.guide_surface.values, -whole.worn_depth.sel(body="guide").values)
 
 
+@pytest.mark.slow
 def test_the_page_states_the_wear_coefficient_and_that_it_is_a_placeholder(tmp_path):
     case = {"motor_force": 0, "axial_force": 0, "friction_coefficient": 0.2}
     ds = tr.wear(case, to=1, contact_model="sliding", accuracy="preview")

@@ -38,6 +38,7 @@ def study(tmp_path_factory):
     return tr.run(yaml.safe_load(STUDY), progress=False, results=tmp_path_factory.mktemp("results"))
 
 
+@pytest.mark.slow
 def test_sentences_on_wear(study):
     results = study
     told = guesses(results)

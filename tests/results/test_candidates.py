@@ -204,6 +204,7 @@ def test_lives_beyond_the_data_are_never_bare():
     assert best_table(results_of(ds)).heads[1:] == ["Candidate 1 (tie)", "Candidate 1 (tie)"]
 
 
+@pytest.mark.slow
 def test_margins_against_the_searched_limits():
     """Slip margin: what the drive leaves of the motor force at which the roller skids; lift-off: 0 where it lifts."""
     cases = [tr.Case(), tr.Case(friction_coefficient=0.1, motor_force=-10), tr.Case(axial_force=78.0)]

@@ -89,6 +89,7 @@ def test_designs_without_samples_are_not_told_to_take_more():
     assert table.values["number"] == 200 * table.values["take_times"]
 
 
+@pytest.mark.slow
 def test_first_order_indices_above_100_percent_say_why():
     """A small sample of a function without interactions, and factors that are correlated."""
     study = {"name": "e", "design": "lhs", "samples": 40, "seed": 1, "outputs": ["forces", "friction_work"]}

@@ -97,6 +97,7 @@ def test_ranks_agree_with_the_pareto_set_peeled_front_by_front():
     assert nondominated_ranks(np.array([[0.0], [1.0]]), np.array([0.5, 0.0])).tolist() == [1, 0]
 
 
+@pytest.mark.slow
 def test_the_hypervolume_of_an_eighth_of_a_sphere():
     angles = np.linspace(0, np.pi / 2, 60)
     a, b = (grid.ravel() for grid in np.meshgrid(angles, angles))
@@ -104,6 +105,7 @@ def test_the_hypervolume_of_an_eighth_of_a_sphere():
     assert hypervolume(shell, [1, 1, 1]) == pytest.approx(1 - np.pi / 6, rel=0.03)
 
 
+@pytest.mark.slow
 def test_a_search_finds_the_front_of_all_designs(tmp_path):
     plan = search_designs(changed(budget={"designs": 24, "population": 8}), tmp_path)
     solved = tr.open_study(plan.folder.root)
@@ -119,7 +121,7 @@ def test_a_search_finds_the_front_of_all_designs(tmp_path):
         solved.indices()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_search_goes_on_where_it_was_stopped(tmp_path):
     whole = tr.open_study(search_designs(changed(), tmp_path / "whole").folder.root)
     calls = []
@@ -141,6 +143,7 @@ def test_a_search_goes_on_where_it_was_stopped(tmp_path):
     assert optimum_of(parts) == optimum_of(whole)
 
 
+@pytest.mark.slow
 def test_hours_add_up_over_runs(tmp_path):
     told = []
     tight = changed(budget={"designs": 12, "population": 4, "hours": 1e-9})
@@ -157,6 +160,7 @@ def test_the_table_prunes_and_elements_decide():
     assert cheaper(halfspace) is halfspace
 
 
+@pytest.mark.slow
 def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     solved = tr.open_study(search_designs(changed(), tmp_path).folder.root)
     found = optimum_of(solved)
@@ -171,6 +175,7 @@ def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     assert "Optima of the search" in page and said[0].split(":")[0] in page
 
 
+@pytest.mark.slow
 def test_a_search_without_a_valid_design_solves_its_budget_only_and_says_why(tmp_path):
     none = changed(constraints=["max_pressure < 100", "max_pressure > 200"], budget={"designs": 1})
     solved = tr.open_study(search_designs(none, tmp_path).folder.root)
@@ -180,6 +185,7 @@ def test_a_search_without_a_valid_design_solves_its_budget_only_and_says_why(tmp
     assert "budget of 1 design is spent" in said[-1] and "Beside the budget" not in said[-1]
 
 
+@pytest.mark.slow
 def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
     grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
     best = tr.run(grid, progress=False, results=tmp_path).best(1)
@@ -189,6 +195,7 @@ def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
     assert "Candidates" in (tmp_path / "best.html").read_text()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("keys", "says"),
     [
@@ -203,6 +210,7 @@ def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, 
     assert says in " ".join(capsys.readouterr().out.split())
 
 
+@pytest.mark.slow
 def test_a_life_beyond_the_data_is_marked(tmp_path):
     more = dict(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
     light = changed(**more, budget={"designs": 4, "population": 4})
@@ -214,6 +222,7 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
     assert "beyond the S-N data" in best_of(solved)[0][0]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("goal", "way", "says"),
     [
@@ -229,6 +238,7 @@ def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
     assert solved.explore(tmp_path / "explorer.html").stat().st_size > 0
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("keys", "says"),
     [

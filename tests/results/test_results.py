@@ -30,6 +30,7 @@ def few_cases(path: Path):
     return parse_study(told)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("path", SHIPPED, ids=lambda path: path.stem)
 def test_a_shipped_study_gives_the_same_indices_in_memory_and_through_its_files(path, tmp_path):
     study = few_cases(path)
@@ -96,6 +97,7 @@ def test_a_study_file_that_would_be_read_with_another_meaning_is_refused(monkeyp
         tr.open_study(ds.assign_attrs(study=text))
 
 
+@pytest.mark.slow
 def test_a_report_takes_the_indices_that_are_known(tmp_path, monkeypatch):
     solved = tr.run(SMALL, progress=False)
     solved.indices().to_netcdf(tmp_path / "indices.nc")
@@ -109,6 +111,7 @@ def test_a_report_takes_the_indices_that_are_known(tmp_path, monkeypatch):
         assert "friction coefficient" in study.report(tmp_path / f"{name}.html").read_text(encoding="utf-8")
 
 
+@pytest.mark.long
 def test_report_explorer_and_best_cases_come_from_the_same_object(tmp_path):
     grooves = {"roller_profile_radius": {"values": [-7, -8, -9]}}
     study = parse_study(SMALL | {"factors": SMALL["factors"] | grooves})
@@ -128,6 +131,7 @@ def test_report_explorer_and_best_cases_come_from_the_same_object(tmp_path):
         solved.robustness()
 
 
+@pytest.mark.slow
 def test_a_run_with_a_folder_goes_on_where_it_stopped(tmp_path):
     first = tr.run(parse_study(SMALL), cores=1, progress=False, results=tmp_path)
     again = tr.run(parse_study(SMALL), progress=False, results=tmp_path)

@@ -427,6 +427,7 @@ def test_outputs_of_a_solved_case_join_contacts_and_bodies():
             outputs(ds, ["velocity"], [name])
 
 
+@pytest.mark.slow
 def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
     """Saltelli study with life and friction power: files are there, the sentences name the right factor."""
     from trackroller.report.figures.study import draw_all

@@ -360,6 +360,7 @@ def test_rows_that_do_not_repeat_cannot_tell_or_are_the_best_of_those_that_were_
     assert lifted.verdict.kind == "give" and lifted.verdict.turns[0].what == "axial_force"
 
 
+@pytest.mark.slow
 def test_the_places_of_placeholders_span_the_range_and_are_no_conditions():
     """A factor at three places: the same verdict as with the columns of both ends."""
     results = solved(3, 2, 2, "", (-1, 0, 1))
@@ -430,6 +431,7 @@ def arrays(rows):
     )
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(CASES)
 def test_intervals_and_unbeaten_candidates_against_loops(rows):
@@ -447,6 +449,7 @@ def test_intervals_and_unbeaten_candidates_against_loops(rows):
         assert found.kind == ("cannot_tell" if any(high > 0 for _, high in span.values()) else "none")
 
 
+@pytest.mark.slow
 @settings(max_examples=25, deadline=None)
 @given(CASES, st.integers(2, 9))
 def test_targets_against_loops(rows, least):

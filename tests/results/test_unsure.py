@@ -3,6 +3,7 @@
 import itertools
 
 import numpy as np
+import pytest
 from told import told
 
 import trackroller as tr
@@ -27,6 +28,7 @@ STUDY = {
 }
 
 
+@pytest.mark.slow
 def test_conclusions_that_hold_for_all_combinations_of_the_ranges_are_counted():
     """Count by trying every combination of the places of each limit, which differ independently."""
     solved = tr.run(parse_study(STUDY), progress=False)

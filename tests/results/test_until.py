@@ -104,6 +104,7 @@ def test_a_doubled_sample_begins_with_the_smaller_one_and_has_independent_replic
         assert all(np.array_equal(np.sort((one * len(own)).astype(int)), np.arange(len(own))) for one in own.T)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", DESIGNS)
 def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
     solved = grow(study_of(design), tmp_path)
@@ -126,6 +127,7 @@ def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
         assert np.nanmax(half) / scale <= max(widths[-1].values()) + 1e-12
 
 
+@pytest.mark.slow
 def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
     study = load_study(UNEQUAL)
     whole = grow(study, tmp_path / "whole")
@@ -154,6 +156,7 @@ def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
     assert status_of(study, study_folder(study.name, tmp_path / "parts")).total == design.size == sum(sizes)
 
 
+@pytest.mark.slow
 def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
     def outside(cases, **how):
         ds = fake_solver.solve(cases, **how)
@@ -169,6 +172,7 @@ def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
         assert set(found["looks"][0]["half_width"].values()) == {None}
 
 
+@pytest.mark.slow
 def test_every_solved_case_is_used_again(tmp_path, monkeypatch):
     solved = tmp_path / "solved.txt"
     monkeypatch.setenv("FAKE_SOLVED", str(solved))
@@ -176,6 +180,7 @@ def test_every_solved_case_is_used_again(tmp_path, monkeypatch):
     assert len(solved.read_text().splitlines()) == data.sizes["case"] > 128
 
 
+@pytest.mark.slow
 def test_the_number_of_cases_ends_the_growth(tmp_path):
     found = looks_of(grow(study_of(half_width=1e-6, at_most=300), tmp_path))
     assert found["stopped"] == "the next step has 512 cases, and at_most is 300"
@@ -201,6 +206,7 @@ def test_an_output_that_does_not_vary_ends_the_growth(tmp_path):
 
 
 # inner_outer: in the test of unequal design points
+@pytest.mark.slow
 @pytest.mark.parametrize(("design", "first"), [("sobol", 128), ("saltelli", 1024)])
 def test_a_killed_run_goes_on_to_the_same_bits(design, first, tmp_path, monkeypatch):
     study = study_of(design, half_width=1e-6, at_most=4 * first)
@@ -212,6 +218,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(design, first, tmp_path, monkeypa
     assert status_of(study, study_folder(study.name, tmp_path / "parts")).total == whole.data.sizes["case"]
 
 
+@pytest.mark.slow
 def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
     solved = tr.run({**STUDY, "until": {**STUDY["until"], "half_width": 0.04}}, progress=False)
     page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
@@ -275,7 +282,7 @@ def test_first_order_indices_of_replicates_are_free_of_bias():
     assert (np.abs(np.mean(found, axis=0) - truth) < 4 * error + 0.002).all()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_workflow_grows_by_checkpoints_and_then_has_nothing_to_do(tmp_path):
     study = {**STUDY, "until": {"half_width": 0.04, "of": ["normal_force_1"]}}
     (tmp_path / "config").mkdir()

@@ -41,6 +41,7 @@ def test_noise_of_a_vanishing_force_is_no_difference(solved, name):
     assert "load" in found.scale
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name",
     [

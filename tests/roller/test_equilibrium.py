@@ -98,6 +98,7 @@ def build(draw: dict) -> tr.Case:
     return tr.Case(axial_force=load * draw["ax"], motor_force=load * draw["motor"], **rest)
 
 
+@pytest.mark.slow
 @settings(max_examples=60, deadline=None)
 @given(cases)
 def test_every_case_balances_or_says_why(draw):
@@ -141,6 +142,7 @@ def test_driving_braking_and_the_slip_limit():
     np.testing.assert_allclose(beyond.normal_force, ds.normal_force[0], rtol=0.02)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("size", [0.37, 7.3])
 @pytest.mark.parametrize(
     "options",

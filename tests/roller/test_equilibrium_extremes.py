@@ -89,6 +89,7 @@ def test_self_locking_is_flagged_with_and_without_axial_force():
     assert (ds.validity.values & bit > 0).tolist() == [False] * 3 + [True] * 3
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("friction", [0.0, 0.2])
 def test_a_contact_lifts_at_a_stated_share_of_the_load_and_once(friction):
     """A contact lifts at a normal force of 1e-8 of |F_rad| + |F_ax|, and stays lifted under more axial force."""
@@ -106,7 +107,7 @@ def test_a_contact_lifts_at_a_stated_share_of_the_load_and_once(friction):
     assert least == pytest.approx(1e-8 * (200 + lift * low), rel=1e-2)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_converged_says_whether_the_force_of_a_roller_far_smaller_than_its_patch_is_known():
     """The transmitted force in other units differs by no more than the residual says, over what friction can give."""
     cases = random_extremes(1500, 11)
@@ -131,6 +132,7 @@ def test_vanishing_friction_and_motor_force_are_quiet(friction, motor):
     assert np.isfinite(ds.normal_force.values).all()
 
 
+@pytest.mark.slow
 def test_random_extremes_of_kalker_balance_and_mirror():
     """The balances, eqs (7) to (10), hold for the returned forces, and the mirrored roller has mirrored forces."""
     cases = random_extremes(40, 11)

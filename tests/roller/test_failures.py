@@ -77,7 +77,7 @@ def test_a_row_that_misses_its_tolerance_has_a_reason_and_others_have_none():
     assert "reason" not in solve_sliding(tr.Case(), "forces")
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_failed_case_ends_with_exit_1_and_its_reason(tmp_path):
     (tmp_path / "case.yaml").write_text("axis_distance: 9\nguide_curve_radius: -5\nslip_terms: curve\n")
     told = trackroller("solve", "case.yaml", cwd=tmp_path, code=1).stdout

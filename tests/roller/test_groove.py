@@ -94,6 +94,7 @@ def test_only_the_rims_of_a_patch_are_evened():
     assert np.abs(np.diff(even[:, :6])).sum() < 0.7 * np.abs(np.diff(depth[:, :6])).sum()
 
 
+@pytest.mark.long
 def test_the_pressure_of_a_deep_groove_is_smooth_over_the_travel():
     """One roller whose pressure rose twofold at the end while its rims saw the cells at random; in truth it falls."""
     case = {"radial_force": -390, "contact_angle": 20, "roller_profile_radius": -7.8, "motor_force": -5}
@@ -125,11 +126,13 @@ def march(case, travel, steps, **options):
     return w, at
 
 
+@pytest.mark.slow
 def test_half_the_step_halves_the_difference():
     one, two, four = (march(roller(), 40.0, steps)[1].depth for steps in (1, 2, 4))
     assert np.sqrt(np.mean((four - two) ** 2)) < 0.5 * np.sqrt(np.mean((two - one) ** 2))
 
 
+@pytest.mark.slow
 def test_the_stated_error_covers_the_difference_to_shorter_steps():
     _, one = march(roller(), 8.0, 2)
     _, two = march(roller(), 8.0, 8)
@@ -137,6 +140,7 @@ def test_the_stated_error_covers_the_difference_to_shorter_steps():
     assert np.sqrt(np.mean((one.depth - two.depth)[0, 0][wore] ** 2)) < one.error
 
 
+@pytest.mark.long
 def test_the_stated_error_of_the_pressure_covers_finer_elements_and_that_of_life_adds_up():
     ds = tr.wear(roller(motor_force=-30), 8, **SLIDING)
     fine = tr.wear(roller(motor_force=-30), 8, FORCES, **SLIDING | {"accuracy": "standard"})
@@ -149,6 +153,7 @@ def test_the_stated_error_of_the_pressure_covers_finer_elements_and_that_of_life
     assert (last <= of_states.max("travel")).all() and (last > of_states.min("travel")).all()
 
 
+@pytest.mark.long
 def test_volume_is_the_friction_energy_step_by_step():
     """V = k/mu W where all of the patch slides with one coefficient."""
     ds = tr.wear(roller(), 40, FORCES, **SLIDING)
@@ -168,6 +173,7 @@ def test_the_first_rate_is_that_of_the_limit_wear():
     np.testing.assert_allclose(grown.values, new.wear_depth_per_km.transpose("contact", "body").values, rtol=0.05)
 
 
+@pytest.mark.slow
 def test_a_linear_table_of_the_energy_law_is_archards_law():
     """With |tau| = mu p, a loss of c per work rate is k = c mu / density."""
     density, loss = 7800.0, 0.4
@@ -183,6 +189,7 @@ def test_a_linear_table_of_the_energy_law_is_archards_law():
         assert one[name].values[-1] == pytest.approx(two[name].values[-1], rel=0.02)
 
 
+@pytest.mark.slow
 def test_the_energy_law_starts_at_the_rate_of_the_limit_wear():
     body = {"like": "1.7225-quenched-tempered", "density": 7800.0}
     table = {"work_rate": [0, 0.1, 0.3, 1e3], "roller": [0, 0, 1, 1e4], "guide": [0, 0, 0, 0]}
@@ -197,7 +204,7 @@ def test_the_energy_law_starts_at_the_rate_of_the_limit_wear():
     assert float(tr.wear(none, 3, FORCES, **energy).groove_depth.max()) == 0.0
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_roller_becomes_the_circle_of_the_guide():
     """With a large depth the gap left is elastic: depth + gap of the unworn circles = closing over the patch."""
     w = Wearing(to_table(roller(motor_force=-30)), Options(normal="halfspace", outputs=("forces",), **SLIDING))
@@ -217,6 +224,7 @@ def test_the_roller_becomes_the_circle_of_the_guide():
     assert at.depth[0, 0].sum() * (x[1] - x[0]) == pytest.approx(area, rel=0.15)
 
 
+@pytest.mark.slow
 def test_the_depth_rate_levels_out_while_the_profile_wears():
     w = Wearing(to_table(roller(motor_force=-30)), Options(normal="halfspace", outputs=("forces",), **SLIDING))
     spread = []
@@ -229,6 +237,7 @@ def test_the_depth_rate_levels_out_while_the_profile_wears():
     assert spread[-1] < 0.8 * spread[0]
 
 
+@pytest.mark.slow
 def test_mirrored_rollers_wear_alike():
     one, two = (tr.wear(roller(axial_force=f), 2, FORCES, **SLIDING) for f in (30, -30))
     for name in ("worn_depth", "normal_force", "max_pressure", "contact_angle"):
@@ -239,6 +248,7 @@ def test_mirrored_rollers_wear_alike():
     assert deep[1] > deep[0]
 
 
+@pytest.mark.long
 def test_a_run_that_goes_on_has_the_same_bits():
     case = roller(axial_force=-20, motor_force=-5)
     kept = []
@@ -253,6 +263,7 @@ def test_a_run_that_goes_on_has_the_same_bits():
         tr.wear(case, 3, FORCES, resume=whole, contact_model="sliding", accuracy="standard")
 
 
+@pytest.mark.slow
 def test_where_the_travel_ends():
     ds = tr.wear(roller(permissible_wear_depth=5e-4), 100, FORCES, **SLIDING)
     assert ds.attrs["end"] == "permissible"
@@ -263,6 +274,7 @@ def test_where_the_travel_ends():
     assert ds.attrs["end"] == "full_slip"
 
 
+@pytest.mark.slow
 def test_a_march_ends_after_a_limited_number_of_states(monkeypatch):
     monkeypatch.setattr(wearing, "STEPS", 4)
     case, kept = roller(k=1.0), []
@@ -274,6 +286,7 @@ def test_a_march_ends_after_a_limited_number_of_states(monkeypatch):
     assert not late.converged and "states were not enough" in str(late.reason.item())
 
 
+@pytest.mark.slow
 def test_a_balance_that_misses_its_tolerance_by_little_is_followed():
     case = {"radial_force": -182.12142740156958, "axial_force": 15.957566719363353, "motor_force": 2.9364452334016233}
     case |= {"friction_coefficient": 0.1121447249958499, "contact_angle": 24.208483471661395}
@@ -310,6 +323,7 @@ def test_refused_input():
         tr.Case(roller_profile={"arc": -7, "worn": {"start": 0, "step": 0.1, "depth": [[-1.0]]}})
 
 
+@pytest.mark.slow
 def test_damage_counts_the_stress_of_each_state():
     ds = tr.wear(roller(motor_force=-30, friction_coefficient=0.3), 15, **SLIDING)
     per_km = 1e6 / (2 * np.pi * (21.75 - 6 * np.cos(np.pi / 6)))
@@ -322,6 +336,7 @@ def test_damage_counts_the_stress_of_each_state():
     assert wearing.ENDS[ds.attrs["end"]]
 
 
+@pytest.mark.slow
 def test_a_worn_profile_is_a_profile_of_a_case():
     """The profile that a march writes solves as a case of its own."""
     w, at = march(roller(), 8.0, 2)
@@ -331,6 +346,7 @@ def test_a_worn_profile_is_a_profile_of_a_case():
     assert ds.max_pressure.values[0] == pytest.approx(w.solve(at).patch.max_pressure[0], rel=5e-3)  # boxes differ
 
 
+@pytest.mark.slow
 def test_travel_is_a_field_of_a_case():
     cases = [roller(axial_force=f, travel=s) for f in (30, -30) for s in (0, 1, "3 km")]
     both = {**SLIDING, "normal": "halfspace"}
@@ -345,6 +361,7 @@ def test_travel_is_a_field_of_a_case():
         tr.solve(cases[1], FORCES, **SLIDING)
 
 
+@pytest.mark.slow
 def test_a_travel_beyond_the_end_is_a_row_with_a_reason():
     cases = [roller(travel=1), roller(motor_force=-60, travel=1)]
     ds = tr.solve(cases, FORCES, normal="halfspace", **SLIDING)

@@ -55,7 +55,7 @@ def test_the_regime_ends_at_the_limit_and_not_before(side):
     assert _regime(replace(CASE, motor_force=bound + 1e-2 * sign)) == "full_slip"
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_more_radial_force_holds_more_axial_force():
     held = [limits(replace(CASE, radial_force=-force)).axial_force[1] for force in (100, 200, 400)]
     assert held == sorted(held) and held[2] == pytest.approx(4 * held[0], rel=0.02)
@@ -67,5 +67,6 @@ def test_a_lifted_roller_still_has_the_axial_force_that_would_hold():
     assert np.isnan(lifted.motor_force).all()
 
 
+@pytest.mark.slow
 def test_a_travel_changes_no_distance_to_lift_off():
     assert searched.limits(tr.Case(travel=10.0), "sliding") == searched.limits(tr.Case(), "sliding")

@@ -31,6 +31,7 @@ def test_every_declared_output_has_a_value_and_every_value_a_declaration(monkeyp
     assert set(seen) <= set(VARIABLES) | set(FLAGS)
 
 
+@pytest.mark.slow
 def test_what_is_shown_stands_on_the_sheet_with_its_value():
     ds = solve_sliding(tr.Case())
     facts = collect(ds)

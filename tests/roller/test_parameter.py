@@ -5,6 +5,8 @@ from __future__ import annotations
 import subprocess
 import sys
 
+import pytest
+
 PROGRAM = """
 from trackroller.parameters import PARAMETERS, Parameter
 
@@ -31,6 +33,7 @@ print("done")
 """
 
 
+@pytest.mark.slow
 def test_one_declaration_makes_a_parameter(tmp_path):
     done = subprocess.run([sys.executable, "-c", PROGRAM], cwd=tmp_path, capture_output=True, text=True, timeout=300)
     assert done.stdout == "done\n", done.stderr

@@ -61,6 +61,7 @@ def test_the_table_takes_few_elements_for_smooth_peaks_and_more_for_ridges(monke
             assert (rough[name] == fine[name]).all()
 
 
+@pytest.mark.slow
 def test_refinement_brings_the_peak_to_the_finer_elements(monkeypatch, ridge):
     monkeypatch.setattr(ellipse_stresses, "REFINED_ERROR", np.inf)
     fine, _ = solved(monkeypatch, RIDGE, dataclasses.replace(PRESETS["reference"], elements=2 * ELEMENTS))
@@ -85,6 +86,7 @@ def test_sharp_ridges_come_near_the_peaks_of_224_elements(monkeypatch):
     assert told.min() >= ellipse_stresses.refined_above(ELEMENTS)
 
 
+@pytest.mark.slow
 def test_sharp_ridges_converge_with_first_order(monkeypatch):
     """Without refinement: the cusp where sliding begins lies within an element of its place."""
     monkeypatch.setattr(ellipse_stresses, "REFINED_ERROR", np.inf)

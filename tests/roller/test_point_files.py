@@ -248,7 +248,6 @@ CASES = {  # a file and the largest pressures of both contacts [MPa]
 
 
 @pytest.mark.parametrize("name", CASES)
-@pytest.mark.long
 def test_files_give_the_pressure_of_the_true_profile(name, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     body, frame, head, expected = CASES[name]
@@ -350,7 +349,7 @@ def test_a_scale_is_not_left_out(read, line):
     assert is_right(read("Scale: 1.0\n" + lines_of("{x};{z}", "x;z")))
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_files_lie_beside_the_case_or_below_the_working_directory(tmp_path):
     folder = tmp_path / "prof"
     folder.mkdir()

@@ -58,6 +58,7 @@ def test_shortcuts_change_no_number_of_the_sliding_model():
     )
 
 
+@pytest.mark.slow
 def test_shortcuts_change_the_sections_within_their_quadrature():
     few = scenes(3)
     assert_same(
@@ -102,6 +103,7 @@ def test_velocity_counts_where_friction_depends_on_it():
     assert len(requirements.distinct_mechanics(table)[0]) == 3
 
 
+@pytest.mark.slow
 def test_stopped_cases_would_have_failed_and_the_others_are_untouched():
     loads, frictions = (200.0, 1500.0, 4000.0, 9000.0), (0.05, 0.4)
     cases = [{"radial_force": -f, "friction_coefficient": m} for f in loads for m in frictions]

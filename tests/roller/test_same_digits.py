@@ -38,7 +38,7 @@ def digits(code: str, **env: str) -> str:
     return told.stdout
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_digits_depend_neither_on_the_cache_nor_on_the_order_of_compilation(tmp_path):
     loaded = digits(CODE)  # the kernels that this environment compiled, in the order of its first study
     assert digits(OTHERS_FIRST + CODE, NUMBA_CACHE_DIR=str(tmp_path)) == loaded

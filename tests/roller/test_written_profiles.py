@@ -38,6 +38,7 @@ def said_of(file: Written) -> tuple[str, bool]:
     return "doubted without reason" if scatters and not file.fault else "", True
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("block", range(BLOCKS))
 def test_profiles_are_read_right_or_refused(block, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)

@@ -13,7 +13,6 @@ from typer.testing import CliRunner
 from trackroller.cli.main import app
 
 pytest.importorskip("compliance_checker", reason="needs compliance-checker")
-pytestmark = pytest.mark.slow  # the checker takes most of its time to start
 STUDIES = {
     "grid": "design: grid\nfactors: {friction_coefficient: {values: [0.1, 0.2]}, axial_force: {values: [0, 15, 30]}}\n",
     "sample": "design: lhs\nsamples: 12\nfactors: {friction_coefficient: {uniform: [0.1, 0.3]}}\n",
@@ -62,6 +61,7 @@ def reports(files, tmp_path_factory) -> dict[str, dict]:
     return told
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     "name",
     [*(f"{s}-{f}" for s in STUDIES for f in ("design", "study", "sensitivity")), "chunk", "spectrum", "case"],

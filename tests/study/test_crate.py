@@ -89,6 +89,7 @@ def test_damage_is_named(crate, tmp_path):
     assert "changed: study.nc" in _run(tmp_path, "verify", "copy", code=1)
 
 
+@pytest.mark.slow
 def test_a_study_is_solved_again_from_its_crate_alone(crate, tmp_path):
     shutil.copytree(crate, tmp_path / "posted", ignore=shutil.ignore_patterns("store", "plan", "chunks"))
     assert "have the same values" in _run(tmp_path, "rerun", "posted")

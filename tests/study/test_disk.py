@@ -62,6 +62,7 @@ def refused(study, results, path, why):
     assert str(path) in line and why in line and "start again" in line
 
 
+@pytest.mark.slow
 def test_read_only_disk_is_named_and_the_run_goes_on_when_it_is_mended(study, disk):
     place = disk("size=20m")
     disk("ro")
@@ -73,6 +74,7 @@ def test_read_only_disk_is_named_and_the_run_goes_on_when_it_is_mended(study, di
     refused(study, place, place / "disk", "cannot be written")
 
 
+@pytest.mark.slow
 def test_full_disk_is_named_and_finished_cases_are_kept(study, disk):
     place = disk("size=300k")
     refused(study, place, place, "disk is full")
@@ -96,6 +98,7 @@ def largest_file(size):
         resource.setrlimit(resource.RLIMIT_FSIZE, before)
 
 
+@pytest.mark.slow
 def test_file_size_limit_is_told(study, tmp_path):
     with largest_file(20_000):
         refused(study, tmp_path / "r", tmp_path / "r", "writing failed")

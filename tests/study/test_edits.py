@@ -144,16 +144,17 @@ def edited_studies(root: Path, count: int, seed: int) -> None:
     assert noticed > count / 10
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_few_edits_are_harmless_or_named(finished):
     edited_studies(finished, 40, seed=1)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_many_edits_are_harmless_or_named(finished):
     edited_studies(finished, EDITS, SEED)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["report", "explore", "plot", "status", "verify"])
 @pytest.mark.parametrize("damage", ["values", "design"])
 def test_altered_results_are_refused_by_name_and_never_sealed_again(finished, name, damage):

@@ -130,13 +130,14 @@ def stopped_runs(place, tries, seed, sent, phases):
     assert sum(stopped.values()) >= tries / 4, stopped
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("sent", "phases"), [(signal.SIGINT, PHASES), (signal.SIGKILL, KILLED)])
 def test_commands_stopped_in_any_phase_go_on(tmp_path, sent, phases):
     tries = int(os.environ.get("INTERRUPT_TRIES", str(len(phases))))  # each phase once
     stopped_runs(tmp_path, tries, int(os.environ.get("INTERRUPT_SEED", "2")), sent, phases)
 
 
+@pytest.mark.slow
 def test_an_interrupt_waits_while_a_file_is_written_and_comes_afterwards(tmp_path):
     """An interrupt that a process sends to itself after some milliseconds never leaves the lock of the library held."""
     data = xr.Dataset({"a": ("x", [1.0] * 1000)})

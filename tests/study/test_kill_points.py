@@ -91,7 +91,7 @@ def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, solved
     assert point >= 20, "lists, plan, inputs, chunks, design, study and their checksums"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_growing_study_with_failed_cases_killed_before_each_rename_or_removal(tmp_path, solved):
     def failing(design, database=None, **options):
         ds = fake_solver.solve(design)
@@ -128,7 +128,7 @@ def _draw(results: Results, out_dir: Path) -> None:
         (out_dir / name).write_text(f"<svg>{len(results.table)}</svg>")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_report_killed_before_each_rename_or_removal(tmp_path, monkeypatch):
     """The study has grown, so that every file of its report and its crate is replaced; each run is killed later."""
     monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)

@@ -116,6 +116,7 @@ def kept(path: Path, told: str, content: bytes = FOREIGN) -> bool:
     return bool(aside) and str(aside[0]) in told and str(path) in told
 
 
+@pytest.mark.slow
 def test_no_command_touches_a_folder_that_somebody_else_filled(tmp_path, monkeypatch, written, original):
     solve_quickly(monkeypatch)
     monkeypatch.chdir(tmp_path)
@@ -175,7 +176,7 @@ def run_into(name: Path) -> tuple[int, str]:
     return code, told + "".join(str(warning.message) for warning in warned)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 @pytest.mark.parametrize("state", ["begun", pytest.param("finished", marks=pytest.mark.slow)])
 def test_a_file_at_any_path_in_a_study_is_refused_or_moved_aside_and_never_lost(finished, original, written, state):
     """In a study that has begun no record names the file; in a finished one, its record has another digest."""
@@ -206,6 +207,7 @@ def test_a_file_at_any_path_in_a_study_is_refused_or_moved_aside_and_never_lost(
     assert seen["refused"] and seen["aside"], seen
 
 
+@pytest.mark.slow
 def test_files_beside_ours_stay_where_they_are(finished, written):
     places = ("", "plan", "chunks", "inputs", "inputs/given", "figures", "tables")
     names = ("notes.txt", ".mine.tmp", "mine.nc", "mine.solved", "mine.lock")
@@ -225,6 +227,7 @@ def test_files_beside_ours_stay_where_they_are(finished, written):
     assert xr.load_dataset(folder.gathered).sizes["case"] == 24
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("words", [w for w in COMMANDS if w[0] != "plan"], ids=" ".join)
 def test_links_inside_a_study_are_refused(finished, written, words):
     victim = Path(shutil.copytree(ROOT, "victim"))
@@ -246,6 +249,7 @@ def test_links_inside_a_study_are_refused(finished, written, words):
         shutil.copytree(before, ROOT)
 
 
+@pytest.mark.slow
 def test_results_may_lie_elsewhere_by_a_link(tmp_path, monkeypatch):
     solve_quickly(monkeypatch)
     monkeypatch.chdir(tmp_path)
@@ -339,6 +343,7 @@ def test_what_a_killed_process_left_is_ours_and_can_be_deleted(tmp_path, monkeyp
     assert not ROOT.exists()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", ["figures/../../../victim", "/victim"])
 def test_a_record_that_names_a_file_outside_removes_nothing_there(finished, tmp_path, name):
     """Somebody may send an archive of results whose records name other files of ours, with the right digests."""
@@ -364,6 +369,7 @@ def test_devices_and_pipes_in_the_place_of_files_stop_no_command_for_ever(finish
 # a study is found by its path
 
 
+@pytest.mark.slow
 def test_a_renamed_folder_is_read_and_written_by_its_path(finished):
     shutil.copy("study.yaml", "first.yaml")
     ROOT.rename("results/edited-old")
@@ -524,6 +530,7 @@ def as_earlier(root: Path, outdated: tuple[str, ...] = ()) -> None:
         (root / "plan" / f"{name}.sha256").unlink()
 
 
+@pytest.mark.slow
 def test_a_folder_of_an_earlier_version_stays_ours(finished, solved):
     as_earlier(ROOT)
     assert command(("status", "edited"))[0] == 0

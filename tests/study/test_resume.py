@@ -96,6 +96,7 @@ def test_two_runs_give_the_same_files(tmp_path, monkeypatch):
         assert (tmp_path / "one" / "s" / name).read_bytes() == (tmp_path / "two" / "s" / name).read_bytes()
 
 
+@pytest.mark.slow
 def test_killed_run_goes_on_and_ends_bit_for_bit_the_same(tmp_path, solved, monkeypatch):
     _, whole, _ = run(DATA, tmp_path / "whole")
     before = sum(solved().values())
@@ -114,6 +115,7 @@ def test_second_run_solves_nothing(tmp_path, solved):
     assert max(solved().values()) == 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "more",
     [
@@ -139,6 +141,7 @@ def test_killed_and_then_grown_study_keeps_finished_blocks(tmp_path, solved):
     assert sum(solved().values()) <= plan.size + 20
 
 
+@pytest.mark.slow
 def test_accuracy_and_material_values_change_the_identity(tmp_path, solved):
     run(DATA, tmp_path)
     run(DATA | {"accuracy": "preview"}, tmp_path)
@@ -176,6 +179,7 @@ def put_another_in_its_place(path):
     path.write_bytes(other.read_bytes())
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle, put_another_in_its_place])
 @pytest.mark.parametrize("place", ["chunks", "plan"])
 def test_damaged_file_is_found_named_and_mended(tmp_path, solved, damage, place):
@@ -211,6 +215,7 @@ def test_stopped_run_keeps_its_complete_chunks_and_tells_progress_within_a_chunk
     assert np.isfinite(ds["normal_force"]).all()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [flip, cut, empty, spoil_the_middle])
 @pytest.mark.parametrize("name", ["design.nc", "study.nc"])
 def test_altered_design_or_study_is_found_named_and_made_anew(tmp_path, solved, damage, name):
@@ -407,6 +412,7 @@ SAMPLED = {
 }
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("design", "small", "large"),
     [

@@ -116,6 +116,7 @@ def grown(tmp_path_factory):
         return Path.cwd()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("victim", ["inputs/study.yaml", "plan.json", "study.nc", "design.nc"])
 @pytest.mark.parametrize("damage", [Path.unlink, lambda path: path.write_bytes(path.read_bytes()[:-9])])
 def test_a_grown_sample_keeps_its_cases_when_a_file_of_the_study_is_damaged(
@@ -158,6 +159,7 @@ def test_a_part_of_the_report_may_be_deleted_but_not_altered(tmp_path, monkeypat
     assert file.is_file() and damaged_files(folder.root) == {}
 
 
+@pytest.mark.slow
 def test_results_written_just_before_an_interrupt_do_not_look_altered(tmp_path, monkeypatch):
     monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
     monkeypatch.chdir(tmp_path)
@@ -172,6 +174,7 @@ def test_results_written_just_before_an_interrupt_do_not_look_altered(tmp_path, 
     assert damaged_files(folder.root) == {}
 
 
+@pytest.mark.slow
 def test_three_reports_at_once_lose_nothing(tmp_path, monkeypatch):
     monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
     monkeypatch.chdir(tmp_path)
@@ -213,6 +216,7 @@ def test_a_crate_without_the_plan_still_notices_an_altered_result(tmp_path, monk
         read_result("posted/study.nc")
 
 
+@pytest.mark.slow
 def test_a_report_of_earlier_results_leaves_the_crate_and_the_figures(tmp_path, monkeypatch):
     monkeypatch.setattr("trackroller.report.figures.study.draw_all", _draw)
     monkeypatch.chdir(tmp_path)

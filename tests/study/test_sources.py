@@ -93,6 +93,7 @@ def test_only_a_change_in_a_room_changes_its_digest(copied, change, monkeypatch)
     assert (sources.code_digest(sources.SOLVER) != before) == CHANGES[change][3]
 
 
+@pytest.mark.long
 def test_next_run_solves_again_only_where_code_has_changed(copied, solved):
     place = copied.parent
     test_resume.run(test_resume.DATA, place / "results")

@@ -85,6 +85,7 @@ def test_rates_of_damage_add_up():
     assert (1 / both).values == pytest.approx((1 / one + 1 / other).values, rel=1e-12)
 
 
+@pytest.mark.slow
 @given(st.floats(10, 1e5), st.floats(1.01, 3), st.floats(20, 75))
 @settings(max_examples=25, deadline=None)
 def test_more_load_or_way_shortens_life(distance, factor, force):

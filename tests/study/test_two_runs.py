@@ -36,6 +36,7 @@ def snapshot(folder: Path) -> dict[Path, int]:
     return {path: path.stat().st_ino for place in ("plan", "chunks") for path in (folder / place).glob("*.n*")}
 
 
+@pytest.mark.slow
 def test_edited_study_is_refused_while_the_first_runs_and_solves_only_new_cases_afterwards(tmp_path, solved):
     refused: list[bool] = []
     path = tmp_path / "s.yaml"
@@ -61,6 +62,7 @@ def test_edited_study_is_refused_while_the_first_runs_and_solves_only_new_cases_
     assert xr.load_dataset(plan.folder.gathered).sizes["axial_force"] == 21
 
 
+@pytest.mark.slow
 def test_failed_cases_are_not_removed_under_a_run(tmp_path, solved):
     refused = []
 
@@ -92,6 +94,7 @@ def _run(results: str) -> None:
     run_study(parse_study(DATA), results, solver=_slow)
 
 
+@pytest.mark.slow
 def test_two_runs_of_one_study_at_once_solve_each_case_once(tmp_path, solved):
     context = multiprocessing.get_context("fork")
     runs = [context.Process(target=_run, args=(str(tmp_path),)) for _ in range(3)]
@@ -103,6 +106,7 @@ def test_two_runs_of_one_study_at_once_solve_each_case_once(tmp_path, solved):
     assert set(solved().values()) == {1} and sum(solved().values()) == 40
 
 
+@pytest.mark.slow
 def test_command_line_refuses_the_edited_study_in_one_line(tmp_path):
     """A process holds the plan of one version; the command for another version exits with 1 and changes nothing."""
     path = tmp_path / "s.yaml"

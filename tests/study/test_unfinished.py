@@ -59,6 +59,7 @@ def stopped_study(design, chunks=2):
     return study, sum(cases.sizes["case"] for cases in done)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("design", DESIGNS)
 def test_solved_cases_are_those_of_the_whole_design(tmp_path, monkeypatch, design):
     monkeypatch.chdir(tmp_path)
@@ -76,7 +77,7 @@ def test_solved_cases_are_those_of_the_whole_design(tmp_path, monkeypatch, desig
     assert indices.attrs["method"] == (design if design in ("lhs", "sobol") else "table")
 
 
-@pytest.mark.long
+@pytest.mark.slow
 @pytest.mark.parametrize("design", ["grid", pytest.param("inner_outer", marks=pytest.mark.slow)])
 def test_commands_show_the_solved_cases_and_seal_nothing(tmp_path, monkeypatch, design):
     monkeypatch.chdir(tmp_path)
@@ -106,6 +107,7 @@ def test_commands_show_the_solved_cases_and_seal_nothing(tmp_path, monkeypatch, 
     assert command(("verify", "results/stopped"))[0] == 0
 
 
+@pytest.mark.slow
 def test_a_study_without_a_solved_case_or_without_its_gathered_file_says_so(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     study, _ = stopped_study("lhs", chunks=0)
@@ -144,6 +146,7 @@ def test_chunks_name_their_levels(tmp_path, monkeypatch):
     assert told[3] == "chunk 4 of 4, material_pair POM / PA6, axial_force 30 to 40"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("design", "said"), [("lhs", "lhs design with another factor is drawn anew"), ("grid", None)])
 def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monkeypatch, design, said):
     monkeypatch.chdir(tmp_path)
@@ -166,6 +169,7 @@ def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monke
     assert said in lines[0], "before the first chunk"
 
 
+@pytest.mark.slow
 def test_an_unfinished_study_asks_for_no_more_samples_than_its_file(tmp_path):
     basis = {"name": "part", "design": "lhs", "samples": 100, "contact_model": "sliding", "accuracy": "preview"}
     solved = tr.run(basis | {"outputs": ["forces", "life"], "factors": NUMBERS}, progress=False, results=tmp_path)

@@ -77,6 +77,7 @@ def fake_forces(root: Path) -> np.ndarray:
     return fake_solver.solve(xr.load_dataset(root / "design.nc"))["normal_force"].values
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("damage", [None, *FORMATS])
 def test_a_study_of_an_earlier_version_is_solved_again_whole(sealed, damage):
     before, lines = forces(sealed), []
@@ -91,6 +92,7 @@ def test_a_study_of_an_earlier_version_is_solved_again_whole(sealed, damage):
     assert command(("status", "sealed"))[0] == 0
 
 
+@pytest.mark.slow
 def test_a_study_of_another_solver_is_read_whole_and_says_so(sealed):
     before = forces(sealed)
     with pytest.warns(UserWarning, match=r"Another version of the solver .*`trackroller run`"):
@@ -106,6 +108,7 @@ def test_a_study_of_another_solver_is_read_whole_and_says_so(sealed):
     assert command(("verify", "results/sealed"))[0] == 0
 
 
+@pytest.mark.slow
 def test_rerun_solves_every_case_again_and_compares_what_is_stored(sealed):
     """The stored numbers come from the real solver: another version may differ by its accuracy and by its estimate.
 
@@ -125,6 +128,7 @@ def test_rerun_solves_every_case_again_and_compares_what_is_stored(sealed):
     np.testing.assert_array_equal(forces(sealed), before)
 
 
+@pytest.mark.slow
 def test_rerun_names_each_variable_that_differs(sealed):
     with sealed_anew(sealed / "study.nc") as beside:
         data = xr.load_dataset(sealed / "study.nc")

@@ -16,6 +16,7 @@ def marked(scene):
     return pytest.param(scene, id=scene.name, marks=[pytest.mark.slow] * (scene.name == "spin pole on the edge"))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("scene", [marked(scene) for scene in scenes()])
 def test_claims_on_a_scene_hold(scene):
     broken = [f for f in examine(scene, "sliding", "preview")[1] if not f.holds]
@@ -34,6 +35,7 @@ def test_a_kernel_keeps_its_digits(kernel):
     assert kernel().holds
 
 
+@pytest.mark.slow
 @settings(max_examples=6, deadline=None, derandomize=True)
 @given(st.integers(0, 2**31))
 def test_random_extremes_are_finite_or_flagged_and_quiet(seed):

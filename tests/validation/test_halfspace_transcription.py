@@ -1,12 +1,14 @@
 """The benchmark's transcription of eqs. (1)-(6) computes the same field as the package."""
 
 import numpy as np
+import pytest
 
 import trackroller as tr
 from validation.benchmarks import published_transcription as transcription
 from validation.exact.stresses import quadrature_on_ellipse
 
 
+@pytest.mark.slow
 def test_all_styles_agree_and_approach_the_exact_field():
     """Printed and reused forms give equal numbers, near the exact field at depth (Simpson, 40 points)."""
 

@@ -32,6 +32,7 @@ def test_sobol_by_correlations_has_smaller_errors_than_salib_and_covers_as_often
     assert ours["coverage"] > max(0.9, theirs["coverage"] - 0.05)
 
 
+@pytest.mark.slow
 def test_first_order_indices_use_rbd_fast_for_numbers_and_groups_for_categories():
     """The same values as SALib for numbers; a category is unbiased, where RBD-FAST alone is not."""
     numbers = measured("first", "first-order index, Ishigami, 256 rows", 12)

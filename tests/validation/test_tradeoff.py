@@ -106,7 +106,7 @@ def test_split_pole_is_where_the_slip_of_the_circle_vanishes():
     assert pole_split(*(np.array([v]) for v in (5.0, sine, cosine, radius, shift)))[0] == np.inf
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_measurement_gives_what_the_page_and_the_package_need(tmp_path):
     found = json.loads(json.dumps(plain(measure(few=1, repeats=1))))
     draw_all(found, tmp_path)
@@ -118,6 +118,7 @@ def test_the_measurement_gives_what_the_page_and_the_package_need(tmp_path):
     assert found["shares"]["kalker"]["forces"]["0.01"][:2] == [0.0, 1.0]  # the table cannot keep 0.01
 
 
+@pytest.mark.slow
 def test_the_table_of_the_paper_is_computed_anew():
     rows = {row["what"]: row for row in paper_table()}
     assert rows["converged"]["inner"] == pytest.approx(389.8, rel=3e-3)

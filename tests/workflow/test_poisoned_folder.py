@@ -9,8 +9,6 @@ import sys
 import pytest
 from workflow_place import lay_study, snakemake_process
 
-pytestmark = pytest.mark.slow
-
 
 @pytest.fixture
 def place(tmp_path):
@@ -24,11 +22,13 @@ def place(tmp_path):
     assert not (tmp_path / "executed").exists()
 
 
+@pytest.mark.long
 def test_jobs_of_the_workflow(place):
     snakemake_process(place)
     assert (place / "results" / "tiny" / "report.html").is_file()
 
 
+@pytest.mark.long
 def test_workers_of_dask(place):
     pytest.importorskip("distributed")
     words = [sys.executable, "-P", "-m", "trackroller.cli", "run", "tiny.yaml", "-q", "--scheduler", "local"]

@@ -33,7 +33,7 @@ def run(folder, env, snakefile, *targets):
     return subprocess.run([*words, *targets], cwd=folder, env=env, capture_output=True, text=True, timeout=240)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("snakefile", "local", "submitted", "threads"),
     [

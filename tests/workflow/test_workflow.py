@@ -67,7 +67,7 @@ def captions_in_the_archive(path: Path, out: Path) -> None:
     assert captions and all(text.split(".")[0][:40] in page + told for text in captions)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_killed_study_goes_on_to_its_report_and_after_a_change_runs_only_what_depends_on_it(place, tmp_path_factory):
     program = tmp_path_factory.mktemp("program")
     snakefile = copy_program(program)
@@ -126,6 +126,7 @@ def test_wrong_configuration_names_its_key(place, monkeypatch, wrong, named):
         workflow_plan(workflow_config({"study": "tiny.yaml"} | wrong, ROOT), main=True)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("error", "lines"), [("WorkError('the disk is full')", 1), ("KeyError('a mistake')", 3)])
 def test_a_script_tells_an_error_of_the_work_in_one_line(tmp_path, error, lines):
     # on standard input: a traceback has two lines a frame there in every version of Python
@@ -139,6 +140,7 @@ def test_a_script_tells_an_error_of_the_work_in_one_line(tmp_path, error, lines)
     assert not {"numba", "scipy.stats", "SALib", "dask"} & set(done.stdout.split()), "each job would load them"
 
 
+@pytest.mark.slow
 def test_an_empty_folder_gets_the_default_study(tmp_path):
     told = snakemake(tmp_path, "-n")
     assert {"design", "solve", "gather", "sensitivity", "figures", "report", "crate"} == set(started(told)) - {
@@ -195,6 +197,7 @@ rule mine:
 """
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("snakefile", "config", "own", "words"),
     [

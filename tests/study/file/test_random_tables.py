@@ -48,6 +48,7 @@ def test_a_random_table_of_cases_is_read_right_or_refused(kind, part, tmp_path):
     assert accepted > 0.2 * share(kind), "most tables are refused, so that the test shows little"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("kind", KINDS)
 @pytest.mark.parametrize("part", range(PARTS))
 def test_a_random_table_of_blocks_is_read_right_or_refused(kind, part, tmp_path):

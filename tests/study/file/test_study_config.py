@@ -203,6 +203,7 @@ _keys = st.sampled_from([*parse_study({"name": "a"}).config.model_dump(), "nam"]
 _names = st.sampled_from(["axial_force", "friction_coefficient", "material_pair", "roller_material", "u"])
 
 
+@pytest.mark.slow
 @settings(max_examples=400, deadline=None)
 @given(st.dictionaries(_keys, _values, max_size=4), st.dictionaries(_names, _values, max_size=3))
 def test_any_mapping_is_a_study_or_a_clean_error(data, factors):
@@ -217,6 +218,7 @@ def test_schema_in_the_repository_is_that_of_the_code():
     assert schema.FILE.read_text(encoding="utf-8") == schema.text(), "run: python -m trackroller.study.file.schema"
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("path", STUDIES, ids=lambda p: p.stem)
 def test_schema_accepts_the_studies_and_refuses_misspelt_keys(path):
     import jsonschema

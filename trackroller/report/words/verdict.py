@@ -175,11 +175,11 @@ class _Words:
     def range_of(self) -> Sentence:
         """State the ranges of the candidates between which the measurement decides."""
         found = self.found
-        shown = [(self.name(one), self.span(one)) for one in found.best[:MOST]]
+        shown = [(self.name(one), self.span(one), ended_by(one.ends)) for one in found.best[:MOST]]
         first = found.best[0]
         ranged = any(one.high > one.low for one in found.best)
         values = {"ranged": ranged, "shown": shown, "left": len(found.best) - len(shown)}
-        values |= {"limit": ended_by(first.ends)}
+        values |= {"limit": ended_by(first.ends), "alike": len({limit for _, _, limit in shown}) == 1}
         return say("verdict", "range", **values, target=self.target(), where=self.where(first), body=first.body)
 
     def turn(self, turn: Turn) -> Sentence | None:
