@@ -41,6 +41,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
     "verdict": "results.verdict.Verdict",
+    "finding": "results.findings.Finding",
     "sentence": "report.words.sentence.Sentence",
 }
 WAY = (  # of a study: what makes the next thing of the one before, and the file that it writes

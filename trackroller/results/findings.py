@@ -82,7 +82,7 @@ def finding(results: Results, kind: str, among: str, rows: np.ndarray, **values:
 def _models(results: Results, rows: np.ndarray) -> tuple[str, ...]:
     if "contact_model" in results.table:
         return tuple(results.table["contact_model"][rows].unique())
-    return (str(results.data.attrs.get("contact_model", "")),)
+    return (results.config.contact_model,)
 
 
 def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:

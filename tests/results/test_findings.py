@@ -1,0 +1,138 @@
+"""Findings: their rows, levels and models, and what the rows cannot carry and is not found."""
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from synthetic_results import grid_study, results_of
+
+import trackroller as tr
+from trackroller.report.words.in_short import in_short
+from trackroller.results.findings import MOST, effect_of, go_together, occurrence, slip_law
+from trackroller.study.file.load import parse_study
+
+LIFE = "roller_life_hours"
+CALM = {
+    "friction_coefficient": [0.2, 0.3, 0.4],
+    "roller_profile_radius": [-9.0, -8.0, -7.0],
+    "axial_force": [0.0, 20.0],
+}
+
+
+def sample(life, regime=None, **asked):
+    """Return a study of 300 random rows with a made-up life."""
+    factors = {name: {"uniform": [0.0, 1.0]} for name in ("velocity", "axial_force")}
+    factors["velocity"] = {"uniform": [10.0, 60.0]}
+    study = parse_study(
+        {"name": "s", "design": "lhs", "samples": 300, "factors": factors, "outputs": ["life"], **asked}
+    )
+    ds = study.design()
+    ds[LIFE] = ("case", life(ds["velocity"].values, ds["axial_force"].values), {"units": "h"})
+    ds["regime"] = ("case", np.zeros(300, "i1") if regime is None else regime(ds).values.astype("i1"))
+    ds.attrs["study"] = study.merged()
+    return results_of(ds)
+
+
+def table(velocity, force, life):
+    """Return a study of a table with two columns."""
+    columns = {"velocity": velocity, "axial_force": force}
+    ds = xr.Dataset(
+        {LIFE: ("case", life)}, {name: ("case", own) for name, own in columns.items()} | {"case": np.arange(len(life))}
+    )
+    factors = {name: {"values": sorted({float(v) for v in own})} for name, own in columns.items()}
+    ds.attrs["study"] = yaml.safe_dump({"name": "t", "factors": factors})
+    return results_of(ds)
+
+
+def test_a_finding_names_its_rows_their_levels_and_the_contact_model():
+    results = results_of(grid_study(CALM))
+    found = effect_of(results, LIFE, "friction_coefficient")
+    assert found.among == "valid" and np.array_equal(found.rows, results.valid) and found.models == ("kalker",)
+    for name, levels in CALM.items():
+        assert found.spans[name] == tuple(sorted(set(results.table[name][results.valid])))
+        assert set(found.spans[name]) <= set(levels)
+
+
+def test_of_several_contact_models_the_most_exact_one_counts():
+    """A regime that the cheap model alone finds is no finding; a share is over the cases of one model."""
+    study = {
+        "name": "models",
+        "factors": {"contact_model": {"values": ["sliding", "kalker"]}, "axial_force": {"values": [0, 20, 100]}},
+        "base": {"motor_force": 0, "radial_force": -90},
+        "accuracy": "preview",
+        "outputs": ["forces", "peak_stress", "life"],
+    }
+    solved = tr.run(study, progress=False)
+    exact = (solved.table["contact_model"] == "kalker").to_numpy()
+    found = occurrence(solved, solved.regime == 2, "lift_off")
+    assert found.values["count"] == (solved.regime[exact] == 2).sum() > 0
+    assert found.values["of"] == exact.sum() and found.models == ("kalker",)
+    assert occurrence(solved, (solved.regime == 2) & ~exact, "lift_off") is None
+    told = [one.kind for one in solved.findings["why"]]
+    assert "index" not in told and "of 3 cases of kalker" in " ".join(
+        s.text for s in dict(in_short(solved, []))["Where it ends"]
+    )
+
+
+def test_factors_that_go_together_have_no_effect_of_their_own():
+    rng = np.random.default_rng(1)
+    force = rng.permutation(np.arange(100.0))
+    for speed, together in ((2 * force, True), (force + rng.normal(0, 20, 100), True), (rng.permutation(force), False)):
+        results = table(speed, force, np.exp(force / 20))
+        assert bool(go_together(results, "axial_force", np.ones(100, bool))) == together
+        assert (effect_of(results, LIFE, "axial_force") is None) == together
+
+
+def test_constraints_that_cut_unevenly_carry_no_effect_of_classes():
+    """Slow cases with a short life are cut away: what is left is no comparison of all speeds."""
+    life = lambda v, x: np.where(v < 35, 50.0, 500.0 * v * (1 + x))  # noqa: E731
+    free, cut = sample(life), sample(life, constraints=[f"{LIFE} > 100"])
+    assert cut.allowed.sum() < 300 and effect_of(free, LIFE, "velocity") is not None
+    assert effect_of(cut, LIFE, "velocity") is None and effect_of(cut, LIFE, "axial_force") is not None
+
+
+def test_a_sample_says_only_at_if_one_factor_decides_all_cases():
+    law = sample(lambda v, x: v, lambda ds: 2 * (ds["axial_force"] > 0.7))
+    found = occurrence(law, law.regime == 2, "lift_off")
+    assert found.kind == "only" and found.values["inside"] == found.values["count"] == (law.regime == 2).sum()
+    chance = sample(lambda v, x: v, lambda ds: 2 * ((ds["axial_force"] > 0.7) & (ds["velocity"] > 20)))
+    assert occurrence(chance, chance.regime == 2, "lift_off").kind in ("share", "frequent")
+
+
+@pytest.mark.parametrize("lifts", [False, True])
+def test_full_slip_follows_the_law_of_the_drive_or_is_not_told_so(lifts):
+    base = {"radial_force": -90.0, "contact_angle": 30.0, "motor_force": -20.0, "axial_force": 0.0}
+    ds = grid_study({"friction_coefficient": [0.1, 0.19, 0.2, 0.3], "velocity": [10.0, 20.0]})
+    study = yaml.safe_load(ds.attrs["study"]) | {"base": base}
+    ds.attrs["study"] = yaml.safe_dump(study)
+    limit = 20 * np.cos(np.pi / 6) / 90  # friction at which the drive is just transmitted
+    slips = (ds["friction_coefficient"] < limit).broadcast_like(ds["regime"])
+    ds["regime"] = xr.where(slips, 1, 0).transpose(*ds["regime"].dims)
+    if lifts:
+        ds["regime"][{"friction_coefficient": 0, "velocity": 0}] = 2
+    found = slip_law(results_of(ds))
+    assert found.values["count"] == 4 - lifts and found.values["lifted"] == lifts
+    ds["regime"][{"friction_coefficient": 3}] = 1  # more friction than the drive needs, and slip all the same
+    assert slip_law(results_of(ds)) is None
+
+
+def test_at_most_five_findings_stand_under_why_and_each_is_said_once():
+    solved = tr.run(
+        {
+            "name": "why",
+            "factors": {
+                "friction_coefficient": {"values": [0.1, 0.2, 0.3]},
+                "radial_force": {"values": [-60, -90, -150]},
+                "roller_profile_radius": {"values": [-6.5, -7, -8]},
+            },
+            "base": {"permissible_wear_depth": 0.05, "motor_force": 0, "guide_overrollings_per_hour": 600},
+            "contact_model": "sliding",
+            "accuracy": "preview",
+        },
+        progress=False,
+    )
+    found = solved.findings["why"]
+    assert 2 <= len(found) <= MOST and all(one.rows.any() and one.spans for one in found)
+    texts = [one.text for one in dict(in_short(solved, []))["Why"]]
+    assert len(set(texts)) == len(texts)
+    assert sum("lie beyond the S-N data" in text for text in texts) <= 1
