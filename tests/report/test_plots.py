@@ -27,6 +27,7 @@ from trackroller.report.figures.maps import regime_map
 from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
+from trackroller.report.words.designs import ends_words
 from trackroller.report.words.levels import held_words
 from trackroller.results.columns import at_surface
 from trackroller.results.effects import paired_effect
@@ -272,7 +273,8 @@ def test_the_picture_of_candidates_has_the_numbers_of_the_verdict():
     spans = [np.array(lines.get_segments())[:, :, 0].ravel() for lines in axes.collections]
     assert spans[0] == pytest.approx([end for one in shown for end in (one.low, one.best)])
     assert spans[1] == pytest.approx([end for one in shown for end in (one.low, one.high)])
-    assert [text.get_text() for text in axes.texts] == [f"{one.ends}, {one.body}" for one in shown]
+    assert [text.get_text() for text in axes.texts] == [f"{ends_words(one)}, {one.body}" for one in shown]
+    assert ends_words(shown[1]) == "wear or fatigue" and shown[1].ends_high == "fatigue"
     assert len(shown) == 4 and all(one.high > one.low for one in shown) and "ends it" in info.caption
 
 

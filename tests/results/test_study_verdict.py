@@ -59,6 +59,12 @@ def made(low, high=None, target=None, error=0.0, limit="fatigue", regime=None, f
         ("validity_body", np.zeros(two.shape, np.int32)),
     ):
         ds = ds.assign({name: ((*dims, "body"), value, ds[name].attrs)})
+    checked = np.isfinite(ds["life_hours_by_limit"].transpose(*dims, "limit", "body").values)
+    for end, hours in (("", values[LIFE]), ("_low", low), ("_high", high)):  # by this limit alone, the guide later
+        name = f"life_hours_by_limit{end}"
+        own = np.where(checked, 1e12, np.nan)
+        own[..., ds["limit"].values.tolist().index(limit), :] = np.stack([hours, 2 * hours], axis=-1)
+        ds = ds.assign({name: ((*dims, "limit", "body"), own, ds["life_hours_by_limit"].attrs)})
     wide = ds["life_error_estimate"].transpose(*dims, "contact", "body")
     error = np.broadcast_to(np.asarray(error, dtype=float), low.shape)[..., None, None] + np.zeros(wide.shape)
     ds = ds.assign(life_error_estimate=(wide.dims, error), **data)

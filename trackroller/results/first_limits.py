@@ -88,9 +88,36 @@ def turn(candidates: Candidates) -> Turn | None:
 
 def reached_hours(results: Results) -> np.ndarray:
     """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
+    return np.asarray(reached_by_body(results).min(axis=2))
+
+
+def reached_by_body(results: Results, end: str = "") -> np.ndarray:
+    """Return the hours until each limit of each body is reached, shape (n, limit, 2) [h]; infinity if never known.
+
+    Parameters
+    ----------
+    results : the solved study
+    end : `_low` or `_high` for the ends of the ranges of the placeholders
+    """
     hours = flat(results.data, "life_hours_by_limit", results.dims)
+    if end and f"life_hours_by_limit{end}" in results.data:
+        ranged = flat(results.data, f"life_hours_by_limit{end}", results.dims)
+        hours = np.where(np.isnan(ranged), hours, ranged)
     limits = [LIMITS[name] for name in results.data["limit"].values.tolist()]
     breaks = np.stack([results.flagged("static", body if results.by_body else "") for body in BODIES], axis=1)
     counted = np.array([not limit.beside for limit in limits])[:, None]
     reached = np.where(breaking(breaks, limits), 0.0, np.where(counted, hours, np.nan))
-    return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf).min(axis=2))
+    return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf))
+
+
+def first_at(results: Results, end: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return which limit ends each case at an end of the ranges, and whether it ends the guide, shape (n,) each.
+
+    A limit has the name '' where none is reached.
+    """
+    reached = reached_by_body(results, end)
+    flattened = reached.reshape(len(reached), -1)
+    place = flattened.argmin(axis=1)
+    names = np.array(results.data["limit"].values.tolist(), dtype=object)[place // reached.shape[2]]
+    known = np.isfinite(flattened[np.arange(len(place)), place])
+    return np.where(known, names, ""), np.asarray(known & (place % reached.shape[2] == BODIES.index("guide")))

@@ -12,7 +12,7 @@ from trackroller.methods.b10 import b10
 from trackroller.parameters import FIRST_TO_FAIL, REGIMES
 from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.columns import codes
-from trackroller.results.first_limits import first_limit
+from trackroller.results.first_limits import first_at, first_limit
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
@@ -172,6 +172,27 @@ class Cases:
         if self.candidates.goal == FIRST_LIMIT:
             return first_limit(self.results)
         return np.full(len(self.results.table), "fatigue" if self.candidates.rising else "", dtype=object)
+
+    def at_end(self, end: str) -> tuple[np.ndarray, np.ndarray]:
+        """Return what ends each case at the `_low` or `_high` end of its range, and whether the guide does, (n,) each.
+
+        What ends the case between the ends stands in for a limit that is not known there.
+        """
+        if self.candidates.goal != FIRST_LIMIT or f"life_hours_by_limit{end}" not in self.results.data:
+            return self.first, self.guide
+        names, guide = first_at(self.results, end)
+        known = names != ""
+        return np.where(known, names, self.first), np.where(known, guide, self.guide)
+
+    @cached_property
+    def low_end(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return what ends each case at the low end of its range, and whether it ends the guide, shape (n,) each."""
+        return self.at_end("_low")
+
+    @cached_property
+    def high_end(self) -> np.ndarray:
+        """Return what ends each case at the high end of its range, shape (n,)."""
+        return self.at_end("_high")[0]
 
     @cached_property
     def out_of_reach(self) -> np.ndarray:

@@ -21,6 +21,7 @@ from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates
+from trackroller.results.first_limits import reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
 from trackroller.results.limit_notes import guessed_values
 from trackroller.results.lives import FIRST_LIMIT
@@ -54,6 +55,7 @@ class Candidate:
     interval : 95 % interval of `low` where it is the life that nine of ten sampled conditions reach, else NaN
     case : row of the worst condition
     ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; and the body
+    ends_high : what ends it there at the high end of the ranges of the placeholders
     met, conditions : number of conditions that it meets, and of all conditions that count
     status : `met`, `open` or `missed` of the target; '' without a target
     judged : whether the model judges it in all conditions
@@ -74,6 +76,7 @@ class Candidate:
     interval: tuple[float, float]
     case: int
     ends: str
+    ends_high: str
     body: str
     met: int
     conditions: int
@@ -538,8 +541,9 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         error=float(scores.error[i]),
         interval=(float(interval[0]), float(interval[1])),
         case=case,
-        ends=str(cases.reason[case] or cases.first[case]),
-        body="guide" if cases.guide[case] else "roller",
+        ends=str(cases.reason[case] or cases.low_end[0][case]),
+        ends_high=str(cases.reason[case] or cases.high_end[case]),
+        body="guide" if cases.low_end[1][case] else "roller",
         met=int(facts["met"][i]),
         conditions=int(facts["conditions"][i]),
         status=str(facts["status"][i]),
@@ -722,8 +726,9 @@ def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
     if COEFFICIENT in cases.spans:
         levels = cases.results.levels(COEFFICIENT)
         low, high, units = float(levels[0]), float(levels[-1]), "times its value"
-    own = cases.ends[1][one.case], high
-    longest, there = own if cases.spans else (one.high, low)
+    place = cases.results.data["limit"].values.tolist().index("wear"), BODIES.index(one.body)
+    longest = float(reached_by_body(cases.results, "_high")[one.case][place])  # another limit may end it before
+    there = high if cases.spans else low
     value, beyond = high * one.low / least, there * longest / until if until > 0 else np.nan
     value, beyond = (x if low < x < high else np.nan for x in (value, beyond))
     return Turn("wear_coefficient", of, on, value, beyond, low, high, units, one.number)

@@ -134,7 +134,7 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
         places.pop("worst")
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
     if rising and (known := _of_verdict(candidates, best)):
-        rows.append(["Ends it", *(f"{ended_by(one.ends)}, {one.body}" if one and one.ends else "–" for one in known)])
+        rows.append(["Ends it", *(f"{ends_words(one)}, {one.body}" if one and one.ends else "–" for one in known)])
     if candidates.conditions:
         rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
     return rows
@@ -164,6 +164,12 @@ def span_words(one: Candidate, unit: str) -> str:
     text = f"{rounded(one.low)} to {quantity(one.high, unit)}"
     text = text if math.isfinite(one.high) else f"at least {quantity(one.low, unit)}"
     return text + f" ({BEYOND})" * one.beyond
+
+
+def ends_words(one: Candidate) -> str:
+    """Return the words of what ends a candidate: of two limits if the range of its placeholders decides which."""
+    words = list(dict.fromkeys(ended_by(name) for name in (one.ends, one.ends_high) if name))
+    return " or ".join(words)
 
 
 def ended_by(name: str) -> str:

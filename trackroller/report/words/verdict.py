@@ -15,7 +15,15 @@ from trackroller.report.numbers import (
     setting,
     shortened,
 )
-from trackroller.report.words.designs import alone, condition_words, design_words, ended_by, span_words, unanswered
+from trackroller.report.words.designs import (
+    alone,
+    condition_words,
+    design_words,
+    ended_by,
+    ends_words,
+    span_words,
+    unanswered,
+)
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.candidates import Candidates
 from trackroller.results.results import Results
@@ -117,7 +125,7 @@ class _Words:
             who="roller" if alone(self.candidates) else "pair",
             goal=found.goal[1],
             rises=found.goal_rises,
-            limit=ended_by(one.ends),
+            limit=ends_words(one),
             target=self.target(),
             edges=[long_name(name) for name in one.edges] if found.kind == "build" else [],
             many=len(found.best),
@@ -175,11 +183,11 @@ class _Words:
     def range_of(self) -> Sentence:
         """State the ranges of the candidates between which the measurement decides."""
         found = self.found
-        shown = [(self.name(one), self.span(one), ended_by(one.ends)) for one in found.best[:MOST]]
+        shown = [(self.name(one), self.span(one), ends_words(one)) for one in found.best[:MOST]]
         first = found.best[0]
         ranged = any(one.high > one.low for one in found.best)
         values = {"ranged": ranged, "shown": shown, "left": len(found.best) - len(shown)}
-        values |= {"limit": ended_by(first.ends), "alike": len({limit for _, _, limit in shown}) == 1}
+        values |= {"limit": ends_words(first), "alike": len({limit for _, _, limit in shown}) == 1}
         return say("verdict", "range", **values, target=self.target(), where=self.where(first), body=first.body)
 
     def turn(self, turn: Turn) -> Sentence | None:
