@@ -111,7 +111,7 @@ FORMULAS = {
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
-    "converged": ("report/templates/sentences/indices.txt.j2", "if times <= 1", "if times <= 4", CONVERGENCE),
+    "converged": ("report/words/samples.py", "if times <= 1 else", "if times <= 4 else", CONVERGENCE),
     "interval-of-a-step": ("methods/intervals.py", "a - low_a))", "high_a - a))", WORDS),
     "rising": ("results/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
     "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
@@ -124,8 +124,8 @@ DECISIONS = {
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
-    "rounded-outwards": ("results/events.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
-    "bent": ("report/words/indices.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
+    "rounded-outwards": ("results/findings.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
+    "bent": ("results/findings.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
     "pareto-end": (
         "results/pareto.py",
         '-1.0 if way == "max" else 1.0',

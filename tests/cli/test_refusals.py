@@ -120,7 +120,8 @@ def test_a_bad_setting_is_refused_in_one_line(word, capsys):
 def test_a_file_is_what_its_name_says(name, tmp_path, monkeypatch, capsys):
     monkeypatch.chdir(tmp_path)
     Path("shift.yaml").write_text("blocks: [{distance: 10, radial_force: -200}]\n")
-    for words in (["solve"], ["spectrum", "shift.yaml"], ["wear"]):
+    solve = [] if name == "x.xlsx" else [["solve"]]  # one roller may be a workbook
+    for words in (*solve, ["spectrum", "shift.yaml"], ["wear"]):
         assert "ends in .nc" in _refused(capsys, *words, "-o", name)
     assert "ends in .html" in _refused(capsys, "explore", "study", "-o", name)
     assert os.listdir() == ["shift.yaml"]

@@ -158,7 +158,8 @@ def test_design_points_are_compared_by_their_statistics():
     np.testing.assert_array_equal(front["optimal"], optimal)
     text = pareto_sentence(front, results_of(ds)).text
     assert text.startswith(f"{optimal.sum()} of 8 allowed design points are Pareto-optimal: from ")
-    told = {t.name: t for t in contents(results_of(ds, sens))["tables"]["decide"]}
+    tables = contents(results_of(ds, sens))["tables"]
+    told = {t.name: t for t in [*tables["decide"], *tables["more"]]}
     assert told["pareto"].heads[:3] == ["Design point", "B10 of life of the roller [h] ↑", told["pareto"].heads[2]]
     assert len(told["pareto"].rows) == optimal.sum() and "percentiles_friction_power" in told
     assert study_pareto(results_of(ds)) is None  # without an analysis there are no statistics

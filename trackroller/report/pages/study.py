@@ -138,7 +138,8 @@ def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     if sens is not None:
         decide += target_tables(sens, results)
     if sens is not None and robust_design(sens):
-        more += robust_tables(sens, error)
+        asked = float(sens.attrs.get("log_life_scatter", 0.0)) > 0  # the verdict leaves the scatter of materials out
+        (decide if asked else more).extend(robust_tables(sens, error))
     elif sens is not None:
         more += [index_table(sens, error), *part_tables(sens)]
         index = headline(sens)
