@@ -137,7 +137,9 @@ def check_occurrence(raw, said, hit, among):
     counts = first(rf"occurs in {NUMBER} of {NUMBER} cases", said.text)
     assert [value(c) for c in counts] == [hit.sum(), among.sum()]
     if said.kind == "cases":
-        named = [int(t) for t in re.findall(r"\d+", said.text.split("cases (")[1].split(")")[0])]
+        shown = re.findall(r"cases \(([^)]*)\)", said.text)
+        named = [int(t) for t in re.findall(r"\d+", shown[0])] if shown else said.values["cases"]
+        assert bool(shown) == (hit.sum() <= 3)
         assert named == np.flatnonzero(hit).tolist() and hit.sum() < 20
         return
     assert hit.sum() >= 20 or (said.kind == "only" and said.values["inside"] == hit.sum())

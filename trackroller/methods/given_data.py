@@ -131,7 +131,7 @@ def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float,
     Returns
     -------
     Epsilon squared (Kelley 1935, Proc. Natl. Acad. Sci. 21, 554-559), which is free of the bias of the plain ratio,
-    and its standard error by a grouped jackknife.
+    and its standard error by a grouped jackknife; NaN where each group is one row.
     """
     count = int(group.max()) + 1
     part = np.random.default_rng(seed).permutation(len(y)) % GROUPS
@@ -153,7 +153,8 @@ def _epsilon(sums: np.ndarray, square: np.ndarray) -> np.ndarray:
     mean = total.sum(axis=-1) / rows
     whole = square - rows * mean**2
     between = (total**2 / np.maximum(number, 1)).sum(axis=-1) - rows * mean**2
-    return np.asarray(1 - (whole - between) / (rows - filled) * (rows - 1) / whole)
+    free = np.where(rows > filled, rows - filled, np.nan)  # groups of one row each tell nothing of the rest
+    return np.asarray(1 - (whole - between) / free * (rows - 1) / whole)
 
 
 def prcc(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.methods.b10 import b10
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.parameters import FIRST_TO_FAIL, PARAMETERS
 from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
@@ -28,8 +28,11 @@ TIED = 1e-9  # relative difference of lives that count as equal
 
 def factor_roles(results: Results) -> dict[str, str]:
     """Return the role of each factor of a study that varies: `choice` or `condition`."""
-    study = results.study
-    return roles_of(results.factors, study.parsed, study.config.roles, study.config.design)
+    study, observed = results.study, results.config.method.observed
+    roles = roles_of(results.factors, study.parsed, study.config.roles, study.config.design)
+    # a label of its own in each row of a table names a condition, such as a measured load
+    labels = [n for n in roles if observed and n not in PARAMETERS and results.table[n].nunique() == len(results.table)]
+    return roles | {n: "condition" for n in labels if n not in study.config.roles}
 
 
 def slip_margin(results: Results) -> np.ndarray:

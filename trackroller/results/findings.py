@@ -41,6 +41,7 @@ MOST_EFFECTS = 3  # of them on effects of factors
 FEW = 20  # with fewer events or cases the share of an event at a level is not looked at
 TIED = 0.5  # rank correlation of two factors, from which on the effect of one may be that of the other
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
+APART = 2.0  # ratio of the effects within two levels of a category, from which on each is told
 EVEN = 0.1  # difference of the shares of cases that constraints leave, up to which they cut evenly
 ALIKE = 1e-6  # relative difference of two indices that count as equal
 ROUNDING = 1e-9  # of the margin to slip
@@ -182,8 +183,8 @@ def limits_first(results: Results) -> list[Finding]:
 
 def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[Finding]:
     """Say how many designs change their place from the life by fatigue to the first limit, and which one most."""
-    turned = turn(candidates)
-    if turned is None:
+    turned, found = turn(candidates), results.verdict
+    if turned is None or found is None or found.kind in ("measure", "give"):  # there the order is open
         return []
     steps = {i: turned.before.index(i) - turned.after.index(i) for i in turned.after}
     most = max(steps, key=lambda i: abs(steps[i]))
@@ -206,16 +207,15 @@ def _whichever(results: Results, candidates: Candidates, rows: np.ndarray) -> li
 
 def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
     """Return the findings of the indices: the factors that decide, by group and by level, and an interaction."""
-    names = [str(n) for n in sens["output"].values]
+    names = [str(n) for n in sens["output"].values if str(n) not in REGIMES]  # `ends` says where these occur
     lives = sorted((n for n in names if "life" in n), key=lambda n: ("pair" not in n, "roller" not in n))
     output = next((n for n in dict.fromkeys([*lives, *names]) if decisive(sens, n)), None)
     if output is None or not carries_indices(results, sens, output):
         return []
     values = {kind: found for kind, of in OF_ANALYSIS.items() if (found := of(sens, output)) is not None}
-    first = values["index"]["ranks"][0].factor
-    if results.config.method.observed and not values["index"]["correlated"]:
-        if go_together(results, first, results.counted):
-            values.pop("index")
+    large = [r.factor for r in values["index"]["ranks"] if r not in values["index"]["small"]]
+    if results.config.method.observed and any(go_together(results, name, results.counted) for name in large):
+        values.pop("index")  # the share of one factor may be that of another
     if "index" in values:
         values["index"]["outside"] = int((results.counted & ~results.valid).sum())
     kinds = [*values]
@@ -380,12 +380,27 @@ def _of_pairs(results: Results, column: str, effect: Effect, rows: np.ndarray) -
     parts = [p for p in values["parts"] if p[2].size >= effects.FEWEST_PAIRS]
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     values |= {"parts": parts, "same": effect.rising if effect.ratio > 1 else effect.falling}
-    values |= {"against": bool(against), "changed": effects.also_changed(results, effect.factor, rows)}
+    folds = [np.log(p[2].ratio) for p in _most_spread(parts)]
+    apart = bool(folds) and max(folds) - min(folds) > np.log(APART) and bool(np.isfinite(folds).all())
+    values |= {
+        "against": bool(against),
+        "apart": _most_spread(parts) if against or apart else [],
+        "changed": effects.also_changed(results, effect.factor, rows),
+    }
     if max(effect.ratio, 1 / effect.ratio) <= 1 + effects.UNCHANGED and not against:
         kind = "pairs_same"
     else:
         kind = "pairs_both" if against or values["same"] < effects.MOST * effect.size else "pairs"
     return finding(results, kind, "valid", rows, **values)
+
+
+def _most_spread(parts: list[tuple[str, Any, Effect]]) -> list[tuple[str, Any, Effect]]:
+    """Return the effects within the levels of the category whose levels disagree most."""
+    spread: dict[str, list[float]] = {}
+    for category, _, effect in parts:
+        spread.setdefault(category, []).append(np.log(effect.ratio))
+    most = max(spread, key=lambda name: max(spread[name]) - min(spread[name]), default="")
+    return [part for part in parts if part[0] == most]
 
 
 def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray, asked: list[str]) -> Finding:
@@ -423,13 +438,14 @@ def slip_law(results: Results) -> Finding | None:
     hit, lifted = (results.regime == REGIMES.index(name) for name in ("full_slip", "lift_off"))
     margin = slip_margin(results)
     margin = np.where(results.column("motor_force", results.config.base.get("motor_force", np.nan)) == 0, 1.0, margin)
-    if not hit.any() or np.isnan(margin).any() or (hit & (margin > ROUNDING)).any():
+    looked = of_one_model(results, np.ones(len(hit), dtype=bool))
+    hit, over = hit & looked, looked & (margin < -ROUNDING)
+    if not hit.any() or np.isnan(margin[looked]).any() or (hit & (margin > ROUNDING)).any():
         return None
-    over = margin < -ROUNDING
     if (over & ~hit & ~lifted).any():
         return None
-    every, lost = np.ones(len(hit), dtype=bool), int((over & lifted).sum())
-    return finding(results, "slip_law", "all", every, what="full_slip", count=int(hit.sum()), of=len(hit), lifted=lost)
+    values = {"count": int(hit.sum()), "of": int(looked.sum()), "lifted": int((over & lifted).sum())}
+    return finding(results, "slip_law", "all", looked, what="full_slip", **values)
 
 
 def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Finding | None:

@@ -223,7 +223,7 @@ class Results:
         return table.assign(**{name.replace("hours", "years"): years(table[name], duty) for name in lives})
 
     def export(self, path: Path | str) -> Path:
-        """Write the cases with every limit as a workbook (.xlsx) or as CSV, by the name of the file; return its path."""
+        """Write the cases with every limit, as a workbook (.xlsx) or as CSV by the name, and return the path."""
         return Path(_of("report.workbook", "write_results")(self, Path(path)))
 
     def report(self, path: Path | str) -> Path:

@@ -134,10 +134,21 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
         places.pop("worst")
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
     if rising and (known := _of_verdict(candidates, best)):
-        rows.append(["Ends it", *(f"{ends_words(one)}, {one.body}" if one and one.ends else "–" for one in known)])
+        rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
         rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
     return rows
+
+
+def _end_cell(candidates: Candidates, one: Candidate | None) -> str:
+    """Say what ends a candidate and which body, or where it is not met or not judged."""
+    if one is None or not one.ends:
+        return "–"
+    if one.ends in LIMITS:
+        return f"{ends_words(one)}, {one.body}"
+    names = [name for name in candidates.conditions if name not in UNSURE]
+    where = ", ".join(setting(name, candidates.results.table[name].iloc[one.case]) for name in names)
+    return f"{one.ends} at {where}" if where else one.ends
 
 
 def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate | None]:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, setting, times
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, say
@@ -73,17 +71,8 @@ def _of_pairs(results: Results, finding: Finding, words: str) -> dict[str, Any]:
     changed = [long_name(name) for name in values["changed"]]
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that follow{'s' * (len(changed) == 1)} from it" if changed else ""
-    medians = _within(_most_spread(values["parts"]), words) if values["against"] else []
+    medians = _within(values["apart"], words)
     return {"span": _span(results, values["effect"]), "pairs": pairs, "medians": medians}
-
-
-def _most_spread(parts: Strata) -> Strata:
-    """Return the effects within the levels of the category whose levels disagree most."""
-    spread: dict[str, list[float]] = {}
-    for category, _, effect in parts:
-        spread.setdefault(category, []).append(np.log(effect.ratio))
-    category = max(spread, key=lambda c: max(spread[c]) - min(spread[c]))
-    return [part for part in parts if part[0] == category]
 
 
 def _of_classes(results: Results, finding: Finding, words: str) -> dict[str, Any]:

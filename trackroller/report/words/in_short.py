@@ -50,14 +50,15 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
 
 
 def _enough(results: Results) -> Sentence | None:
-    """Say whether there are samples enough; None for an unfinished study, which asks for more than are solved."""
+    """Say whether there are samples enough for what decides; None for an unfinished study, which asks for more."""
     sens = results.analysis
     known = grown(results)
     if known is not None or sens is None or results.unfinished:
         return known
     told = [one.values["output"] for one in results.findings["why"] if one.kind == "index"]
     lives = main_lives(sens) if robust_design(sens) else []
-    return samples(sens, results.config.samples, next(iter([*told, *lives]), ""))
+    about = next(iter([*told, *lives]), None)
+    return None if about is None else samples(sens, results.config.samples, about)
 
 
 def _target(results: Results) -> Sentence | None:

@@ -16,6 +16,7 @@ from trackroller.report.numbers import (
     shortened,
 )
 from trackroller.report.words.designs import (
+    SAME,
     alone,
     condition_words,
     design_words,
@@ -31,7 +32,7 @@ from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
-LEAST_NEEDED = ("next", "not_judged", "out", "turn")  # kinds of sentences that also stand below, the first one least
+LEAST_NEEDED = ("next", "not_judged", "turn", "out")  # kinds of sentences that also stand below, the first one least
 SHORT = {"bearing": "bearing", "shakedown": "shakedown", "guide": "guide (give `guide_overrollings_per_hour`)"}
 REASONS = {  # of `Cases.reason`, as what the candidate does
     "breaks": "breaks",
@@ -152,9 +153,12 @@ class _Words:
 
     def following(self) -> Sentence | None:
         """Name the next best candidate by the same measure."""
-        one = self.found.next
+        one, found = self.found.next, self.found
         if one is None:
             return None
+        others = [c for c in found.candidates[found.named :] if c.number != one.number and c.judged]
+        if any(math.isclose(c.low, one.low, rel_tol=SAME) and c.met == one.met for c in others):
+            return None  # of several alike none is the next
         values = {"candidate": one, "name": self.name(one), "lives": self.span(one), "holds": one.met == one.conditions}
         return say("verdict", "next", **values)
 
@@ -185,10 +189,18 @@ class _Words:
         found = self.found
         shown = [(self.name(one), self.span(one), ends_words(one)) for one in found.best[:MOST]]
         first = found.best[0]
-        ranged = any(one.high > one.low for one in found.best)
-        values = {"ranged": ranged, "shown": shown, "left": len(found.best) - len(shown)}
+        ranged, places = any(one.high > one.low for one in found.best), {self.where(one) for one in found.best[:MOST]}
+        worn = any("wear" in (one.ends, one.ends_high) for one in found.best[:MOST] if one.high > one.low)
+        values = {"ranged": ranged, "worn": worn, "shown": shown, "left": len(found.best) - len(shown)}
         values |= {"limit": ends_words(first), "alike": len({limit for _, _, limit in shown}) == 1}
-        return say("verdict", "range", **values, target=self.target(), where=self.where(first), body=first.body)
+        return say(
+            "verdict",
+            "range",
+            **values,
+            target=self.target(),
+            where=places.pop() if len(places) == 1 else "",
+            body=first.body,
+        )
 
     def turn(self, turn: Turn) -> Sentence | None:
         """Say at which value the decision turns."""
