@@ -13,19 +13,17 @@ from trackroller.report.words.optimum import optima_table, optimum_sentences
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.results import Results
 
-NOTHING = "The study has no result that ranks designs. Add life or peak_stress to its outputs, and run it again."
-
 
 @lives_in_years
 def best_of(results: Results) -> tuple[list[str], Table | None]:
     """Return sentences on the best designs of a study, and a table of up to five of them."""
     optimum = optimum_sentences(results)
     said = optimum or verdict_sentences(results)
-    if not said:
-        return [NOTHING], None
-    if not (optimum or results.valid.all()):
+    ranked = bool(optimum) or results.verdict is not None
+    if ranked and not (optimum or results.valid.all()):
         said = [*said, valid_cases(results)]  # a design that is left out may have the longest life
-    return [sentence.text for sentence in said], optima_table(results) or best_table(results)
+    table = (optima_table(results) or best_table(results)) if ranked else None
+    return [sentence.text for sentence in said], table
 
 
 def write_best(results: Results, out: Path) -> Path:

@@ -54,8 +54,7 @@ def verdict_sentences(results: Results) -> list[Sentence]:
     """
     found = results.verdict
     if found is None:
-        searched = results.config.method.proposes or not len(results.table)
-        return [] if searched else [say("verdict", "no_goal", outputs=list(results.config.outputs))]
+        return [] if results.config.method.proposes else [say("verdict", "no_goal")]
     words = _Words(results, found)
     said = [words.head(), *words.reasons(), words.aside(), words.open_limits(), words.unchecked()]
     return _fitting([sentence for sentence in said if sentence is not None])
