@@ -46,7 +46,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     figure, (axes,) = style.panels(f"{capital(ranked.goal[1])} of each candidate", 26 + 6.4 * len(listed))
     place = np.arange(len(listed))[::-1]
     ends = np.array([[one.low, one.high, one.median, one.best] for one in listed])
-    spread, sure = _spread_words(ranked, rising)
+    spread, sure = _spread_words(ranked)
     _bars(axes, place, ends, spread, sure)
     required = ranked.required
     if np.isfinite(required):
@@ -66,10 +66,11 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     return figure, style.FigureInfo("designs", _caption(ranked, len(listed)))
 
 
-def _spread_words(found: Verdict, rising: bool) -> tuple[str, str]:
+def _spread_words(found: Verdict) -> tuple[str, str]:
     """Name the thin line from the worst to the best condition, and the thick one over the range of placeholders."""
-    worst = "nine of ten sampled conditions" if found.sampled else "the worst condition"
-    return ("worst to best condition" if not found.sampled else "sampled conditions"), f"range at {worst}"
+    if found.sampled:
+        return "sampled conditions", "range at nine of ten sampled conditions"
+    return "worst to best condition", "range at the worst condition"
 
 
 def _bars(axes: Any, place: np.ndarray, ends: np.ndarray, spread: str, sure: str) -> None:
@@ -90,11 +91,14 @@ def _bars(axes: Any, place: np.ndarray, ends: np.ndarray, spread: str, sure: str
 
 def _caption(found: Verdict, shown: int) -> str:
     """Say what is drawn, and what is left out."""
-    text = f"The best {shown} of {count(len(found.candidates))} candidates" if shown < len(found.candidates) else ""
-    text += ". " * bool(text) + "Beside each: what ends it at its worst condition" if found.goal_rises else text
-    left = sum(not one.judged for one in found.candidates)
-    text += f". Not judged, so not drawn: {count(left)}" if left else ""
-    return f"{text}." if text else "Conditions that no candidate meets are left out."
+    parts = []
+    if shown < len(found.candidates):
+        parts.append(f"The best {shown} of {count(len(found.candidates))} candidates.")
+    if found.goal_rises:
+        parts.append("Beside each candidate stands what ends it at its worst condition.")
+    if left := sum(not one.judged for one in found.candidates):
+        parts.append(f"Not judged, so not drawn: {count(left)}.")
+    return " ".join(parts) or "Conditions that no candidate meets are left out."
 
 
 OTHER = "0.65"  # grey of the designs without a level of their own
