@@ -54,7 +54,7 @@ def test_a_finding_names_its_rows_their_levels_and_the_contact_model():
 
 
 def test_of_several_contact_models_the_most_exact_one_counts():
-    """A regime that the cheap model alone finds is no finding; a share is over the cases of one model."""
+    """A regime that only the cheap model finds is not told; shares count the cases of one model."""
     study = {
         "name": "models",
         "factors": {"contact_model": {"values": ["sliding", "kalker"]}, "axial_force": {"values": [0, 20, 100]}},

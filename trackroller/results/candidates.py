@@ -35,6 +35,17 @@ def factor_roles(results: Results) -> dict[str, str]:
     return roles | {n: "condition" for n in labels if n not in study.config.roles}
 
 
+def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:
+    """Return those of the rows, shape (n,) bool, that the most exact contact model solved, at one level of each option.
+
+    The level is that of `Results.held_level`.
+    """
+    kept = rows.copy()
+    for option in (n for n in results.factors if n in OPTION_FACTORS):
+        kept &= (results.table[option] == results.held_level(option)).to_numpy()
+    return kept
+
+
 def slip_margin(results: Results) -> np.ndarray:
     """Return the share of the largest transmissible force that the drive leaves, 1 - |F_Motor|/(mu |F_rad|/cos alpha).
 
@@ -109,9 +120,7 @@ class Candidates:
         """Return the designs of a study, whether a case is valid or not; `goal` is what is compared."""
         roles = factor_roles(results) | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
-        own = np.ones(len(results.table), dtype=bool)
-        for option in (n for n in results.factors if n in OPTION_FACTORS):
-            own &= (results.table[option] == results.held_level(option)).to_numpy()
+        own = of_one_model(results, np.ones(len(results.table), dtype=bool))
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)[own]

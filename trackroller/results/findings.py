@@ -14,9 +14,10 @@ import numpy as np
 import xarray as xr
 from scipy.stats import spearmanr
 
+from trackroller.methods.correlation import CORRELATED
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.results import effects
-from trackroller.results.candidates import Candidates, slip_margin
+from trackroller.results.candidates import Candidates, of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
 from trackroller.results.first_limits import first_limit, turn
@@ -39,7 +40,6 @@ from trackroller.study.design.entries import OPTION_FACTORS
 MOST = 5  # findings under *Why*
 MOST_EFFECTS = 3  # of them on effects of factors
 FEW = 20  # with fewer events or cases the share of an event at a level is not looked at
-TIED = 0.5  # rank correlation of two factors, from which on the effect of one may be that of the other
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 APART = 2.0  # ratio of the effects within two levels of a category, from which on each is told
 EVEN = 0.1  # difference of the shares of cases that constraints leave, up to which they cut evenly
@@ -86,18 +86,10 @@ def _models(results: Results, rows: np.ndarray) -> tuple[str, ...]:
     return (results.config.contact_model,)
 
 
-def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:
-    """Return those of the rows that the most exact contact model solved, and of other options the first level."""
-    kept = rows.copy()
-    for option in (n for n in results.factors if n in OPTION_FACTORS):
-        kept &= (results.table[option] == results.held_level(option)).to_numpy()
-    return kept
-
-
 def go_together(results: Results, name: str, rows: np.ndarray) -> list[str]:
     """Return the factors that go with a factor in these rows, so that an effect of one may be that of another.
 
-    Factors go together if the level of one gives that of the other, or by a rank correlation of `TIED`.
+    Factors go together if the level of one gives that of the other, or by a rank correlation of `CORRELATED`.
     """
     table = results.table[rows]
     own = codes(table, (name,))
@@ -119,7 +111,7 @@ def _correlated(one: Any, other: Any) -> bool:
     good = np.isfinite(one.to_numpy(dtype=float)) & np.isfinite(other.to_numpy(dtype=float))
     if good.sum() < 3 or one[good].nunique() < 2 or other[good].nunique() < 2:
         return False
-    return bool(abs(spearmanr(one[good], other[good]).statistic) >= TIED)
+    return bool(abs(spearmanr(one[good], other[good]).statistic) >= CORRELATED)
 
 
 def cut_evenly(results: Results, name: str) -> bool:

@@ -22,7 +22,7 @@ from trackroller.study.outputs import regimes
 
 def given_pareto(results: Results) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its own."""
-    return study_pareto(results) if results.config.pareto or results.config.method.proposes else None
+    return results.pareto() if results.config.pareto or results.config.method.proposes else None
 
 
 def study_pareto(results: Results) -> xr.Dataset | None:

@@ -137,11 +137,15 @@ class Results:
             None if the study has no goals.
         """
         if objectives is None and constraints is None:
-            front: xr.Dataset | None = _of("results.pareto", "study_pareto")(self)
-            return front
+            return self._pareto
         limits = self.config.constraints if constraints is None else constraints
         allowed: xr.Dataset = _of("results.pareto", "pareto")(self, objectives or self.goals, limits)
         return allowed
+
+    @cached_property
+    def _pareto(self) -> xr.Dataset | None:
+        front: xr.Dataset | None = _of("results.pareto", "study_pareto")(self)
+        return front
 
     def candidates(self, free: tuple[str, ...] = ()) -> Any:
         """Return the combinations of choices, each judged over its conditions.

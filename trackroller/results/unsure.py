@@ -41,9 +41,7 @@ def settled(candidates: Candidates) -> tuple[int, int] | None:
         return None
     place = codes(results.table, (name for name in results.factors if name not in UNSURE))
     reached = reached_hours(results)
-    whole = np.prod(
-        [len(results.levels(name)) for name in varied(candidates)]
-    )  # places of the values within their ranges
+    whole = np.prod([len(results.levels(name)) for name in varied(candidates)])  # places within the ranges
     groups, first = [place[results.valid] == g for g in np.unique(place[results.valid])], reached[results.valid]
     groups = [rows for rows in groups if rows.sum() == whole]
     certain = ends = 0

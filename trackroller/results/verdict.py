@@ -25,7 +25,7 @@ from trackroller.results.first_limits import reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
 from trackroller.results.limit_notes import guessed_values
 from trackroller.results.lives import FIRST_LIMIT
-from trackroller.results.pareto import end_places, goals_of, study_pareto
+from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
 from trackroller.results.unsure import COEFFICIENT
 from trackroller.roller.record import names_not_given
@@ -667,7 +667,7 @@ def _tradeoff(results: Results) -> Tradeoff | None:
     """Return the ends of the Pareto set; None unless the study file has several goals and no target."""
     if len(results.config.pareto) < 2 or results.config.analysis.target:
         return None
-    front = study_pareto(results)
+    front = results.pareto()
     if front is None or front.attrs.get("kind") == "case" or (front["optimal"].values == 1).sum() < 2:
         return None
     goals, names = goals_of(front), [n for n in str(front.attrs["factors"]).split(", ") if n in front]

@@ -12,7 +12,6 @@ from trackroller.report.tables.table import cell, factor_cell, heading
 from trackroller.report.words.designs import alone, first_words
 from trackroller.report.words.pareto import goal_heading
 from trackroller.results.candidates import Candidates, hardest_first
-from trackroller.results.pareto import study_pareto
 from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
 
@@ -95,7 +94,7 @@ def _goals(candidates: Candidates) -> tuple[list[str], dict[tuple[Any, ...], lis
     if not any(statistic(name)[0] for name in goals):
         return [], {}, ""
     note = "The goals of this study are statistics over its scatter: they compare designs. Goals below compares cases."
-    front = study_pareto(candidates.results)
+    front = candidates.results.pareto()
     if front is None:
         return [], {}, f"{note} Their Pareto set needs sensitivity.nc beside the study; it stands in the report."
     names = [name for name in goals if name not in candidates.choices]

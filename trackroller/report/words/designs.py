@@ -33,7 +33,6 @@ from trackroller.results.results import Results
 from trackroller.results.unsure import UNSURE
 from trackroller.results.verdict import Candidate
 
-MOST_TIES = 3  # designs with equal lives that are named
 BEST = 5  # designs that stand side by side
 SAME = 1e-6  # relative difference of the two ends of a life below which it is one number
 
@@ -94,8 +93,8 @@ def best_table(results: Results) -> Table | None:
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
             rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
     several, met = bool(candidates.conditions), candidates.targets_met()
-    for name, words in (("valid", "Valid in"),) if several else ():
-        rows.append([words, *(part_of(row[name], row["cases"]) for row in best)])
+    if several:
+        rows.append(["Valid in", *(part_of(row["valid"], row["cases"]) for row in best)])
     if met is not None:
         places = candidates.table.index[: len(best)]
         rows.append(["Meets the targets in", *(part_of(met[i], candidates.size[i]) for i in places)])
@@ -128,12 +127,13 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
         rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
     places = {"worst": "worst condition" if rising else "largest", "median": "median"}
     places = places if candidates.conditions else {"worst": ""}
-    spans = _spans(candidates, best) if rising else []
+    known = _of_verdict(candidates, best) if rising else []
+    spans = _spans(candidates, known)
     if spans:  # the ends of the range say more than a value within it
         rows.append([f"{capital(candidates.goal[1])}, worst condition", *spans])
         places.pop("worst")
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
-    if rising and (known := _of_verdict(candidates, best)):
+    if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
         rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
@@ -160,9 +160,8 @@ def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate
     return [known.get(int(str(row.name))) for row in best]
 
 
-def _spans(candidates: Candidates, best: list[pd.Series]) -> list[str]:
+def _spans(candidates: Candidates, known: list[Candidate | None]) -> list[str]:
     """Write both ends of the life of each design at its worst condition; nothing where none rests on a placeholder."""
-    known = _of_verdict(candidates, best)
     if candidates.drawn or not any(one is not None and one.high > one.low * (1 + SAME) for one in known):
         return []
     return ["–" if one is None else span_words(one, candidates.goal[2]) for one in known]
@@ -185,8 +184,11 @@ def ends_words(one: Candidate) -> str:
 
 def ended_by(name: str) -> str:
     """Return the words of what ends a life: a limit without the remark in brackets, fatigue in short, or a reason."""
-    if name == "fatigue" or name not in LIMITS:
-        return name
+    return name if name == "fatigue" or name not in LIMITS else limit_title(name)
+
+
+def limit_title(name: str) -> str:
+    """Return the words of a limit without the remark in brackets."""
     return LIMITS[name].title.partition(" (")[0]
 
 

@@ -18,7 +18,7 @@ Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect wi
 def effect_words(results: Results, finding: Finding) -> Sentence:
     """Say how an output changes with a factor."""
     effect, column = finding.values["effect"], finding.values["column"]
-    output = results.quantity(column)[2] if column not in results.table else _words(results, column)
+    output = _words(results, column)
     values = {**vars(effect), "words": output, "fold": times(effect.ratio), "verb": _change(output, effect.ratio)[0]}
     values["beyond"] = _beyond(finding)
     if finding.kind.startswith("pairs"):

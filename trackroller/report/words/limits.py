@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage import LIMITS
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.report.numbers import capital, count, level_text, long_name, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import design_words
+from trackroller.report.words.designs import design_words, limit_title
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.findings import Finding
 from trackroller.results.first_limits import deciding, first_limit
@@ -18,16 +17,11 @@ from trackroller.results.results import Results
 from trackroller.results.unsure import COEFFICIENT, POSITION
 
 
-def title(name: str) -> str:
-    """Return the words of a limit without the remark in brackets."""
-    return LIMITS[name].title.partition(" (")[0]
-
-
 def limit_words(results: Results, finding: Finding) -> Sentence:
     """Say which limits come first, how they turn the order of the designs, or what the unmeasured values decide."""
     values = finding.values
     if finding.kind == "first_limits":
-        counts = {title(name): cases for name, cases in values["counts"].items()}
+        counts = {limit_title(name): cases for name, cases in values["counts"].items()}
         return say("limits", "first_limits", counts=counts, valid=values["of"])
     if finding.kind == "turned":
         return say("limits", "turned", **values, name=design_words(results.candidates(), values["design"]))
@@ -38,7 +32,7 @@ def guesses(results: Results) -> Sentence | None:
     """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
     placed: dict[str, dict[str, None]] = {}
     for limit, material, _ in guessed_values(results.data):
-        placed.setdefault(title(limit), {})[material.strip("'")] = None
+        placed.setdefault(limit_title(limit), {})[material.strip("'")] = None
     return say("limits", "guesses", placed={limit: list(own) for limit, own in placed.items()}) if placed else None
 
 
@@ -96,4 +90,4 @@ def _counts(names: np.ndarray) -> str:
     """Write 'shakedown 9, heat 3', the most frequent limit first; a dash without a valid case."""
     known, counts = np.unique(names[names != ""].astype(str), return_counts=True)
     order = np.argsort(-counts, kind="stable")
-    return ", ".join(f"{title(known[i])} {count(int(counts[i]))}" for i in order) or "–"
+    return ", ".join(f"{limit_title(known[i])} {count(int(counts[i]))}" for i in order) or "–"
