@@ -16,9 +16,11 @@ import yaml
 import trackroller as tr
 from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
+from trackroller.app.materials import material, save_material
 from trackroller.app.picture import curve, file_of_roller, picture, texts
 from trackroller.app.studies import checked, file_of_study, headlines, listing, page_of
-from trackroller.errors import WorkError
+from trackroller.errors import InputError, WorkError
+from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
 from trackroller.report.pages.sheet import collect
 from trackroller.study.file.load import load_study
@@ -221,3 +223,39 @@ def test_an_error_of_one_request_stops_no_other():
     with pytest.raises(ZeroDivisionError):
         lane.submit(1, lambda: 1 / 0).result(5)
     assert lane.submit(1, lambda: 7).result(5) == 7
+
+
+def test_a_material_of_ones_own_is_written_and_solved(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    known = {row["field"]: row for row in material("1.7225-normalised")["rows"]}
+    assert (known["tensile_strength"]["value"], known["tensile_strength"]["unit"]) == ("720", "MPa")
+    assert known["hardness"]["mark"].startswith("placeholder, expected from")
+    changed = {"tensile_strength": "810,5", "youngs_modulus": "206 GPa"}
+    answer = save_material("our steel", "1.7225-normalised", changed, "test 12")
+    assert answer["file"] == "config/materials.yaml" and answer["doubts"] == []
+    assert "our steel" in [row["name"] for row in answer["materials"]]
+    own = load_database().material("our steel")
+    assert (own.tensile_strength, own.youngs_modulus, own.poisson_ratio) == (810.5, 206e3, 0.33)
+    assert own.records["tensile_strength"].source == "test 12"
+    save_material("our steel", "our steel", {"tensile_strength": "820"}, "test 13")  # the other values stay
+    own = load_database().material("our steel")
+    assert (own.tensile_strength, own.youngs_modulus) == (820.0, 206e3)
+    values = {"roller_material": "our steel", "guide_material": "our steel"}
+    assert "Rolls." in picture(values, "preview", complete=False, inside=False)["verdict"]
+
+
+@pytest.mark.parametrize(
+    ("name", "changed", "source", "field"),
+    [
+        ("our steel", {"tensile_strength": "-3"}, "test", "tensile_strength"),
+        ("our steel", {"tensile_strength": "strong"}, "test", "tensile_strength"),
+        ("our steel", {}, "test", "material"),
+        ("our steel", {"tensile_strength": "800"}, " ", "source"),
+        (" ", {"tensile_strength": "800"}, "test", "material name"),
+    ],
+)
+def test_a_wrong_material_leaves_the_file_as_it_is(tmp_path, monkeypatch, name, changed, source, field):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(InputError, match=field):
+        save_material(name, "1.7225-normalised", changed, source)
+    assert list(tmp_path.iterdir()) == []

@@ -12,6 +12,8 @@ from hypothesis import strategies as st
 
 import trackroller as tr
 from trackroller.parameters import REGIMES
+from trackroller.report.numbers import quantity
+from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.verdict import verdict_of
 from trackroller.study.file.load import parse_study
 
@@ -486,3 +488,72 @@ def test_targets_against_loops(rows, least):
     if found.kind == "none":
         first = found.candidates[0]
         assert first.met == max(one.met for one in found.candidates)
+
+
+def aimed(results, hours=None, **more):
+    """Return results whose study asks for a life of the pair, or has other keys."""
+    config = results.config.model_copy(update=more)
+    if hours is not None:
+        target = {results.life[0]: {"min": hours}}
+        config = config.model_copy(update={"analysis": config.analysis.model_copy(update={"target": target})})
+    return dataclasses.replace(results, study=dataclasses.replace(results.study, config=config))
+
+
+def test_a_target_within_the_interval_of_a_sample_cannot_be_told():
+    results = sample()
+    best = results.verdict.best[0]
+    low, high = best.interval
+    assert low < best.low < high
+    for hours, kind, why in (
+        (0.9 * low, "build", ""),
+        ((low + best.low) / 2, "cannot_tell", "sample"),
+        ((best.low + high) / 2, "cannot_tell", "sample"),
+        (1.1 * high, "none", ""),
+    ):
+        found = aimed(results, hours).verdict
+        assert (found.kind, found.why) == (kind, why)
+        assert found.candidates[0].choices == best.choices
+
+
+def test_a_target_that_no_row_meets_is_none_although_designs_do_not_repeat():
+    factors = SAMPLE["factors"] | {"roller_profile_radius": {"uniform": [-8, -6.5]}}
+    results = tr.run(parse_study(SAMPLE | {"design": "lhs", "samples": 40, "factors": factors}), progress=False)
+    longest = results.table.pair_life_hours.max()
+    found = aimed(results, 1.01 * longest).verdict
+    assert (found.kind, found.candidates, found.fails.of) == ("none", (), 40) and found.required == 1.01 * longest
+    assert aimed(results, 0.99 * longest).verdict.kind == "cannot_tell"
+    said = " ".join(one.text for one in verdict_sentences(aimed(results, 1.01 * longest)))
+    assert said.startswith("None. None of the 40 cases meets the target") and quantity(longest, "h") in said
+
+
+def test_the_candidate_that_a_constraint_keeps_out_is_named():
+    lives = [[[900, 400, 300], [120, 800, 900]], [[250, 260, 270], [10, 20, 30]], [[5, 6, 7], [8, 9, 9]]]
+    kept = aimed(made(lives), constraints=["roller_profile_radius < -6.5"]).verdict
+    assert kept.best[0].low == 120 and kept.unconstrained.low == 300
+    assert aimed(made(lives), constraints=["roller_profile_radius < 0"]).verdict.unconstrained is None
+    said = [one.text for one in verdict_sentences(aimed(made(lives), constraints=["roller_profile_radius < -6.5"]))]
+    assert any(text.startswith("Without the constraint it would be") and "300 h" in text for text in said)
+
+
+def test_the_other_contact_models_name_their_candidate():
+    study = {
+        "name": "models",
+        "base": GIVEN,
+        "factors": {
+            "contact_model": {"values": ["sliding", "kalker_table"]},
+            "roller_profile_radius": {"values": [-6.4, -7]},
+            "friction_coefficient": {"values": [0.1, 0.2]},
+        },
+        "accuracy": "preview",
+    }
+    results = tr.run(parse_study(study), progress=False)
+    found, table = results.verdict, results.table
+    assert set(found.by_model) == {"sliding"}
+    own = table[table.contact_model == "sliding"].groupby("roller_profile_radius")[found.goal[0]].min()
+    assert found.by_model["sliding"].choices["roller_profile_radius"] == own.idxmax()
+    assert "This is by kalker_table; sliding names the same." in [one.text for one in verdict_sentences(results)]
+
+
+def test_a_choice_without_effect_is_told_as_any():
+    found = verdict_sentences(made([[[300, 300, 300], [300, 300, 300]], [[5, 6, 7], [5, 6, 7]], [[1, 1, 1], [1, 1, 1]]]))
+    assert "with any roller profile radius" in found[0].text

@@ -69,7 +69,8 @@ STUDIES = (
     *("page_of", "file_of_study"),
 )
 PAGES = ("sheet", "page_of", "file_of_roller", "file_of_study")  # have addresses of their own
-FILES = {"all_fields": "fields"} | dict.fromkeys(STUDIES, "studies")  # the thread of the files answers
+FILES = {"all_fields": "fields", "material": "materials", "save_material": "materials"}  # the thread of the files
+FILES |= dict.fromkeys(STUDIES, "studies")
 _loading = threading.Lock()
 
 

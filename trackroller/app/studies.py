@@ -294,7 +294,7 @@ def file_of_study(name: str, file: str) -> bytes:
 
 
 def headlines(name: str) -> dict[str, Any]:
-    """Return factors, headline numbers and the sentences of *In short* of a study."""
+    """Return factors, headline numbers and the sentences of a study."""
     results = open_as_reported(folder_of(name).root)
     table = factor_table(results)
     return {

@@ -13,6 +13,7 @@ from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, read_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import REGIMES
+from trackroller.parameters.example import LASTING, with_unit
 from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
@@ -50,15 +51,25 @@ def settings_of(words: list[str] | None) -> dict[str, Any]:
 
 
 def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str, Any], dict[str, Any]]:
-    """Return the case, the options, duty and sheet of a case file and of --set words; see `checked_case`."""
+    """Return the case, the options, duty and sheet of a case file and of --set words; see `checked_case`.
+
+    Without any of them it is the roller with which the live page begins.
+    """
     if path is not None and "=" in path.name and not path.exists():
         remedy = f"Write --set {path}: each key has a --set of its own."
         raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
-    values = {} if path is None else parse_mapping(text, "case file")
+    values = parse_mapping(text, "case file") if path is not None else {} if given else dict(LASTING)
     named = {*given, *(ALIASES.get(name, name) for name in given)}
     with errors_by_line(text, named, aliases=ALIASES), files_beside(path):
         return checked_case(overridden(values, given))
+
+
+def tell_start(path: Path | None, words: list[str] | None) -> None:
+    """Print on stderr which roller stands in where neither a case file nor --set words were given."""
+    if path is None and not words:
+        given = ", ".join(with_unit(name, value) for name, value in LASTING.items())
+        print_line(f"No case was given. This is the roller with which the live page begins: {given}.")
 
 
 def tell_doubts(case: Case) -> None:
@@ -95,6 +106,7 @@ def _served(path: Path | None, settings: list[str] | None) -> tuple[str, ...]:
 def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Dataset:
     """Solve the case of a case file and --set words; `more` are further options of `solve`."""
     case, options, beside = case_of(path, words)
+    tell_start(path, words)
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 

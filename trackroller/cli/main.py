@@ -41,6 +41,7 @@ app = typer.Typer(
 )
 app.add_typer(materials, name="materials")
 
+CASE_HELP = "case file (YAML); without it and --set the first roller of the live page"
 SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"
 SIGNS = dict(zip("−–×·→µ°±∞≤≥↑↓", "- - x * -> u deg +- inf <= >= ^ v".split(), strict=True))
 NoShortcuts = Annotated[bool, typer.Option("--no-shortcuts", help="skip no stage; the results stay the same")]
@@ -80,7 +81,7 @@ def _root(
 
 @command("trackroller.cli.case", "solve_and_tell")
 def solve(  # noqa: PLR0913 - one argument for each option of the command
-    case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
+    case: Annotated[Path | None, typer.Argument(help=CASE_HELP)] = None,
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) or a workbook (.xlsx)")] = None,
@@ -191,7 +192,7 @@ def spectrum(
 
 @command("trackroller.cli.case", "run_wear")
 def wear(
-    case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,
+    case: Annotated[Path | None, typer.Argument(help=CASE_HELP)] = None,
     to: Annotated[str, typer.Option("--to", help="travel at which to end, such as 500km")] = "50km",
     settings: Annotated[list[str] | None, typer.Option("--set", help=SET_HELP)] = None,
     out: Annotated[

@@ -209,7 +209,16 @@ LIMIT = Limit(
     parameters=(
         optional("heat_transfer_coefficient", "h", "W/(m2 K)", "heat transfer coefficient of the roller", 0.0),
         optional("cooled_area", "A_c", "mm2", "surface from which the roller loses heat", 0.0),
-        Parameter("ambient_temperature", "theta_0", "degC", 20.0, "temperature of the surroundings", -100.0, 1000.0),
+        Parameter(
+            "ambient_temperature",
+            "theta_0",
+            "degC",
+            20.0,
+            "temperature of the surroundings",
+            -100.0,
+            1000.0,
+            role="condition",
+        ),
     ),
     materials=(
         optional("loss_fraction", "alpha", "-", "share of the strain energy lost in a cycle", 0.0, 1.0, closed=True),

@@ -35,14 +35,15 @@ def factor_roles(results: Results) -> dict[str, str]:
     return roles | {n: "condition" for n in labels if n not in study.config.roles}
 
 
-def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:
-    """Return those of the rows, shape (n,) bool, that the most exact contact model solved, at one level of each option.
+def of_one_model(results: Results, rows: np.ndarray, model: str = "") -> np.ndarray:
+    """Return those of the rows, shape (n,) bool, that one contact model solved, at one level of each option.
 
-    The level is that of `Results.held_level`.
+    The level is that of `Results.held_level`, which for the contact model is the most exact one unless it is named.
     """
     kept = rows.copy()
     for option in (n for n in results.factors if n in OPTION_FACTORS):
-        kept &= (results.table[option] == results.held_level(option)).to_numpy()
+        level = model if model and option == "contact_model" else results.held_level(option)
+        kept &= (results.table[option] == level).to_numpy()
     return kept
 
 
@@ -116,11 +117,21 @@ class Candidates:
         return cls.grouped(results, goal, free)
 
     @classmethod
-    def grouped(cls, results: Results, goal: tuple[str, str, str], free: tuple[str, ...] = ()) -> Candidates:
-        """Return the designs of a study, whether a case is valid or not; `goal` is what is compared."""
+    def grouped(
+        cls, results: Results, goal: tuple[str, str, str], free: tuple[str, ...] = (), model: str = ""
+    ) -> Candidates:
+        """Return the designs of a study, whether a case is valid or not.
+
+        Parameters
+        ----------
+        results : the solved study
+        goal : column, words and unit of what is compared
+        free : conditions that count as choices here
+        model : contact model whose cases are compared, the most exact one if it is not named
+        """
         roles = factor_roles(results) | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
-        own = of_one_model(results, np.ones(len(results.table), dtype=bool))
+        own = of_one_model(results, np.ones(len(results.table), dtype=bool), model)
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)[own]

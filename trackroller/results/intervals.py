@@ -35,9 +35,11 @@ class Cases:
     Attributes
     ----------
     candidates : the designs of the study
+    constrained : whether a case that misses a constraint of the study is not met
     """
 
     candidates: Candidates
+    constrained: bool = True
 
     @property
     def results(self) -> Results:
@@ -82,7 +84,9 @@ class Cases:
         results = self.results
         life = self._column("")
         out = np.full(len(life), "", dtype=object)
-        missed = np.zeros(len(life), dtype=bool) if results.allowed is None else ~results.allowed
+        missed = np.zeros(len(life), dtype=bool)
+        if self.constrained and results.allowed is not None:
+            missed = ~results.allowed
         masks = [
             ("life not known", np.isnan(life)),
             *((f"limit {name}", rows) for name, rows in self._limits("exceeded").items()),

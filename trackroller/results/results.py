@@ -24,6 +24,7 @@ from trackroller.results.columns import base_values, case_columns, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.lives import FIRST_LIMIT, LIVES, body_lives, past_data
 from trackroller.roller.duty import years
+from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
@@ -363,9 +364,10 @@ class Results:
     def hold(self, shown: tuple[str, ...]) -> tuple[pd.DataFrame, dict[str, Any]]:
         """Return the rows with every factor outside `shown` at its held level, and these levels by factor.
 
-        A sampled study has no such rows: there the whole table comes back, and no factor is held.
+        A sampled study has no such rows: there only the options of the calculation are held, such as the contact model.
         """
-        held = {f: self.held_level(f) for f in self.factors if f not in shown} if self.grid else {}
+        names = self.factors if self.grid else [f for f in self.factors if f in OPTION_FACTORS]
+        held = {f: self.held_level(f) for f in names if f not in shown}
         rows = self.table
         for name, level in held.items():
             rows = rows[rows[name] == level]

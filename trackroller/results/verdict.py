@@ -165,7 +165,8 @@ class Verdict:
     target : targets of the study; empty without them
     candidates : all candidates, the best first
     named : number of the first candidates that the verdict names: one, or all that the study cannot tell apart
-    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions` or `model`
+    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`, or
+        `sample` where the interval of the sampled conditions holds the target
     next : the next best candidate, None without one
     out_of_reach : conditions that no candidate meets, None without one
     fails : where the first candidate misses the target, or its conditions; None if it does not
@@ -175,6 +176,8 @@ class Verdict:
     tried : number of candidates of a study whose candidates do not repeat; 0 otherwise
     sampled : whether a life is the one that nine of ten sampled conditions reach
     not_checked : limits that were not checked, and `guide` if its hours are not known
+    unconstrained : candidate that would be named without the constraints of the study; None if that is the same one
+    by_model : candidate that each other contact model of the study would name
     """
 
     kind: str
@@ -193,6 +196,8 @@ class Verdict:
     tried: int = 0
     sampled: bool = False
     not_checked: tuple[str, ...] = ()
+    unconstrained: Candidate | None = None
+    by_model: Mapping[str, Candidate] = field(default_factory=dict)
 
     @property
     def best(self) -> tuple[Candidate, ...]:
@@ -245,6 +250,9 @@ def verdict_of(results: Results) -> Verdict | None:
     if not candidates.comparable:
         reach: np.ndarray = np.zeros(len(results.table), dtype=bool)
         turns = _given(cases, reach)
+        if results.config.analysis.target and not (may := _targeted(cases)[2])[cases.own].any():
+            fails = _misses(cases, cases.own & ~may, cases.own, np.where(cases.reason == "", cases.first, cases.reason))
+            return Verdict("none", goal, (), _targeted(cases)[0], why="conditions", fails=fails, **_shared(cases))
         unknown = Verdict("cannot_tell", goal, (), why="conditions", **_shared(cases))
         return replace(unknown, kind="give", turns=turns, rest=unknown) if turns else unknown
     reach = cases.out_of_reach
@@ -258,8 +266,38 @@ def verdict_of(results: Results) -> Verdict | None:
         return replace(rest, kind="give", turns=turns, rest=others, out_of_reach=out)
     found = _decided(cases, cases.own, reach)
     if traded is not None and found.kind in ("build", "a_or_b", "measure"):
-        return replace(found, kind="give", turns=(Turn("requirement"),), rest=found, tradeoff=traded)
-    return found
+        found = replace(found, kind="give", turns=(Turn("requirement"),), rest=found, tradeoff=traded)
+    return replace(found, unconstrained=_unconstrained(cases, found), by_model=_by_model(cases))
+
+
+NAMES = ("build", "lasts", "a_or_b", "measure", "none")  # kinds of verdicts whose first candidate is named
+
+
+def _first(cases: Cases) -> Candidate | None:
+    """Return the first candidate of a verdict over some cases, None where it names none."""
+    found = _decided(cases, cases.own, cases.out_of_reach)
+    return found.candidates[0] if found.kind in NAMES and found.candidates else None
+
+
+def _unconstrained(cases: Cases, found: Verdict) -> Candidate | None:
+    """Return the candidate that a study would name without its constraints; None if it is among those named."""
+    if cases.results.allowed is None or not (cases.reason == "misses a constraint").any():
+        return None
+    first = _first(replace(cases, constrained=False))
+    same = {one.number for one in (found if found.rest is None else found.rest).best}
+    return None if first is None or first.number in same else first
+
+
+def _by_model(cases: Cases) -> dict[str, Candidate]:
+    """Return the candidate that each other contact model of a study would name, as far as it can name one."""
+    results, goal, out = cases.results, cases.candidates.goal, {}
+    held = results.held_level("contact_model") if "contact_model" in results.factors else ""
+    for model in results.levels("contact_model") if held else ():
+        if model != held and (others := Candidates.grouped(results, goal, model=str(model))).comparable:
+            first = _first(Cases(others))
+            if first is not None:
+                out[str(model)] = first
+    return out
 
 
 @dataclass(frozen=True)
@@ -398,20 +436,25 @@ def _targeted(cases: Cases) -> tuple[float, np.ndarray, np.ndarray]:
     return required, sure, np.asarray(may)
 
 
-def _status(cases: Cases, rows: np.ndarray, sure: np.ndarray, may: np.ndarray) -> str:
+def _status(cases: Cases, rows: np.ndarray, sure: np.ndarray, may: np.ndarray, of_all: bool = True) -> str:
     """Return whether a candidate meets a target in its cases: `met`, `missed`, or `open`.
 
-    All conditions count, or nine of ten of a sample, at each place of the placeholders.
+    All conditions count, or nine of ten of a sample, at each place of the placeholders. A sample stands for all
+    conditions, so that its 95 % interval counts; with `of_all` False it stands for itself alone.
     """
 
-    def enough(level: int, hits: np.ndarray) -> bool:
-        own = rows[cases.level[rows] == level]
-        return bool(hits[own].sum() >= len(own) - (int(np.ceil(0.1 * len(own))) - 1 if cases.sampled else 0))
+    def ends(hits: np.ndarray) -> list[tuple[bool, bool]]:
+        """Return whether enough conditions are hits, for certain and possibly, at each place."""
+        found = []
+        for level in np.unique(cases.level[rows]):
+            own = hits[rows[cases.level[rows] == level]].astype(float)
+            value, low, high = b10(own) if cases.sampled else (own.min(),) * 3
+            found.append((low > 0, high > 0) if of_all else (value > 0, value > 0))
+        return found
 
-    levels = np.unique(cases.level[rows])
-    if all(enough(level, sure) for level in levels):
+    if all(certain for certain, _ in ends(sure)):
         return "met"
-    return "open" if any(enough(level, may) for level in levels) else "missed"
+    return "open" if any(possible for _, possible in ends(may)) else "missed"
 
 
 def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
@@ -428,6 +471,8 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     status = np.array([_status(cases, own, sure, may) if target else "" for own in rows])
     order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
+    if kind == "measure" and target and _status(cases, rows[first[0]], sure, may, of_all=False) != "open":
+        kind, why = "cannot_tell", "sample"  # no value is missing, but conditions are
     order = np.array([*first, *(i for i in order if i not in first)])
     if kind == "none":  # of all conditions, those without any candidate included
         size, met = cases.conditions_in(wanted), cases.conditions_in(wanted) - cases.conditions_in(wanted & ~good)

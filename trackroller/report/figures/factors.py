@@ -9,6 +9,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
 from trackroller.report.words.levels import coloured
+from trackroller.results.candidates import of_one_model
 from trackroller.results.findings import shown_output
 from trackroller.results.groups import Groups, classes, groups
 from trackroller.results.ranking import ranked_factors
@@ -36,7 +37,7 @@ def by_factor(results: Results) -> style.Drawn:
     if shown is None or not results.factors:
         return None
     column, words, unit = shown
-    rows = results.valid & ~np.isnan(results.column(column))
+    rows = of_one_model(results, results.valid & ~np.isnan(results.column(column)))
     if rows.sum() < 2:
         return None
     lead = _lead(results, column)
@@ -65,8 +66,9 @@ def by_factor(results: Results) -> style.Drawn:
         legend(figure, [(text, look) for (text, _), look in zip(levels, looks, strict=True)])
     each = f" for each level of {long_name(lead)}" if apart else ""
     style.head(figure, f"{capital(words)} against each factor")
+    own = f" of {results.held_level('contact_model')}" if "contact_model" in results.factors else ""
     caption = (
-        f"{capital(words)} of the {rows.sum():,} valid cases along each factor, all other factors as they vary. "
+        f"{capital(words)} of the {rows.sum():,} valid cases{own} along each factor, all other factors as they vary. "
         f"Lines: medians{each}; bands: the middle half of the valid cases."
     )
     return figure, style.FigureInfo(f"bands-{column}", caption)

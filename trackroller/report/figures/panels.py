@@ -59,12 +59,16 @@ def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int
 def quantiles(
     values: np.ndarray, index: np.ndarray, count: int, shares: tuple[int, int, int] = (5, 50, 95), fewest: int = 1
 ) -> np.ndarray:
-    """Return three percentiles of the values (n,) of each group, shape (3, count); NaN for a group of few values."""
+    """Return three percentiles of the values (n,) of each group, shape (3, count); NaN for a group of few values.
+
+    Between two values it is their mean, as in the tables, which also holds for values without end.
+    """
     percentiles = np.full((3, count), np.nan)
     for k in range(count):
         own = values[(index == k) & ~np.isnan(values)]
         if own.size >= fewest:
-            percentiles[:, k] = np.percentile(own, shares, method="nearest")
+            low, high = (np.percentile(own, shares, method=way) for way in ("lower", "higher"))
+            percentiles[:, k] = np.where(low == high, low, (low + high) / 2)
     return percentiles
 
 

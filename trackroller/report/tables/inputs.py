@@ -120,6 +120,9 @@ def base_rows(results: Results) -> list[Row]:
     """List the inputs that are the same in all cases."""
     names = [*PARAMETERS, *(MATERIAL_FIELDS if "material_pair" not in results.factors else ()), *MAPPING_FIELDS]
     given = {name: results.base.get(name) for name in names if name not in (*results.factors, *results.table)}
+    radius = "roller_profile_radius"
+    if is_default(radius, given.get(radius)) and ("roller_profile" in results.factors or given.get("roller_profile")):
+        given.pop(radius)  # a drawn profile takes the place of the example's radius
     rows = [input_row(name, value) for name, value in given.items() if value not in (None, "") and value == value]
     return [replace(row, words=capital(row.words)) for row in rows]
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from trackroller.damage import LIMITS
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
@@ -32,7 +34,7 @@ from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
-LEAST_NEEDED = ("next", "not_judged", "turn", "out")  # kinds of sentences that also stand below, the first one least
+LEAST_NEEDED = ("models", "next", "not_judged", "turn", "out")  # kinds of sentences that also stand below, the first one least
 SHORT = {"bearing": "bearing", "shakedown": "shakedown", "guide": "guide (give `guide_overrollings_per_hour`)"}
 REASONS = {  # of `Cases.reason`, as what the candidate does
     "breaks": "breaks",
@@ -56,7 +58,8 @@ def verdict_sentences(results: Results) -> list[Sentence]:
     if found is None:
         return [] if results.config.method.proposes else [say("verdict", "no_goal")]
     words = _Words(results, found)
-    said = [words.head(), *words.reasons(), words.aside(), words.open_limits(), words.unchecked()]
+    said = [words.head(), *words.reasons(), words.without(), words.models(), words.aside(), words.open_limits()]
+    said.append(words.unchecked())
     return _fitting([sentence for sentence in said if sentence is not None])
 
 
@@ -93,7 +96,17 @@ class _Words:
         what = [_what(turn) for turn in found.turns]
         lives = self.span(found.best[0]) if found.best else ""
         who = "roller" if alone(self.candidates) or not found.goal_rises else "pair"
+        if found.why == "tie" and (free := self.without_effect()):
+            shared = {n: v for n, v in found.best[0].choices.items() if n not in free}
+            name = ", ".join(setting(n, v) for n, v in shared.items())
+            return say("verdict", "any", name=name, free=[long_name(n) for n in free], many=len(named))
         return say("verdict", found.kind, **values, what=what, lives=lives, who=who, rises=found.goal_rises)
+
+    def without_effect(self) -> list[str]:
+        """Return the choices in which the named candidates differ, if these are all levels of these choices."""
+        rows = [one.choices for one in self.found.best]
+        free = [name for name in rows[0] if any(row[name] != rows[0][name] for row in rows)]
+        return free if math.prod(len(self.results.levels(name)) for name in free) == len(rows) else []
 
     def reasons(self) -> list[Sentence | None]:
         """Say why: lives, what ends them, what turns the decision, and the conditions that are left out."""
@@ -103,9 +116,9 @@ class _Words:
         if found.kind == "give":
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
-            return [None]
+            return [self.by_sample() if found.why == "sample" else None]
         if found.kind == "none":
-            return [self.nearest()]
+            return [self.nearest() if found.candidates else self.nowhere()]
         if found.kind == "measure":
             return [self.range_of(), *map(self.turn, found.turns), self.out(found.out_of_reach)]
         return [self.ends(found.best[0]), self.following(), self.out(found.out_of_reach)]
@@ -181,7 +194,28 @@ class _Words:
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = self.span(one) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
-        return say("verdict", "nearest", **values, many=len(found.candidates), worst=self.where(one))
+        values |= {"many": len(found.candidates), "worst": self.where(one)}
+        return say("verdict", "nearest", **values, sampled=found.sampled, alone=one.conditions == 1)
+
+    def nowhere(self) -> Sentence:
+        """Say that no case of a study whose designs cannot be compared meets the target, and what the best reaches."""
+        results, goal = self.results, self.found.goal
+        known = self.candidates.usable
+        value, best = results.column(goal[0]), -1
+        if self.found.goal_rises and known.any():
+            best = int(np.argmax(np.where(known, value, -np.inf)))
+        fails = self.found.fails or Misses(0, 0, {})
+        row = results.table.iloc[best]
+        values = {"lives": quantity(float(value[best]), goal[2]), "name": design_words(self.candidates, row)} if best >= 0 else {}
+        shown = {"lives": "", "name": ""} | values
+        return say("verdict", "nowhere", cases=fails.of, target=self.target(), why=_reasons(fails), **shown)
+
+    def by_sample(self) -> Sentence:
+        """Say that the interval of the sampled conditions holds the target."""
+        found, one = self.found, self.found.best[0]
+        values = {"candidate": one, "name": self.name(one) if len(found.candidates) > 1 else ""}
+        values |= {"lives": self.span(one), "interval": [rounded(end) for end in one.interval], "unit": found.goal[2]}
+        return say("verdict", "sample", **values, target=self.target())
 
     def range_of(self) -> Sentence:
         """State the ranges of the candidates between which the measurement decides."""
@@ -253,6 +287,24 @@ class _Words:
             holds = "" if math.isnan(one.holds) else quantity(one.holds, unit)
             shown.append((self.name(one), REASONS.get(one.ends, one.ends), holds))
         return say("verdict", "not_judged", shown=shown, left=len(others) - len(shown), rises=found.goal_rises)
+
+    def without(self) -> Sentence | None:
+        """Name the candidate that only a constraint of the study keeps out."""
+        one, constraints = self.found.unconstrained, self.results.config.constraints
+        if one is None:
+            return None
+        values = {"candidate": one, "name": self.name(one), "lives": self.span(one), "many": len(constraints)}
+        return say("verdict", "without", **values, rises=self.found.goal_rises)
+
+    def models(self) -> Sentence | None:
+        """Say whether the other contact models of a study name the same candidate."""
+        found, others = self.found, self.found.by_model
+        named = (found if found.rest is None else found.rest).best
+        if not others or len(self.candidates.size) < 2 or len(named) != 1:
+            return None
+        agree = [model for model, one in others.items() if one.choices == named[0].choices]
+        apart = [(model, self.name(one)) for model, one in others.items() if model not in agree]
+        return say("verdict", "models", agree=agree, apart=apart, own=self.results.held_level("contact_model"))
 
     def open_limits(self) -> Sentence | None:
         """Name the limits of the first candidate that are exceeded at one end of the range of a placeholder."""

@@ -3,6 +3,7 @@ import { ask } from "./api.js";
 import { copy, el, replace } from "../dom.js";
 import { parameterRow, wordRow } from "./fields.js";
 import { live } from "./live.js";
+import { materialsEditor } from "./materials.js";
 import { pictureView } from "./picture.js";
 import { resultsView } from "./results.js";
 import { createState } from "./state.js";
@@ -95,7 +96,16 @@ async function start() {
     axis_distance: () => (INSTEAD.axis_distance.some((name) => state.values[name] !== undefined) ? "" : state.values.axis_distance),
     ...Object.fromEntries(DUTY.map((name) => [name, () => dutyOf(name)])),
   };
-  const datalist = el("datalist", { id: "materials" }, offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.family}, ${m.description}` })));
+  const named = () => offered.materials.map((m) => el("option", { value: m.name, label: `${m.name}: ${m.family}, ${m.description}` }));
+  const datalist = el("datalist", { id: "materials" }, named());
+  const editor = materialsEditor(offered, {
+    saved(materials) {
+      offered.materials = materials;
+      replace(datalist, named());
+      variants.forget();
+      flow.changed();
+    },
+  });
   const bodies = offered.bodies.map((name) => add(name, wordRow({ name, label: `${name.replace("_", " ")}`.replace(/^./, (c) => c.toUpperCase()), meaning: "a name of the database; type a part of it, or of its description", list: "materials", fallback: offered.materials[0].name }, { change: change(name), factor: () => study.add(name) })));
   const options = offered.options.filter((o) => !DECIDED.includes(o.name)).map((o) => add(o.name, wordRow({ name: o.name, label: o.name.replaceAll("_", " "), meaning: o.meaning, words: o.kind === "word" ? o.values : o.kind === "switch" ? { true: "", false: "" } : null, fallback: Array.isArray(o.value) ? "" : String(o.value) }, { change: change(o.name) })));
   const more = [...offered.mappings, { name: "sheet", meaning: "{project: Lift 7, part: R-12, revision: B, date: 2026-11-27, author: Ada, checker: Bo}: the head of the sheet" }].map((m) => add(m.name, wordRow({ name: m.name, label: m.name.replaceAll("_", " "), meaning: m.meaning, list: m.name.endsWith("_profile") ? "files" : null }, { change: change(m.name) })));
@@ -105,6 +115,7 @@ async function start() {
     group(OPEN[1], parameters(OPEN[1]), bodies, datalist),
     group(DRAWN, add("rail_diameter", rail), parameters(DRAWN), duty),
     group("Limits: what they need", [...grouped.keys()].filter((title) => ![...OPEN, DRAWN].includes(title)).flatMap(parameters)),
+    editor.node,
     group("Model and conventions", options),
     group("Profiles, friction law, bearing, catalogue, head of the sheet", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
   );

@@ -107,7 +107,7 @@ export function resultsView(state, { open, told }) {
       const short = found.map((one) => ({ short: Object.fromEntries(one.short) }));
       found.forEach((one, i) => (one.short = short[i].short));
       const head = el("tr", {}, el("th", { scope: "col" }, "study"), found.map((one) => el("th", { scope: "col" }, `${one.name} (${count(one.cases)} cases)`)));
-      const body = [part("Factors", rows("factors", String)), part("Lowest … middle … highest, of the cases that roll", rows("numbers", (ends) => ends.join(" … "))), part("In short", rows("short", String))];
+      const body = [part("Factors", rows("factors", String)), part("Lowest … middle … highest, of the cases that roll", rows("numbers", (ends) => ends.join(" … "))), part("What it says", rows("short", String))];
       replace(beside, el("h2", {}, chosen.size > 1 ? "Two studies side by side" : "One study; choose a second one to compare"), el("table", { class: "variants" }, el("thead", {}, head), el("tbody", {}, body.flat(2))));
     } catch (error) {
       replace(beside, el("p", {}, error.message));

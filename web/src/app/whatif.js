@@ -184,6 +184,8 @@ export function whatIf(state, offered, { rows }) {
     ),
   );
   return {
+    // solves the variants again, since a material changed
+    forget: () => (pictures.clear(), draw()),
     node,
     curve: (name) => {
       state.show("whatif");
