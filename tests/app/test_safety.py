@@ -179,7 +179,7 @@ def test_a_taken_port_is_named(live, tmp_path):
     assert "is not free" in said and "Traceback" not in said
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_survives_its_server_and_is_found_again(tmp_path):
     first = LivePage(tmp_path)
     assert first.ask("start", text=LONG) == (200, {"name": "long"})

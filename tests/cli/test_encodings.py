@@ -100,7 +100,7 @@ def test_units_and_exponents_are_read_without_utf_8():
     assert text.encode("cp437", "plain").decode("cp437") == "-3·10^-5 µm, 2 mm², ±20 °C, größer -> ≤ ∞"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_commands_on_a_solved_study_print_in_every_encoding(tmp_path):
     printed = run([["run", STUDY[0]], *ALL], ["ascii", "cp437"], tmp_path)
     assert all("report.html" in out for out in printed.values())

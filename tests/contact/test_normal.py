@@ -184,7 +184,7 @@ def rounded_punch(line_load, flat, radius):
     return 2.0 / np.pi * shape.max() * line_load * math.sin(s) / flat
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("radius", "load"), [(0.5, 1e-2), (2.0, 1e-2), (0.2, 2e-2)])
 def test_ridges_beside_a_flat_get_the_elements_that_they_need(radius, load):
     """A contact much longer than wide is a punch line by line; square elements miss its pressure by up to 40 %."""

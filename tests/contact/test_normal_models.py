@@ -328,7 +328,7 @@ def test_lift_by_shear_and_creep_by_pressure_are_reciprocal():
     assert np.sum(pressure * apart) == pytest.approx(np.sum(shear_x * creep[0] + shear_y * creep[1]), rel=1e-10)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_shear_presses_on_unlike_materials_only():
     """A margin around the patch changes nothing; the rounds settle; friction raises p_max of polyamide on steel."""
     outputs = ("forces", "contact", "friction_work")
@@ -351,7 +351,7 @@ def test_shear_presses_on_unlike_materials_only():
     assert bool(both.converged) and float(both.energy_residual) < 5e-3
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_unlike_and_like_materials_in_one_batch_keep_their_digits():
     """Rounds of the one do not move the starts of the other."""
     changes = [{"roller_material": "PA6", "motor_force": 0.0}, {"friction_coefficient": 0.2}, {"guide_material": "POM"}]

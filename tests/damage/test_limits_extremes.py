@@ -79,7 +79,7 @@ def check(count, seed, **options):
     return ds
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_thirty_random_extremes_have_all_limits():
     check(30, 1, contact_model="kalker")
 

@@ -87,7 +87,7 @@ def test_names_that_exist_and_empty_folders_are_refused(place):
     assert "a folder with limits" in solve(place, "--allow-code", code=2)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_file_of_a_limit_is_an_input_of_a_study(place):
     file = place / "config" / "limits" / "lining.py"
     used = file.read_bytes()

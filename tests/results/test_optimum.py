@@ -105,7 +105,7 @@ def test_the_hypervolume_of_an_eighth_of_a_sphere():
     assert hypervolume(shell, [1, 1, 1]) == pytest.approx(1 - np.pi / 6, rel=0.03)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_search_finds_the_front_of_all_designs(tmp_path):
     plan = search_designs(changed(budget={"designs": 24, "population": 8}), tmp_path)
     solved = tr.open_study(plan.folder.root)
@@ -143,7 +143,7 @@ def test_a_search_goes_on_where_it_was_stopped(tmp_path):
     assert optimum_of(parts) == optimum_of(whole)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_hours_add_up_over_runs(tmp_path):
     told = []
     tight = changed(budget={"designs": 12, "population": 4, "hours": 1e-9})
@@ -160,7 +160,7 @@ def test_the_table_prunes_and_elements_decide():
     assert cheaper(halfspace) is halfspace
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     solved = tr.open_study(search_designs(changed(), tmp_path).folder.root)
     found = optimum_of(solved)
@@ -210,7 +210,7 @@ def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, 
     assert says in " ".join(capsys.readouterr().out.split())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_life_beyond_the_data_is_marked(tmp_path):
     more = dict(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
     light = changed(**more, budget={"designs": 4, "population": 4})

@@ -108,7 +108,7 @@ def test_groups_of_a_grid_are_exact():
 SPEC = {"a": {"uniform": [0, 1]}, "kind": {"values": KINDS, "weights": [2, 1, 1]}, "b": {"uniform": [0, 1]}}
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("method", "size", "options"),
     [("saltelli", 256, {}), ("saltelli", 512, {"second_order": False}), ("lhs", 600, {}), ("sobol", 512, {})],

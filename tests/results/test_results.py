@@ -97,7 +97,7 @@ def test_a_study_file_that_would_be_read_with_another_meaning_is_refused(monkeyp
         tr.open_study(ds.assign_attrs(study=text))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_report_takes_the_indices_that_are_known(tmp_path, monkeypatch):
     solved = tr.run(SMALL, progress=False)
     solved.indices().to_netcdf(tmp_path / "indices.nc")

@@ -555,5 +555,7 @@ def test_the_other_contact_models_name_their_candidate():
 
 
 def test_a_choice_without_effect_is_told_as_any():
-    found = verdict_sentences(made([[[300, 300, 300], [300, 300, 300]], [[5, 6, 7], [5, 6, 7]], [[1, 1, 1], [1, 1, 1]]]))
+    found = verdict_sentences(
+        made([[[300, 300, 300], [300, 300, 300]], [[5, 6, 7], [5, 6, 7]], [[1, 1, 1], [1, 1, 1]]])
+    )
     assert "with any roller profile radius" in found[0].text

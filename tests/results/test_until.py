@@ -127,7 +127,7 @@ def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
         assert np.nanmax(half) / scale <= max(widths[-1].values()) + 1e-12
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
     study = load_study(UNEQUAL)
     whole = grow(study, tmp_path / "whole")
@@ -206,7 +206,7 @@ def test_an_output_that_does_not_vary_ends_the_growth(tmp_path):
 
 
 # inner_outer: in the test of unequal design points
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(("design", "first"), [("sobol", 128), ("saltelli", 1024)])
 def test_a_killed_run_goes_on_to_the_same_bits(design, first, tmp_path, monkeypatch):
     study = study_of(design, half_width=1e-6, at_most=4 * first)
@@ -218,7 +218,7 @@ def test_a_killed_run_goes_on_to_the_same_bits(design, first, tmp_path, monkeypa
     assert status_of(study, study_folder(study.name, tmp_path / "parts")).total == whole.data.sizes["case"]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_study_in_memory_grows_too_and_its_report_shows_each_look(tmp_path):
     solved = tr.run({**STUDY, "until": {**STUDY["until"], "half_width": 0.04}}, progress=False)
     page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")

@@ -132,7 +132,7 @@ def test_half_the_step_halves_the_difference():
     assert np.sqrt(np.mean((four - two) ** 2)) < 0.5 * np.sqrt(np.mean((two - one) ** 2))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_stated_error_covers_the_difference_to_shorter_steps():
     _, one = march(roller(), 8.0, 2)
     _, two = march(roller(), 8.0, 8)
@@ -224,7 +224,7 @@ def test_the_roller_becomes_the_circle_of_the_guide():
     assert at.depth[0, 0].sum() * (x[1] - x[0]) == pytest.approx(area, rel=0.15)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_depth_rate_levels_out_while_the_profile_wears():
     w = Wearing(to_table(roller(motor_force=-30)), Options(normal="halfspace", outputs=("forces",), **SLIDING))
     spread = []
@@ -237,7 +237,7 @@ def test_the_depth_rate_levels_out_while_the_profile_wears():
     assert spread[-1] < 0.8 * spread[0]
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_mirrored_rollers_wear_alike():
     one, two = (tr.wear(roller(axial_force=f), 2, FORCES, **SLIDING) for f in (30, -30))
     for name in ("worn_depth", "normal_force", "max_pressure", "contact_angle"):
@@ -263,7 +263,7 @@ def test_a_run_that_goes_on_has_the_same_bits():
         tr.wear(case, 3, FORCES, resume=whole, contact_model="sliding", accuracy="standard")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_where_the_travel_ends():
     ds = tr.wear(roller(permissible_wear_depth=5e-4), 100, FORCES, **SLIDING)
     assert ds.attrs["end"] == "permissible"
@@ -274,7 +274,7 @@ def test_where_the_travel_ends():
     assert ds.attrs["end"] == "full_slip"
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_march_ends_after_a_limited_number_of_states(monkeypatch):
     monkeypatch.setattr(wearing, "STEPS", 4)
     case, kept = roller(k=1.0), []
@@ -286,7 +286,7 @@ def test_a_march_ends_after_a_limited_number_of_states(monkeypatch):
     assert not late.converged and "states were not enough" in str(late.reason.item())
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_balance_that_misses_its_tolerance_by_little_is_followed():
     case = {"radial_force": -182.12142740156958, "axial_force": 15.957566719363353, "motor_force": 2.9364452334016233}
     case |= {"friction_coefficient": 0.1121447249958499, "contact_angle": 24.208483471661395}
@@ -323,7 +323,7 @@ def test_refused_input():
         tr.Case(roller_profile={"arc": -7, "worn": {"start": 0, "step": 0.1, "depth": [[-1.0]]}})
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_damage_counts_the_stress_of_each_state():
     ds = tr.wear(roller(motor_force=-30, friction_coefficient=0.3), 15, **SLIDING)
     per_km = 1e6 / (2 * np.pi * (21.75 - 6 * np.cos(np.pi / 6)))
@@ -346,7 +346,7 @@ def test_a_worn_profile_is_a_profile_of_a_case():
     assert ds.max_pressure.values[0] == pytest.approx(w.solve(at).patch.max_pressure[0], rel=5e-3)  # boxes differ
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_travel_is_a_field_of_a_case():
     cases = [roller(axial_force=f, travel=s) for f in (30, -30) for s in (0, 1, "3 km")]
     both = {**SLIDING, "normal": "halfspace"}

@@ -120,7 +120,7 @@ print(json.dumps({
 """
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_new_option_appears_everywhere_once_it_is_declared():
     done = subprocess.run([sys.executable, "-c", DUMMY], cwd=ROOT, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr

@@ -349,7 +349,7 @@ def test_a_scale_is_not_left_out(read, line):
     assert is_right(read("Scale: 1.0\n" + lines_of("{x};{z}", "x;z")))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_files_lie_beside_the_case_or_below_the_working_directory(tmp_path):
     folder = tmp_path / "prof"
     folder.mkdir()

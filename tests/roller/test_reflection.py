@@ -28,7 +28,7 @@ def both(cases, **options):
     return one, two, found
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("model", "count", "outputs", "options"),
     [
@@ -48,7 +48,7 @@ def test_mirrored_rollers_have_mirrored_bits(model, count, outputs, options):
         np.testing.assert_array_equal(first[name], second[name], err_msg=name)
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_the_equations_have_the_symmetry_that_the_reflection_assumes():
     """Solved on both sides, each result changes its side, sign and order as its declaration says."""
     cases = [tr.Case(axial_force=30.0), tr.Case(axial_force=12.0, motor_force=0.0, friction_coefficient=0.15)]

@@ -144,7 +144,7 @@ def edited_studies(root: Path, count: int, seed: int) -> None:
     assert noticed > count / 10
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_a_few_edits_are_harmless_or_named(finished):
     edited_studies(finished, 40, seed=1)
 

@@ -72,7 +72,7 @@ def same(one: Path, other: Path) -> None:
     assert one.read_bytes() == other.read_bytes()
 
 
-@pytest.mark.slow
+@pytest.mark.long
 def test_killed_before_each_rename_or_removal_and_started_again(tmp_path, solved):
     data = GROWN | {"samples": 8}
     run(data, tmp_path / "calm")

@@ -412,7 +412,7 @@ SAMPLED = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("design", "small", "large"),
     [

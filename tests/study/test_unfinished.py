@@ -77,7 +77,7 @@ def test_solved_cases_are_those_of_the_whole_design(tmp_path, monkeypatch, desig
     assert indices.attrs["method"] == (design if design in ("lhs", "sobol") else "table")
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("design", ["grid", pytest.param("inner_outer", marks=pytest.mark.slow)])
 def test_commands_show_the_solved_cases_and_seal_nothing(tmp_path, monkeypatch, design):
     monkeypatch.chdir(tmp_path)

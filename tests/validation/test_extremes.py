@@ -16,7 +16,7 @@ def marked(scene):
     return pytest.param(scene, id=scene.name, marks=[pytest.mark.slow] * (scene.name == "spin pole on the edge"))
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("scene", [marked(scene) for scene in scenes()])
 def test_claims_on_a_scene_hold(scene):
     broken = [f for f in examine(scene, "sliding", "preview")[1] if not f.holds]

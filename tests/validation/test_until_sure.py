@@ -10,7 +10,7 @@ from validation.benchmarks import until_sure as program
 MORRIS = pytest.param("morris", marks=pytest.mark.long)  # 10 s
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @pytest.mark.parametrize("method", ["sobol", "saltelli", MORRIS, "inner_outer"])
 def test_intervals_at_stopping_cover_the_truth_in_small(method):
     found = program.measure(runs=40, half_width=0.08, only=(method,), of=("category",))

@@ -203,7 +203,7 @@ _keys = st.sampled_from([*parse_study({"name": "a"}).config.model_dump(), "nam"]
 _names = st.sampled_from(["axial_force", "friction_coefficient", "material_pair", "roller_material", "u"])
 
 
-@pytest.mark.slow
+@pytest.mark.long
 @settings(max_examples=400, deadline=None)
 @given(st.dictionaries(_keys, _values, max_size=4), st.dictionaries(_names, _values, max_size=3))
 def test_any_mapping_is_a_study_or_a_clean_error(data, factors):

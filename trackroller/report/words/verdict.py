@@ -34,7 +34,13 @@ from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
-LEAST_NEEDED = ("models", "next", "not_judged", "turn", "out")  # kinds of sentences that also stand below, the first one least
+LEAST_NEEDED = (
+    "models",
+    "next",
+    "not_judged",
+    "turn",
+    "out",
+)  # kinds of sentences that also stand below, the first one least
 SHORT = {"bearing": "bearing", "shakedown": "shakedown", "guide": "guide (give `guide_overrollings_per_hour`)"}
 REASONS = {  # of `Cases.reason`, as what the candidate does
     "breaks": "breaks",
@@ -206,7 +212,11 @@ class _Words:
             best = int(np.argmax(np.where(known, value, -np.inf)))
         fails = self.found.fails or Misses(0, 0, {})
         row = results.table.iloc[best]
-        values = {"lives": quantity(float(value[best]), goal[2]), "name": design_words(self.candidates, row)} if best >= 0 else {}
+        values = (
+            {"lives": quantity(float(value[best]), goal[2]), "name": design_words(self.candidates, row)}
+            if best >= 0
+            else {}
+        )
         shown = {"lives": "", "name": ""} | values
         return say("verdict", "nowhere", cases=fails.of, target=self.target(), why=_reasons(fails), **shown)
 
