@@ -290,7 +290,7 @@ def run_wear(
     from trackroller.report.pages.wear import write_wear
     from trackroller.report.words.wear import sentences
     from trackroller.roller.wear import wear
-    from trackroller.study.store.seal import read_netcdf
+    from trackroller.study.store.netcdf import read_netcdf
 
     def tell(dataset: xr.Dataset, goal: float) -> None:
         if target is not None:
