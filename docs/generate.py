@@ -35,8 +35,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "study": "study.file.study.Study",
     "factor": "methods.factor.Factor",
     "design": "methods.method.Design",
-    "plan": "study.store.plan.Plan",
-    "inventory": "study.store.inventory.Inventory",
+    "ledger": "study.store.ledger.Ledger",
     "spectrum": "study.spectrum.file.Spectrum",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
@@ -47,7 +46,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
 WAY = (  # of a study: what makes the next thing of the one before, and the file that it writes
     ("study.file.load.load_study", ""),
     ("study.file.study.Study.drawn", ""),
-    ("study.store.plan.working_plan", ""),
+    ("study.store.ledger.working_ledger", ""),
     ("study.solve.solve_chunk", "chunks/*.nc"),
     ("study.store.gather.gather", "study.nc"),
     ("results.stored_study.open_study", ""),

@@ -7,7 +7,7 @@ from typing import Any
 
 from trackroller.study.file.study import Study
 from trackroller.study.run import run_study
-from trackroller.study.store.plan import Plan
+from trackroller.study.store.ledger import Ledger
 
 
 def decides(study: Study) -> bool:
@@ -16,7 +16,7 @@ def decides(study: Study) -> bool:
     return bool(searches or study.config.until is not None)
 
 
-def run_any(study: Study, results: Path | str = "results", **how: Any) -> Plan:
+def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
     """Run a study; see `trackroller.study.run.run_study` for the arguments.
 
     The failed cases of a search that are to be solved again are solved before it goes on.
