@@ -35,6 +35,7 @@ from trackroller.results.ranking import (
 )
 from trackroller.results.results import Results
 from trackroller.results.unsure import settled, varied
+from trackroller.roller.output_names import is_life, pair_first
 from trackroller.study.design.entries import OPTION_FACTORS
 
 MOST = 5  # findings under *Why*
@@ -200,7 +201,7 @@ def _whichever(results: Results, candidates: Candidates, rows: np.ndarray) -> li
 def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
     """Return the findings of the indices: the factors that decide, by group and by level, and an interaction."""
     names = [str(n) for n in sens["output"].values if str(n) not in REGIMES]  # `ends` says where these occur
-    lives = sorted((n for n in names if "life" in n), key=lambda n: ("pair" not in n, "roller" not in n))
+    lives = pair_first(filter(is_life, names))
     output = next((n for n in dict.fromkeys([*lives, *names]) if decisive(sens, n)), None)
     if output is None or not carries_indices(results, sens, output):
         return []

@@ -8,15 +8,15 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import verdict
 from trackroller.errors import InputError, unknown_name
-from trackroller.numerics.variable import Variable
 from trackroller.parameters import BODIES, LIMITS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.roller.dataset import FLAGS, VARIABLES
-from trackroller.roller.output_names import PARTS, Part, parts_of
+from trackroller.roller.output_names import PARTS, Part, declared, parts_of
 
 BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
     *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),
-    *(name for name in VARIABLES if "error_" in name),
+    *(name for name, variable in VARIABLES.items() if variable.estimate),
 }
 FIELDS = {"x", "y", "z", "grid"}
 
@@ -59,8 +59,14 @@ def of_fatigue(name: str) -> bool:
     part = PARTS.get(name)
     if part is None:
         return False
-    by_curve = part.variable.group == "life" and part.variable.scale == "log10"
+    by_curve = part.variable.group == "life" and part.variable.life
     return by_curve or (part.variable.name == "life_hours_by_limit" and part.at.get("limit") == "fatigue")
+
+
+def of_first_limit(name: str) -> bool:
+    """Return whether a result is a life to the first limit that is reached."""
+    variable = declared(name)
+    return variable.group == verdict.GROUP and variable.life and "limit" not in variable.dims
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
@@ -101,8 +107,9 @@ def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dic
         var = ds[name]
         inner = tuple(str(dim) for dim in var.dims if dim not in dims)
         words = str(var.attrs.get("long_name", name))
-        scale = "log10" if "life" in name else "natural"  # of a result of another solver, by its name
-        own = VARIABLES.get(name) or Variable(name, "", inner, str(var.attrs.get("units", "1")), "", words, scale=scale)
+        own = declared(name)
+        if name not in VARIABLES:  # of another solver
+            own = replace(own, units=str(var.attrs.get("units", "1")), long_name=words)
         asked = set(map(str, ds["limit"].values)) if "limit" in inner else set()
         limits = [LIMITS[limit] for limit in LIMITS if limit in asked]
         found |= {part.name: part for part in parts_of(replace(own, dims=inner), limits)}

@@ -21,6 +21,7 @@ from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import sentences
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import duty_of, years
+from trackroller.roller.output_names import is_life
 from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
 from trackroller.study.store.provenance import versions
 
@@ -117,7 +118,7 @@ def as_json(ds: xr.Dataset) -> str:
         content["contact_model_used"]["meaning"] = solved_by(ds).tolist()
     duty = duty_of(ds)
     if duty is not None:
-        for name in (n for n, of in content.items() if of["units"] == "h" and "life" in n):
+        for name in (n for n, of in content.items() if of["units"] == "h" and is_life(n)):
             content[name]["years"] = _plain(years(ds[name].values, duty).tolist())
     content["doubts"] = doubts_of(ds)
     if "case" in ds.attrs:
