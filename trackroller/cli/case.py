@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -80,25 +81,23 @@ def _left_out(words: str) -> tuple[str, ...]:
     return damage.others([word.strip() for word in words.split(",")])
 
 
-def _served(path: Path | None, settings: list[str] | None) -> tuple[str, ...]:
+def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the groups of outputs of the limits of the verdict whose inputs a case gives."""
     from trackroller.roller.case import to_table
     from trackroller.roller.options import Options
     from trackroller.roller.stages.case import solved_of, to_compute  # heavy: as above
 
-    case, options, _ = case_of(path, settings)
-    wanted = Options(**options | {"outputs": ("limits",)})
+    wanted = Options(**{**options, "outputs": ("limits",)})
     limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)
     return tuple(limit.group for limit in limits)
 
 
-def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Dataset:
-    """Solve the case of a case file and --set words; `more` are further options of `solve`."""
-    case, options, beside = case_of(path, words)
+def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **more: Any) -> xr.Dataset:
+    """Solve a case with what `case_of` returned beside it; `more` are further options of `solve`."""
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return with_beside(solve(case, **(options | more)), beside)
+    return with_beside(solve(case, **{**options, **more}), beside)
 
 
 def writable(out: Path) -> Path:
@@ -174,9 +173,7 @@ def _write_roller(dataset: xr.Dataset, target: Path, book: bool) -> None:
     write_roller(dataset, target)
 
 
-def _options(
-    path: Path | None, settings: list[str] | None, limits: str | None, sheet: bool, plain: bool
-) -> dict[str, Any]:
+def _options(given: Case, options: Mapping[str, Any], limits: str | None, sheet: bool, plain: bool) -> dict[str, Any]:
     """Return the outputs of a case that is told with its margins, and the limits that it leaves out.
 
     A `plain` result, which is not told, has the outputs of the case file.
@@ -185,7 +182,7 @@ def _options(
         return {}
     if limits is not None:
         return {"outputs": (*COMPLETE[:2], *groups_of(limits)), "not_checked": _left_out(limits)}
-    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(path, settings)))
+    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(given, options)))
     return {"outputs": tuple(own)}
 
 
@@ -210,12 +207,14 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
             remedy = "Give one of them at a time."
             raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
         return _find_and_tell(case, settings, find, condition, as_json)
+    given, options, beside = case_of(case, settings)
     book = out is not None and out.suffix.lower() == ".xlsx"
     target = None if out is None else writable(out) if book else writable_data(out, f" {WORKBOOK}{PRINTED}")
     page = None if sheet is None else writable_page(sheet)
-    plain = as_json or (target is not None and not book) or "outputs" in case_of(case, settings)[1]
-    more = {"shortcuts": False} if no_shortcuts else {}
-    dataset = solve_case(case, settings, **more | _options(case, settings, limits, page is not None, plain))
+    plain = as_json or (target is not None and not book) or "outputs" in options
+    more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
+    more |= _options(given, options, limits, page is not None, plain)
+    dataset = solve_case(given, options, beside, **more)
     if target is not None:
         _write_roller(dataset, target, book)
     from trackroller.report.pages import sheet_text
@@ -327,7 +326,8 @@ def plot_target(target: str, settings: list[str] | None, out: Path | None, resul
     if path.suffix in (".yaml", ".yml") and not names_study(path):
         from trackroller.report.figures.contact import plot_case
 
-        dataset = solve_case(path, settings, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
+        drawn_outputs = ("forces", "contact", "peak_stress", "tractions", "subsurface")
+        dataset = solve_case(*case_of(path, settings), outputs=drawn_outputs)
         if is_failed(dataset):
             raise WorkError(f"{path} has no solution to draw: {dataset['reason'].item()}")
         folder = out or Path(f"{path.stem}-figures")
