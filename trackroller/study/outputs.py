@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -118,15 +118,19 @@ def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dic
 
 def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the names of all outputs, those that are analysed by default first."""
-    factors = list(factors)
-    names = [*default_names(ds, factors, dims), *parts_in(ds, available(ds, factors, dims), dims)]
-    return list(dict.fromkeys(names))
+    free = available(ds, factors, dims)
+    known = parts_in(ds, free, dims)
+    return list(dict.fromkeys([*_usual(ds, free, known, dims), *known]))
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the outputs that are analysed by default: those of `USUAL`, otherwise every scalar result."""
     free = available(ds, factors, dims)
-    known = parts_in(ds, free, dims)
+    return _usual(ds, free, parts_in(ds, free, dims), dims)
+
+
+def _usual(ds: xr.Dataset, free: Sequence[str], known: Mapping[str, Part], dims: tuple[str, ...]) -> list[str]:
+    """Return the outputs that are analysed by default among the variables `free`, whose parts are `known`."""
     names = [name for name in USUAL if name in known and np.isfinite(ds[known[name].variable.name]).any()]
     for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"life_cycles_{body}" in names:
@@ -231,9 +235,10 @@ def outputs(
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
-    known = parts_in(ds, available(ds, factors, dims), dims)
+    free = available(ds, factors, dims)
+    known = parts_in(ds, free, dims)
     columns = []
-    for name in list(names) if names is not None else default_names(ds, factors, dims):
+    for name in list(names) if names is not None else _usual(ds, free, known, dims):
         if name not in known:
             raise unknown_name("analysis.outputs", name, known)
         part = known[name]
