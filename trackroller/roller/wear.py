@@ -16,14 +16,13 @@ from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES
-from trackroller.roller.groove import Groove, between, travel_to_depth
 from trackroller.roller.options import Options
 from trackroller.roller.record import CASE, MATERIALS, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.solver import assemble, block_of
 from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages.scene import Results
-from trackroller.roller.wearing import ENDS, Wearing
+from trackroller.roller.wearing import ENDS, Groove, Wearing, between, travel_to_depth
 
 if TYPE_CHECKING:
     import xarray as xr
