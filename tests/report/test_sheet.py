@@ -26,8 +26,7 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.report.figures.roller_section import _roller as roller_outline
 from trackroller.report.figures.roller_section import content_of
 from trackroller.report.numbers import number
-from trackroller.report.pages.sheet import collect, render
-from trackroller.report.pages.sheet_text import as_json
+from trackroller.report.pages.sheet import as_json, collect, render
 from trackroller.report.words.accuracy import flags_of
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.limits import limits

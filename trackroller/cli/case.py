@@ -217,17 +217,17 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     dataset = solve_case(given, options, beside, **more)
     if target is not None:
         _write_roller(dataset, target, book)
-    from trackroller.report.pages import sheet_text
-    from trackroller.report.pages.sheet import collect, write_sheet  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet import collect, print_facts, print_margins, write_sheet
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
     if as_json:
-        print(sheet_text.as_json(dataset))
+        print(json_of(dataset))
     elif target is None and limits is not None and not is_failed(dataset):
-        sheet_text.print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
+        print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
     elif target is None:
-        sheet_text.print_facts(dataset)
+        print_facts(dataset)
     if not is_failed(dataset):
         return 0
     if as_json or target is not None:
@@ -258,8 +258,8 @@ def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | Non
     """
     target = None if out is None else writable_data(out, PRINTED)
     page = None if report is None else writable_page(report)
-    from trackroller.report.pages import sheet_text
-    from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
+    from trackroller.report.pages.sheet import as_json as json_of  # heavy: jinja2
+    from trackroller.report.pages.spectrum import print_spectrum, write_spectrum
     from trackroller.study.spectrum.file import load_spectrum
     from trackroller.study.spectrum.solve import doubts_of_spectrum, solve_spectrum
 
@@ -271,9 +271,9 @@ def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | Non
     if page is not None:
         write_spectrum(dataset, page, file.name)
     if as_json:
-        print(sheet_text.as_json(dataset))
+        print(json_of(dataset))
     elif target is None:
-        sheet_text.print_spectrum(dataset)
+        print_spectrum(dataset)
 
 
 def run_wear(
