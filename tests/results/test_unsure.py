@@ -9,9 +9,8 @@ from told import told
 import trackroller as tr
 from trackroller.materials import builtin_database
 from trackroller.report.numbers import factor_label
-from trackroller.results.first_limits import reached_hours
+from trackroller.results.first_limits import reached_hours, settled
 from trackroller.results.limit_notes import placeholders_of
-from trackroller.results.unsure import settled
 from trackroller.study.file.load import parse_study
 
 STUDY = {

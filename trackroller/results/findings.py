@@ -20,7 +20,7 @@ from trackroller.results import effects
 from trackroller.results.candidates import Candidates, of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
-from trackroller.results.first_limits import first_limit, turn
+from trackroller.results.first_limits import first_limit, settled, turn, varied
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import (
@@ -34,7 +34,6 @@ from trackroller.results.ranking import (
     used_share,
 )
 from trackroller.results.results import Results
-from trackroller.results.unsure import settled, varied
 from trackroller.roller.output_names import is_life, pair_first
 from trackroller.study.design.entries import OPTION_FACTORS
 

@@ -20,13 +20,12 @@ from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates
-from trackroller.results.first_limits import reached_by_body
+from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
 from trackroller.results.limit_notes import Placeholder, placeholders_of
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
-from trackroller.results.unsure import COEFFICIENT
 from trackroller.roller.record import names_not_given
 from trackroller.study.outputs import flat
 
