@@ -94,7 +94,7 @@ def run(name: str) -> None:
 
 def _work(name: str, progress: Progress) -> None:
     from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
-    from trackroller.results.deciding import run_any  # heavy: analysis
+    from trackroller.results.solving import run_any  # heavy: analysis
     from trackroller.results.stored_study import open_study
     from trackroller.study.status import find_study, status_of
 

@@ -16,7 +16,6 @@ from trackroller.cli import tell_stopped
 from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.files import check_utf_8, interrupts_wait_for_files
 from trackroller.materials.file import find_user_file
-from trackroller.results.deciding import decides
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
@@ -106,7 +105,7 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     folder = study_folder(study.name, results)
     if main:
         free_for_workflow(folder.create().root, tell)
-    if decides(study):  # its rule plans each generation
+    if study.decides:  # its rule plans each generation
         return Ledger(Cases(study), folder)
     if main:
         return _held.enter_context(working_ledger(study, results, tell=tell))
