@@ -47,7 +47,7 @@ WAY = (  # of a study: what makes the next thing of the one before, and the file
     ("study.file.load.load_study", ""),
     ("study.file.study.Study.drawn", ""),
     ("study.store.ledger.working_ledger", ""),
-    ("study.solve.solve_chunk", "chunks/*.nc"),
+    ("study.solve_chunk.solve_chunk", "chunks/*.nc"),
     ("study.store.gather.gather", "study.nc"),
     ("results.stored_study.open_study", ""),
     ("report.build.build_report", "report.html"),

@@ -29,7 +29,7 @@ from trackroller.report.numbers import number
 from trackroller.report.pages.sheet import as_json, collect, render
 from trackroller.report.words.accuracy import flags_of
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.limits import limits
+from trackroller.roller.regime_limits import limits
 from trackroller.roller.settings import sheet_of
 
 SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}

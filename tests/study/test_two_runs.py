@@ -17,7 +17,7 @@ import yaml
 from trackroller.errors import WorkError
 from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.run import run_study
-from trackroller.study.solve import solve_chunk
+from trackroller.study.solve_chunk import solve_chunk
 from trackroller.study.store.ledger import working_ledger
 
 LOADS = [float(v) for v in range(20, 40)]

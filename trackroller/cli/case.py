@@ -85,7 +85,7 @@ def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the groups of outputs of the limits of the verdict whose inputs a case gives."""
     from trackroller.roller.case import to_table
     from trackroller.roller.options import Options
-    from trackroller.roller.stages.case import solved_of, to_compute  # heavy: as above
+    from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
     wanted = Options(**{**options, "outputs": ("limits",)})
     limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)

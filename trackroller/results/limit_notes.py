@@ -11,7 +11,7 @@ import xarray as xr
 from trackroller.roller.dataset import NOTES
 
 GUESSES = ": placeholders of material"  # in a note on a limit that rests on values without a source
-# each value in such a note, see `trackroller.roller.stages.case.notes_on_limits`
+# each value in such a note, see `trackroller.roller.stages.outcome.notes_on_limits`
 _VALUE = re.compile(
     r"(?P<name>\w+) \((?:on (?P<on>[^,]+), )?[^()]*?"
     r"(?:expected from (?P<low>\S+) to (?P<high>[^\s)]+)(?: (?P<units>.+?))?|no range is given)\)(?=, \w+ \(|$)"

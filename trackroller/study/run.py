@@ -16,7 +16,7 @@ import xarray as xr
 
 from trackroller.files import interrupts_wait_for_files
 from trackroller.study.cluster import workers
-from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
+from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Count, StudyFolder, Tell, locked, unheard
 from trackroller.study.store.gather import gather

@@ -25,7 +25,7 @@ import yaml
 
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.file.load import load_study
-from trackroller.study.solve import load_cases, solve_cases
+from trackroller.study.solve_chunk import load_cases, solve_cases
 from trackroller.study.store import chunks
 from trackroller.study.store.ledger import working_ledger
 from validation.benchmarks.command import run

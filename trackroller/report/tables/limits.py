@@ -20,7 +20,7 @@ from trackroller.report.tables.lives import overrollings
 from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of, placeholders_of
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
-from trackroller.roller.limits import Limits
+from trackroller.roller.regime_limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
 YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface
