@@ -100,6 +100,24 @@ def test_no_files_import_each_other_in_a_circle(house):
     assert house.circle() == []
 
 
+def repeated(root: Path) -> dict[str, list[str]]:
+    """Return the files of a room that have the same name.
+
+    In `report` a name is a subject, and its folder says what is made of the subject: words, table, figure or page.
+    """
+    places: dict[tuple[str, str], list[str]] = {}
+    for path in sorted((root / PACKAGE).rglob("*.py")):
+        inside = path.relative_to(root / PACKAGE)
+        room = inside.parent.as_posix() if inside.parts[0] == "report" else inside.parts[0]
+        if len(inside.parts) > 1 and not path.name.startswith("__"):
+            places.setdefault((room, path.name), []).append(inside.as_posix())
+    return {name: found for (_, name), found in places.items() if len(found) > 1}
+
+
+def test_a_name_of_a_file_is_there_once_in_its_room():
+    assert repeated(ROOT) == {}
+
+
 def test_the_survey_finds_what_it_looks_for(tmp_path):
     """A made-up package breaks each rule once."""
     lower, upper = tmp_path / "trackroller" / "contact", tmp_path / "trackroller" / "roller"
@@ -114,3 +132,6 @@ def test_the_survey_finds_what_it_looks_for(tmp_path):
     assert house.upward == ["trackroller/contact/hertz.py:2 imports trackroller.roller.case"]
     circle = {"trackroller.contact.hertz", "trackroller.roller.case"}
     assert set(house.circle()) == circle
+    (upper / "stages").mkdir()
+    (upper / "stages" / "case.py").write_text("")
+    assert repeated(tmp_path) == {"case.py": ["roller/case.py", "roller/stages/case.py"]}

@@ -14,9 +14,9 @@ def told(results, finding):
     return None if finding is None else sentence_of(results, finding)
 
 
-def occurrence(results, hit, what, among=None):
+def occurrence(results, hit, what):
     """Return the sentence on an event."""
-    return told(results, findings.occurrence(results, hit, EVENTS.get(what, what), among))
+    return told(results, findings.occurrence(results, hit, EVENTS.get(what, what)))
 
 
 def effect_of(results, column, factor, rows):

@@ -11,7 +11,7 @@ from examples import EXAMPLES
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from trackroller.cli.case import solve_case
+from trackroller.cli.case import case_of, solve_case
 from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.roller.case import Case
@@ -126,14 +126,14 @@ def test_study_files(tmp_path_factory, data):
 @given(st.text(alphabet=st.sampled_from("-:[]{}&*!|>#%@`'\"?,\n\t abc019.~<="), max_size=60))
 def test_text_that_is_hardly_yaml(tmp_path_factory, text):
     folder = tmp_path_factory.mktemp("f")
-    for read in (load_study, load_database, lambda p: solve_case(p, [])):
+    for read in (load_study, load_database, lambda p: solve_case(*case_of(p, []))):
         read_cleanly(read, written(folder / "x.yaml", text)) if text.strip() else None
 
 
 @MOST
 @given(broken([{**Case().as_dict(), "outputs": ["nonsense"]}]))
 def test_case_files(tmp_path_factory, data):
-    read_cleanly(lambda p: solve_case(p, []), written(tmp_path_factory.mktemp("f") / "c.yaml", data))
+    read_cleanly(lambda p: solve_case(*case_of(p, [])), written(tmp_path_factory.mktemp("f") / "c.yaml", data))
 
 
 @MOST
@@ -185,6 +185,6 @@ def test_tables(tmp_path_factory, rows, mark):
 def test_raw_bytes(tmp_path, raw):
     path = tmp_path / "x.yaml"
     path.write_bytes(raw)
-    for read in (load_study, load_database, lambda p: solve_case(p, [])):
+    for read in (load_study, load_database, lambda p: solve_case(*case_of(p, []))):
         with pytest.raises(InputError):
             read(path)

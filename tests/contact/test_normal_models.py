@@ -20,8 +20,8 @@ from trackroller.contact.influence import pressure_displacements
 from trackroller.contact.kalker import correction
 from trackroller.contact.kalker.cells import unit_cells
 from trackroller.contact.normal import lift
-from trackroller.contact.normal import models as normal_models
-from trackroller.contact.normal import sliding as normal_sliding
+from trackroller.contact.normal import patch_models as normal_models
+from trackroller.contact.normal import patch_sliding as normal_sliding
 from trackroller.contact.slip import Slip
 from trackroller.halfspace.grid_peak import GridLoad, find_grid_peaks
 from trackroller.halfspace.stress import body_stress, stress_from_tractions

@@ -337,7 +337,7 @@ def test_a_groove_worn_hollow_carries_in_two_patches():
 @pytest.mark.slow
 def test_in_a_study_a_profile_that_cannot_touch_is_a_row_with_its_reason():
     """A case fails for the same reason alone and beside other cases."""
-    from trackroller.study.solve import solve_cases
+    from trackroller.study.solve_chunk import solve_cases
 
     guide = text({"points": circle_points(6.0, high=3.5)})
     columns = {"contact_angle": np.array([50.0, 30.0, 55.0]), "guide_profile": np.array([guide] * 3, object)}

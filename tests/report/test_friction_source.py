@@ -9,7 +9,7 @@ from told import effect_of
 
 import trackroller as tr
 from trackroller.materials import load_database
-from trackroller.report.pages.sheet_text import as_json
+from trackroller.report.pages.sheet import as_json
 from trackroller.report.pages.study import contents
 from trackroller.roller.record import friction_records
 

@@ -17,7 +17,7 @@ from reference_cases import solve_sliding
 from typer.testing import CliRunner
 
 import trackroller as tr
-from trackroller.cli.case import COMPLETE, SHEET_OUTPUTS, groups_of, solve_case
+from trackroller.cli.case import COMPLETE, SHEET_OUTPUTS, case_of, groups_of, solve_case
 from trackroller.cli.main import app
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError
@@ -26,11 +26,10 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.report.figures.roller_section import _roller as roller_outline
 from trackroller.report.figures.roller_section import content_of
 from trackroller.report.numbers import number
-from trackroller.report.pages.sheet import collect, render
-from trackroller.report.pages.sheet_text import as_json
+from trackroller.report.pages.sheet import as_json, collect, render
 from trackroller.report.words.accuracy import flags_of
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.limits import limits
+from trackroller.roller.regime_limits import limits
 from trackroller.roller.settings import sheet_of
 
 SCATTER = {"like": "PA6", "name": "PA6 with scatter", "scatter_in_cycles": 4.0}
@@ -234,7 +233,7 @@ def test_the_head_holds_texts_to_sign_and_inputs_the_outer_radius_and_the_duty(t
     assert inputs["duty"] == "16 h a day, 365 days a year"
     again = shlex.split(html.unescape(re.search(r"<code>(trackroller solve.*?)</code>", page)[1]))[1:]
     assert trackroller(*again, cwd=tmp_path).stdout.splitlines()[0] == told.splitlines()[0]  # in years, too
-    ds = solve_case(tmp_path / "case.yaml", ["sheet={author: Ada}", "axis_distance=29"])
+    ds = solve_case(*case_of(tmp_path / "case.yaml", ["sheet={author: Ada}", "axis_distance=29"]))
     assert sheet_of(ds) == {"author": "Ada"}
     assert "outer radius of the roller" not in {row.words for row in collect(ds).inputs}
 
@@ -250,7 +249,7 @@ def test_the_head_holds_texts_to_sign_and_inputs_the_outer_radius_and_the_duty(t
 )
 def test_a_wrong_head_of_a_sheet_is_refused_by_name(texts, told):
     with pytest.raises(InputError, match=told):
-        solve_case(None, [f"sheet={texts}"])
+        case_of(None, [f"sheet={texts}"])
 
 
 def test_every_regime_has_a_page(solved):

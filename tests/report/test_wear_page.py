@@ -15,7 +15,7 @@ from trackroller.cli.main import app
 from trackroller.report.figures.wear import course, profiles
 from trackroller.report.pages.wear import state_table
 from trackroller.report.words.wear import deeper_contact, sentences
-from trackroller.roller.groove import Groove, travel_to_depth
+from trackroller.roller.wearing import Groove, travel_to_depth
 
 CASE = """
 motor_force: -10

@@ -18,7 +18,7 @@ from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.candidates import lift_off_margin, slip_margin
 from trackroller.results.pareto import study_pareto
-from trackroller.roller.limits import limits
+from trackroller.roller.regime_limits import limits
 from trackroller.study.file.load import parse_study
 
 GRID = {

@@ -145,3 +145,15 @@ def test_best_refuses_a_sample_in_which_no_design_repeats():
     data = {"name": "sample", "design": "lhs", "samples": 8, "factors": factors, "contact_model": "sliding"}
     with pytest.raises(tr.InputError, match="design: inner_outer"):
         tr.run(data, progress=False).best()
+
+
+def test_only_a_life_by_the_sn_curve_can_lie_beyond_its_data():
+    """A roller under a small load lasts for ever by the S-N curve; the life of its bearing rests on no such data."""
+    bearing = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 3000, "static_rating": 1500}
+    bearing |= {"e": 0.3, "X": 0.56, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
+    base = {"radial_force": -20, "axial_force": 2, "motor_force": 0, "bearing": bearing}
+    study = SMALL | {"base": base, "accuracy": "preview", "outputs": ["forces", "contact", "life", "bearing"]}
+    results = tr.run(parse_study(study), progress=False)
+    assert np.isfinite(results.data["bearing_life_hours"]).all()
+    assert results.beyond_data("roller_life_hours").all() and results.beyond_data("life_cycles_roller").all()
+    assert not results.beyond_data("bearing_life_hours").any() and not results.beyond_data("friction_power").any()

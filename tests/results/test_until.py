@@ -25,7 +25,7 @@ from trackroller.study.design.growth import doubled
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import load_study
 from trackroller.study.status import status_of
-from trackroller.study.store.plan import study_folder
+from trackroller.study.store.ledger import study_folder
 
 STUDY = {
     "name": "sure",

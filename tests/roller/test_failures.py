@@ -17,7 +17,7 @@ from trackroller.roller.options import Options
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
-from trackroller.study.store.plan import study_folder
+from trackroller.study.store.ledger import study_folder
 
 BEYOND = {"axis_distance": 9.0, "guide_curve_radius": -5.0}  # beyond the axis of the curve
 CURVE = {"contact_model": "kalker", "slip_terms": "curve"}

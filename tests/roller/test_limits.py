@@ -12,7 +12,7 @@ from reference_cases import solve_sliding
 
 import trackroller as tr
 from trackroller.parameters import REGIMES
-from trackroller.roller import limits as searched
+from trackroller.roller import regime_limits as searched
 
 CASE = tr.Case(motor_force=0, axial_force=10, friction_coefficient=0.2)
 

@@ -8,7 +8,7 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.output_names import PARTS, parts_of, present_names
+from trackroller.roller.output_names import PARTS, body_of, is_life, pair_first, parts_of, present_names
 
 CASES = [{"friction_coefficient": mu, "axial_force": force} for mu in (0.1, 0.3) for force in (0.0, 30.0)]
 
@@ -109,3 +109,19 @@ def test_a_stored_study_with_former_names_is_read(tmp_path):
     )
     assert "roller_peak_stress" in data.attrs["study"]
     assert tr.open_study(data).config.analysis.outputs == ("peak_stress_roller",)
+
+
+def test_the_declaration_says_what_is_a_life_and_whose():
+    lives = {variable.name for variable in VARIABLES.values() if variable.life}
+    assert {"life_cycles", "wear_life_hours", "bearing_life_hours", "pair_life_to_first_limit_hours_low"} <= lives
+    assert not {"run_in_distance", "life_error_estimate", "utilisation"} & lives  # compared by logarithms, errors
+    assert is_life("life_cycles_guide_2") and not is_life("peak_stress_guide")
+    assert is_life("life_of_another_solver") and not is_life("noise")
+    assert [body_of(name) for name in ("guide_life_hours", "wear_life_hours_roller_1", "pair_life_hours", "slip")] == [
+        "guide",
+        "roller",
+        "",
+        "",
+    ]
+    assert pair_first(["life_cycles_guide", "roller_life_hours", "pair_life_hours"])[0] == "pair_life_hours"
+    assert pair_first(["life_cycles_guide", "roller_life_hours"])[0] == "roller_life_hours"

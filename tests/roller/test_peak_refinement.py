@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import trackroller as tr
-from trackroller.contact.kalker.model import FINER_PARTS
+from trackroller.contact.kalker.kalker_model import FINER_PARTS
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.stages import ellipse_stresses

@@ -19,7 +19,7 @@ from trackroller.results.results import Results
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.store.crate import damaged_files, read_crate
-from trackroller.study.store.plan import study_folder
+from trackroller.study.store.ledger import study_folder
 
 SMALL = {
     "name": "s",

@@ -16,7 +16,7 @@ import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import chunks, seal
+from trackroller.study.store import chunks, netcdf, seal
 
 MANY = 4_000_000_000
 KINDS = {
@@ -84,12 +84,12 @@ def test_commands_refuse_it_in_one_line(tmp_path):
 
 def test_a_large_file_that_holds_its_values_is_read(tmp_path, monkeypatch):
     """Noise packs 1.1 times, whole numbers 1000 times: both are read where the file holds them."""
-    monkeypatch.setattr(seal, "ANY_BYTES", 100_000)
+    monkeypatch.setattr(netcdf, "ANY_BYTES", 100_000)
     rows = np.random.default_rng(1).random(1_000_000)
     ds = xr.Dataset({"stress": ("case", rows), "flag": ("case", np.zeros(rows.size, np.int8))})
     ds.to_netcdf(tmp_path / "ds.nc", encoding={name: {"zlib": True} for name in ds})
     assert seal.read_result(tmp_path / "ds.nc").equals(ds)
-    monkeypatch.setattr(seal, "memory", lambda: 1e6)
+    monkeypatch.setattr(netcdf, "memory", lambda: 1e6)
     with pytest.raises(InputError, match="fits the memory"):
         seal.read_result(tmp_path / "ds.nc")
 

@@ -11,7 +11,7 @@ from trackroller.study.design.levels import short
 from trackroller.study.file.load import parse_study
 from trackroller.study.run import run_study
 from trackroller.study.status import status_of
-from trackroller.study.store.plan import study_folder
+from trackroller.study.store.ledger import study_folder
 
 POINTS = [[float(x), -0.01 * x * x] for x in range(-5, 6)]
 

@@ -30,7 +30,7 @@ from trackroller.study.run import run_study
 from trackroller.study.store import digests, ownership
 from trackroller.study.store.digests import record_digest
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.plan import working_plan
+from trackroller.study.store.ledger import working_ledger
 from trackroller.study.store.seal import put_text
 from trackroller.yaml_file import parse_mapping
 
@@ -151,7 +151,7 @@ def test_one_file_at_any_path_makes_a_folder_somebody_elses(tmp_path, monkeypatc
             continue
         plant(ROOT / name)
         before = snapshot(Path())
-        with pytest.raises(InputError, match="and holds"), working_plan(study):
+        with pytest.raises(InputError, match="and holds"), working_ledger(study):
             pass
         assert snapshot(Path()) == before
         shutil.rmtree(ROOT)

@@ -22,7 +22,7 @@ from trackroller.study.run import run_study
 from trackroller.study.status import status_of
 from trackroller.study.store import chunks
 from trackroller.study.store.identity import Cases, chunk_name
-from trackroller.study.store.plan import study_folder, working_plan
+from trackroller.study.store.ledger import study_folder, working_ledger
 
 HERE = Path(__file__).parents[1]
 LOADS = [float(v) for v in range(20, 50)]
@@ -248,7 +248,7 @@ def test_workflow_marks_are_made_again_where_the_chunk_is_there_and_nowhere_else
     first, second, *_ = plan.chunks
     plan.folder.mark(first).unlink()
     plan.folder.chunk(second).unlink()
-    with working_plan(parse_study(DATA), tmp_path) as plan:
+    with working_ledger(parse_study(DATA), tmp_path) as plan:
         pass
     assert plan.folder.mark(first).is_file() and not plan.folder.mark(second).is_file()
     run(DATA, tmp_path)
@@ -308,7 +308,7 @@ def test_table_of_cases(tmp_path):
 
 def test_results_folder_that_cannot_be_written_is_an_input_error(tmp_path):
     (tmp_path / "s").write_text("a file where the folder should be")
-    with pytest.raises(InputError, match="cannot be a folder"), working_plan(parse_study(DATA), tmp_path):
+    with pytest.raises(InputError, match="cannot be a folder"), working_ledger(parse_study(DATA), tmp_path):
         pass
 
 

@@ -20,8 +20,8 @@ from trackroller.study.run import run_study
 from trackroller.study.store import chunks
 from trackroller.study.store.crate import damaged_files, read_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.identity import chunk_name
-from trackroller.study.store.inventory import take_inventory
+from trackroller.study.store.identity import Cases, chunk_name
+from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.seal import altered, put_text, recorded, sealing
 
 MATERIALS = "materials:\n  own steel: {like: 42CrMo4, tensile_strength: {value: 1500, unit: MPa, source: sheet}}\n"
@@ -191,7 +191,7 @@ def test_three_reports_at_once_lose_nothing(tmp_path, monkeypatch):
     assert damaged_files(folder.root) == {} and "figures/8.svg" in read_crate(folder.root)
 
 
-def test_an_inventory_passes_over_a_file_that_another_process_has_just_replaced(tmp_path, monkeypatch):
+def test_a_ledger_passes_over_a_file_that_another_process_has_just_replaced(tmp_path, monkeypatch):
     folder = StudyFolder(tmp_path).create()
     kept, gone = (np.array([letter * 32]) for letter in (b"a", b"b"))
     for cases in (kept, gone):
@@ -199,7 +199,7 @@ def test_an_inventory_passes_over_a_file_that_another_process_has_just_replaced(
     listed = folder.solved_files()
     monkeypatch.setattr(StudyFolder, "solved_files", lambda self: listed)
     folder.chunk(chunk_name(gone)).unlink()
-    found = take_inventory(folder)
+    found = Ledger(Cases(load_study({"name": "one", "factors": {"axial_force": {"values": [0]}}})), folder)
     assert found.states["case"].values.tolist() == kept.tolist() and not found.corrupt
 
 

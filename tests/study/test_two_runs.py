@@ -17,8 +17,8 @@ import yaml
 from trackroller.errors import WorkError
 from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.run import run_study
-from trackroller.study.solve import solve_chunk
-from trackroller.study.store.plan import working_plan
+from trackroller.study.solve_chunk import solve_chunk
+from trackroller.study.store.ledger import working_ledger
 
 LOADS = [float(v) for v in range(20, 40)]
 DATA = {
@@ -77,7 +77,7 @@ def test_failed_cases_are_not_removed_under_a_run(tmp_path, solved):
 
 
 def test_chunk_whose_plan_is_gone_ends_with_a_sentence(tmp_path):
-    with working_plan(parse_study(DATA), tmp_path) as plan:
+    with working_ledger(parse_study(DATA), tmp_path) as plan:
         pass
     first = next(iter(plan.chunks))
     plan.folder.case_list(first).unlink()

@@ -16,7 +16,7 @@ import pytest
 import xarray as xr
 from workflow_place import ROOT, command, copy_program, environment, lay_study, snakemake, snakemake_process, started
 
-from trackroller.cli.workflow import workflow_config, workflow_plan
+from trackroller.cli.workflow import workflow_config, workflow_ledger
 from trackroller.errors import InputError
 from trackroller.study.store.crate import damaged_files, read_crate
 from trackroller.study.store.folder import StudyFolder
@@ -123,7 +123,7 @@ def test_wrong_configuration_is_told_without_a_traceback(place):
 def test_wrong_configuration_names_its_key(place, monkeypatch, wrong, named):
     monkeypatch.chdir(place)
     with pytest.raises(InputError, match=named):
-        workflow_plan(workflow_config({"study": "tiny.yaml"} | wrong, ROOT), main=True)
+        workflow_ledger(workflow_config({"study": "tiny.yaml"} | wrong, ROOT), main=True)
 
 
 @pytest.mark.slow

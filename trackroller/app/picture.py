@@ -24,8 +24,8 @@ from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import collect, render, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
-from trackroller.roller.limits import Limits
 from trackroller.roller.record import given_inputs, solve_command
+from trackroller.roller.regime_limits import Limits
 from trackroller.roller.settings import checked_case, with_beside
 from trackroller.roller.solver import solve
 from trackroller.study.outputs import every_name, outputs

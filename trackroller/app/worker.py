@@ -94,18 +94,18 @@ def run(name: str) -> None:
 
 def _work(name: str, progress: Progress) -> None:
     from trackroller.report.build import build_report  # heavy: SALib; the page shows "starting" meanwhile
-    from trackroller.results.deciding import run_any  # heavy: analysis
+    from trackroller.results.solving import run_any  # heavy: analysis
     from trackroller.results.stored_study import open_study
     from trackroller.study.status import find_study, status_of
 
     study, folder = find_study(f"studies/{name}.yaml")
     progress.say(failed=status_of(study, folder).failed)  # in the chunks that an earlier run solved
-    plan = run_any(study, started=progress.started, progress=progress.advanced)
+    ledger = run_any(study, started=progress.started, progress=progress.advanced)
     status = status_of(study, folder)
     progress.say(step="making the report", total=status.total, done=status.done, failed=status.failed)
-    build_report(plan.folder, lambda line: progress.say(step=line))
+    build_report(ledger.folder, lambda line: progress.say(step=line))
     progress.say(step="making the explorer")
-    open_study(plan.folder.root).explore(plan.folder.root / "explorer.html")
+    open_study(ledger.folder.root).explore(ledger.folder.root / "explorer.html")
     progress.say(step="done")
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+from collections.abc import Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -59,17 +60,13 @@ def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str,
         remedy = f"Write --set {path}: each key has a --set of its own."
         raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
+    if path is None and not given:
+        first = ", ".join(with_unit(name, value) for name, value in LASTING.items())
+        print_line(f"No case was given. This is the roller with which the live page begins: {first}.")
     values = parse_mapping(text, "case file") if path is not None else {} if given else dict(LASTING)
     named = {*given, *(ALIASES.get(name, name) for name in given)}
     with errors_by_line(text, named, aliases=ALIASES), files_beside(path):
         return checked_case(overridden(values, given))
-
-
-def tell_start(path: Path | None, words: list[str] | None) -> None:
-    """Print on stderr which roller stands in where neither a case file nor --set words were given."""
-    if path is None and not words:
-        given = ", ".join(with_unit(name, value) for name, value in LASTING.items())
-        print_line(f"No case was given. This is the roller with which the live page begins: {given}.")
 
 
 def tell_doubts(case: Case) -> None:
@@ -91,26 +88,23 @@ def _left_out(words: str) -> tuple[str, ...]:
     return damage.others([word.strip() for word in words.split(",")])
 
 
-def _served(path: Path | None, settings: list[str] | None) -> tuple[str, ...]:
+def _served(case: Case, options: Mapping[str, Any]) -> tuple[str, ...]:
     """Return the groups of outputs of the limits of the verdict whose inputs a case gives."""
     from trackroller.roller.case import to_table
     from trackroller.roller.options import Options
-    from trackroller.roller.stages.case import solved_of, to_compute  # heavy: as above
+    from trackroller.roller.stages.outcome import solved_of, to_compute  # heavy: as above
 
-    case, options, _ = case_of(path, settings)
-    wanted = Options(**options | {"outputs": ("limits",)})
+    wanted = Options(**{**options, "outputs": ("limits",)})
     limits = to_compute(solved_of(to_table(case), {}, wanted), wanted)
     return tuple(limit.group for limit in limits)
 
 
-def solve_case(path: Path | None, words: list[str] | None, **more: Any) -> xr.Dataset:
-    """Solve the case of a case file and --set words; `more` are further options of `solve`."""
-    case, options, beside = case_of(path, words)
-    tell_start(path, words)
+def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any], **more: Any) -> xr.Dataset:
+    """Solve a case with what `case_of` returned beside it; `more` are further options of `solve`."""
     tell_doubts(case)
     from trackroller.roller.solver import solve  # heavy: xarray and dask
 
-    return with_beside(solve(case, **(options | more)), beside)
+    return with_beside(solve(case, **{**options, **more}), beside)
 
 
 def writable(out: Path) -> Path:
@@ -186,9 +180,7 @@ def _write_roller(dataset: xr.Dataset, target: Path, book: bool) -> None:
     write_roller(dataset, target)
 
 
-def _options(
-    path: Path | None, settings: list[str] | None, limits: str | None, sheet: bool, plain: bool
-) -> dict[str, Any]:
+def _options(given: Case, options: Mapping[str, Any], limits: str | None, sheet: bool, plain: bool) -> dict[str, Any]:
     """Return the outputs of a case that is told with its margins, and the limits that it leaves out.
 
     A `plain` result, which is not told, has the outputs of the case file.
@@ -197,7 +189,7 @@ def _options(
         return {}
     if limits is not None:
         return {"outputs": (*COMPLETE[:2], *groups_of(limits)), "not_checked": _left_out(limits)}
-    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(path, settings)))
+    own = dict.fromkeys((*(SHEET_OUTPUTS if sheet else COMPLETE), "limits", *_served(given, options)))
     return {"outputs": tuple(own)}
 
 
@@ -222,25 +214,27 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
             remedy = "Give one of them at a time."
             raise InputError("--find", find or "", "a search alone, without -o, --report and --limits", remedy)
         return _find_and_tell(case, settings, find, condition, as_json)
+    given, options, beside = case_of(case, settings)
     book = out is not None and out.suffix.lower() == ".xlsx"
     target = None if out is None else writable(out) if book else writable_data(out, f" {WORKBOOK}{PRINTED}")
     page = None if sheet is None else writable_page(sheet)
-    plain = as_json or (target is not None and not book) or "outputs" in case_of(case, settings)[1]
-    more = {"shortcuts": False} if no_shortcuts else {}
-    dataset = solve_case(case, settings, **more | _options(case, settings, limits, page is not None, plain))
+    plain = as_json or (target is not None and not book) or "outputs" in options
+    more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
+    more |= _options(given, options, limits, page is not None, plain)
+    dataset = solve_case(given, options, beside, **more)
     if target is not None:
         _write_roller(dataset, target, book)
-    from trackroller.report.pages import sheet_text
-    from trackroller.report.pages.sheet import collect, write_sheet  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet import as_json as json_of  # heavy: rich and jinja2
+    from trackroller.report.pages.sheet import collect, print_facts, print_margins, write_sheet
 
     if page is not None:
         write_sheet(dataset, page, case.stem if case is not None else "")
     if as_json:
-        print(sheet_text.as_json(dataset))
+        print(json_of(dataset))
     elif target is None and limits is not None and not is_failed(dataset):
-        sheet_text.print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
+        print_margins(collect(dataset), float(dataset.attrs["failure_probability"]))
     elif target is None:
-        sheet_text.print_facts(dataset)
+        print_facts(dataset)
     if not is_failed(dataset):
         return 0
     if as_json or target is not None:
@@ -271,8 +265,8 @@ def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | Non
     """
     target = None if out is None else writable_data(out, PRINTED)
     page = None if report is None else writable_page(report)
-    from trackroller.report.pages import sheet_text
-    from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
+    from trackroller.report.pages.sheet import as_json as json_of  # heavy: jinja2
+    from trackroller.report.pages.spectrum import print_spectrum, write_spectrum
     from trackroller.study.spectrum.file import load_spectrum
     from trackroller.study.spectrum.solve import doubts_of_spectrum, solve_spectrum
 
@@ -284,9 +278,9 @@ def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | Non
     if page is not None:
         write_spectrum(dataset, page, file.name)
     if as_json:
-        print(sheet_text.as_json(dataset))
+        print(json_of(dataset))
     elif target is None:
-        sheet_text.print_spectrum(dataset)
+        print_spectrum(dataset)
 
 
 def run_wear(
@@ -302,7 +296,7 @@ def run_wear(
     from trackroller.report.pages.wear import write_wear
     from trackroller.report.words.wear import sentences
     from trackroller.roller.wear import wear
-    from trackroller.study.store.seal import read_netcdf
+    from trackroller.study.store.netcdf import read_netcdf
 
     def tell(dataset: xr.Dataset, goal: float) -> None:
         if target is not None:
@@ -339,7 +333,8 @@ def plot_target(target: str, settings: list[str] | None, out: Path | None, resul
     if path.suffix in (".yaml", ".yml") and not names_study(path):
         from trackroller.report.figures.contact import plot_case
 
-        dataset = solve_case(path, settings, outputs=("forces", "contact", "peak_stress", "tractions", "subsurface"))
+        drawn_outputs = ("forces", "contact", "peak_stress", "tractions", "subsurface")
+        dataset = solve_case(*case_of(path, settings), outputs=drawn_outputs)
         if is_failed(dataset):
             raise WorkError(f"{path} has no solution to draw: {dataset['reason'].item()}")
         folder = out or Path(f"{path.stem}-figures")

@@ -30,8 +30,8 @@ from trackroller.study.run import run_study
 from trackroller.study.status import Status, find_folder, find_study, plan_rows, status_of
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.ledger import study_folder
 from trackroller.study.store.ownership import check, is_study
-from trackroller.study.store.plan import study_folder
 
 EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study
@@ -41,7 +41,7 @@ def run_with_progress(
     study: Path, results: Path, rerun_failed: bool, scheduler: str | None, quiet: bool, report: bool
 ) -> None:
     """Run a study with a progress bar of cases/s and the time left; with `report`, make its report."""
-    from trackroller.results.deciding import run_any  # heavy: analysis
+    from trackroller.results.solving import run_any  # heavy: analysis
 
     checked = load_study(study)
     _print_not_given({**checked.config.base, **checked.factors}, checked.not_given, sys.stderr)
@@ -53,7 +53,7 @@ def run_with_progress(
         bar.started(total, done)
 
     with progress_bar(checked.name, not quiet) as bar:
-        plan = run_any(
+        ledger = run_any(
             checked,
             results,
             rerun_failed=rerun_failed,
@@ -66,10 +66,10 @@ def run_with_progress(
         unused = f"; --scheduler {scheduler} is not used" if scheduler else ""
         print_line(f"nothing is left to solve of '{checked.name}'{unused}")
     if report:
-        print(_report(plan.folder))
+        print(_report(ledger.folder))
     else:
-        write_crate(plan.folder.root)
-        print(plan.folder.gathered)
+        write_crate(ledger.folder.root)
+        print(ledger.folder.gathered)
 
 
 def make_report(study: str, results: Path, out: Path | None) -> None:
@@ -229,8 +229,8 @@ def print_rerun(crate: Path, results: Path) -> int:
         raise InputError("crate", str(crate), "a crate that holds study.nc", "Run the study to its end first.")
     study = study_of_crate(crate)
     _check_unoccupied(study, study_folder(study.name, results))
-    plan = run_study(study, results)
-    compared = compare_results(stored, plan.folder.gathered)
+    ledger = run_study(study, results)
+    compared = compare_results(stored, ledger.folder.gathered)
     differs = _print_differences(compared)
     if new := [name for name, difference in compared.items() if math.isnan(difference.apart)]:
         print(f"not compared, because {stored} lacks them: {', '.join(new)}")

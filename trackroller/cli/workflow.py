@@ -16,14 +16,13 @@ from trackroller.cli import tell_stopped
 from trackroller.errors import InputError, WorkError, unknown_name
 from trackroller.files import check_utf_8, interrupts_wait_for_files
 from trackroller.materials.file import find_user_file
-from trackroller.results.deciding import decides
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.identity import Cases
+from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
 from trackroller.study.store.ownership import free_for_workflow
-from trackroller.study.store.plan import Plan, read_plan, study_folder, working_plan
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
@@ -75,8 +74,8 @@ def _check_braces(key: str, path: str) -> None:
         raise InputError(key, path, "a path without braces, as Snakemake reads braces as wildcards", remedy)
 
 
-def workflow_plan(config: Mapping[str, str], main: bool, tell: Tell = unheard) -> Plan:
-    """Return the plan of the workflow's study.
+def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard) -> Ledger:
+    """Return the ledger of the workflow's study.
 
     The main process plans, and keeps other processes from changing the plan until it ends. Its jobs read the plan.
 
@@ -91,7 +90,7 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Tell = unheard) -
 
     Returns
     -------
-    Plan
+    Ledger
         Chunks of the study and the folder of its results.
 
     Raises
@@ -106,17 +105,17 @@ def workflow_plan(config: Mapping[str, str], main: bool, tell: Tell = unheard) -
     folder = study_folder(study.name, results)
     if main:
         free_for_workflow(folder.create().root, tell)
-    if decides(study):  # its rule plans each generation
-        return Plan(study, folder, {}, 0, 0, (), Cases(study))
+    if study.decides:  # its rule plans each generation
+        return Ledger(Cases(study), folder)
     if main:
-        return _held.enter_context(working_plan(study, results, tell=tell))
-    plan = read_plan(study, folder)
-    if plan is None:
+        return _held.enter_context(working_ledger(study, results, tell=tell))
+    ledger = read_ledger(study, folder)
+    if ledger is None:
         raise WorkError(
             f"study '{study.name}' (or its materials, or the solver) was edited while the workflow runs. This workflow "
             "solves the earlier version and stops here. Start it again: every finished case is kept."
         )
-    return plan
+    return ledger
 
 
 def study_inputs(study: Study) -> list[str]:

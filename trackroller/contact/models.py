@@ -15,12 +15,12 @@ import numpy as np
 
 from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import FrictionLaw, constant
-from trackroller.contact.kalker.model import KalkerModel
+from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Rollers
 from trackroller.contact.sliding_model import SlidingModel
-from trackroller.contact.table.model import TableModel
+from trackroller.contact.table.table_model import TableModel
 from trackroller.errors import InputError, check_names
 from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import declare

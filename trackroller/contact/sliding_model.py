@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from trackroller.contact import sliding
 from trackroller.contact.common import Works
-from trackroller.contact.normal.models import GridSlidingModel
+from trackroller.contact.normal.patch_models import GridSlidingModel
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Rollers
 from trackroller.parameters.accuracy import Accuracy

@@ -44,11 +44,16 @@ def add_own() -> None:
     """
     for name, limit in own.own_limits().items():
         for kind, what in _KINDS.items():
-            clash = _names(limit, kind) & {taken for known in LIMITS.values() for taken in _names(known, kind)}
-            if clash:
-                wrong = f"is {what} that another limit declares"
-                raise InputError("limits", ", ".join(sorted(clash)), "", "Choose another name.", wrong)
+            taken = {one for known in LIMITS.values() for one in _names(known, kind)}
+            _refuse_taken(_names(limit, kind), taken, what)
         LIMITS[name] = limit
+
+
+def _refuse_taken(names: Collection[str], taken: Collection[str], what: str) -> None:
+    """Refuse names that a limit declares and that are taken; `what` is what they name."""
+    if clash := sorted({*names} & {*taken}):
+        wrong = f"is {what} already, so that no limit may declare it"
+        raise InputError("limits", ", ".join(clash), "", "Choose another name.", wrong)
 
 
 def with_limits(own: Mapping[str, Any], declared: Iterable[Any], kind: str) -> dict[str, Any]:
@@ -60,9 +65,7 @@ def with_limits(own: Mapping[str, Any], declared: Iterable[Any], kind: str) -> d
         If a limit declares a name that the program has; `kind` is what it names.
     """
     added = {one.name: one for one in declared}
-    if taken := sorted(own.keys() & added.keys()):
-        wrong = f"is {kind} that the program has, so that no limit may declare it"
-        raise InputError("limits", ", ".join(taken), "", "Choose another name.", wrong)
+    _refuse_taken(added, own, kind)
     return {**own, **added}
 
 
@@ -76,12 +79,8 @@ def asked(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[
 
     `not_checked` names limits that the verdict leaves out.
     """
-
-    def wanted(limit: Limit) -> bool:
-        every = verdict.GROUP in outputs and limit.verdict is not None and limit.name not in not_checked
-        return every or limit.group in outputs
-
-    return tuple(limit for limit in LIMITS.values() if wanted(limit))
+    of_verdict = judged(outputs, not_checked)
+    return tuple(limit for limit in LIMITS.values() if limit in of_verdict or limit.group in outputs)
 
 
 def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
@@ -89,7 +88,7 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
 
     `all` stands for all limits that have a verdict.
     """
-    known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
+    known = [limit.name for limit in judged()]
     for name in names:
         if name not in known and (how := own.hint(name)):
             raise InputError(field, name, "limits that are loaded", how)
@@ -121,7 +120,7 @@ def check_used(
     """
     asked_for = asked(outputs, not_checked)
     for name in (name for name in given if name != "travel"):
-        users = [limit for limit in LIMITS.values() if limit.verdict is not None and name in _fields(limit)]
+        users = [limit for limit in judged() if name in _fields(limit)]
         if users and not any(limit in asked_for or limit.name in not_checked for limit in users):
             wrong = f"is used by no output: it belongs to {', '.join(limit.name for limit in users)}"
             remedy = f"Add limits to outputs, or remove {name}."
@@ -138,11 +137,10 @@ def _fields(limit: Limit) -> set[str]:
 
 def others(names: Collection[str]) -> tuple[str, ...]:
     """Return the limits of the verdict that a choice of limits leaves out; `all` leaves none out."""
-    known = [limit.name for limit in LIMITS.values() if limit.verdict is not None]
-    return () if "all" in names else tuple(name for name in known if name not in names)
+    return () if "all" in names else tuple(limit.name for limit in judged() if limit.name not in names)
 
 
-def judged(outputs: Collection[str], not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
+def judged(outputs: Collection[str] = (verdict.GROUP,), not_checked: Collection[str] = ()) -> tuple[Limit, ...]:
     """Return the limits of the verdict: all that have one, without those of `not_checked`; none without `limits`."""
     if verdict.GROUP not in outputs:
         return ()

@@ -11,7 +11,7 @@ import numpy as np
 from trackroller.damage.limit import SN_SCATTER, Limit, Results, SolvedRollers, Verdict, variables, worst
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
-from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST
+from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST
 
 # results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1 stands for sigma_D
 STRESS_OF = {
@@ -134,7 +134,7 @@ LIMIT = Limit(
             "1",
             "k delta(sigma)/sigma",
             "estimated relative error of the life",
-            LARGEST,
+            ESTIMATE,
         ),
         ("fatigue_stress", ("contact", "body"), "MPa", "sigma_a,eq", "amplitude that enters the S-N curve", LARGEST),
         ("life_hours", ("contact", "body"), "h", "L_h", "life in hours of travel", SMALLEST | LIFE),
@@ -144,7 +144,7 @@ LIMIT = Limit(
             "h",
             "L_h,TR",
             "hours of travel to the first failure of the roller",
-            LIFE | {"label": "life of the roller"},
+            LIFE | {"of": "roller", "label": "life of the roller"},
         ),
         (
             "guide_life_hours",
@@ -152,7 +152,7 @@ LIMIT = Limit(
             "h",
             "L_h,G",
             "hours to the first failure of the guide",
-            LIFE | {"label": "life of the guide"},
+            LIFE | {"of": "guide", "label": "life of the guide"},
         ),
         (
             "pair_life_hours",
@@ -160,7 +160,7 @@ LIMIT = Limit(
             "h",
             "L_h",
             "hours to the first failure of roller or guide",
-            LIFE | {"label": "life of the pair"},
+            LIFE | {"of": "pair", "label": "life of the pair"},
         ),
     ),
     requires=("guide_overrollings_per_hour",),

@@ -35,12 +35,13 @@ _FIRST = "hours to the first limit that is known"
 
 
 def _life(
-    name: str, dims: tuple[str, ...], meaning: str, label: str
+    name: str, dims: tuple[str, ...], meaning: str, label: str, of: str = ""
 ) -> tuple[tuple[str, Any, str, str, str, Any], ...]:
     """Return the rows of a life and of the ends of its range."""
     ends = (("", "", ""), ("_low", "low end of the ", ", low end"), ("_high", "high end of the ", ", high end"))
+    more = LIFE | {"of": of}
     return tuple(
-        (name + end, dims, "h", "", head + meaning, LIFE | {"label": label + tail}) for end, head, tail in ends
+        (name + end, dims, "h", "", head + meaning, more | {"label": label + tail}) for end, head, tail in ends
     )
 
 
@@ -49,7 +50,7 @@ RESULTS = variables(
     ("utilisation", _LB, "1", "", "load over the load at which the limit is reached", {"label": "utilisation"}),
     *_life("life_hours_by_limit", _LB, "hours to the limit at the failure probability", "life"),
     *_life("life_to_first_limit_hours", ("body",), _FIRST, "life to the first limit"),
-    *_life("pair_life_to_first_limit_hours", (), f"{_FIRST}, of roller or guide", "life to the first limit"),
+    *_life("pair_life_to_first_limit_hours", (), f"{_FIRST}, of roller or guide", "life to the first limit", "pair"),
 )
 
 

@@ -29,7 +29,7 @@ from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, V
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
 from trackroller.numerics.parameter import Parameter
-from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST, SUM
+from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST, SUM
 
 KM_PER_HOUR = 0.06  # for 1 m/min
 # Relative error of the depth times the elements across a patch that 95 % of the patches of random rollers keep, against
@@ -341,14 +341,14 @@ LIMIT = Limit(
         ("wear_depth_per_km", _CB, "mm km-1", "", "largest depth that is worn off per km of travel", LARGEST),
         ("wear_place", _CB, "mm", "x_C", "lateral place of the largest wear depth", {"odd": True}),
         ("wear_volume_per_km", _CB, "mm3 km-1", "V", "volume that is worn off per km of travel", SUM),
-        ("wear_error_estimate", ("contact",), "1", "", "estimated relative error of the wear depth", LARGEST),
+        ("wear_error_estimate", ("contact",), "1", "", "estimated relative error of the wear depth", ESTIMATE),
         (
             "run_in_distance",
             (),
             "km",
             "",
             "run-in distance, until wear equals the gap at the edge",
-            LIFE | {"shown": True, "label": "run-in distance"},
+            {"scale": "log10", "shown": True, "label": "run-in distance"},
         ),
         (
             "wear_life_hours",

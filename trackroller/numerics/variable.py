@@ -8,7 +8,8 @@ BODIES = ("roller", "guide")  # values of the coordinate `body`
 REGIMES = ("rolling", "full_slip", "lift_off", "failed")  # `regime` holds the place of the word, from 0
 # further fields of a variable: the worse contact counts, or both contacts add up
 LARGEST, SMALLEST, SUM = ({"joined": way} for way in ("max", "min", "sum"))
-LIFE = {"scale": "log10"}
+ESTIMATE = LARGEST | {"estimate": True}  # of the error of another result
+LIFE = {"scale": "log10", "life": True}
 
 
 @dataclass(frozen=True)
@@ -31,6 +32,12 @@ class Variable:
         How one number follows from both contacts: `max`, `min`, `sum`, or not at all (an empty text).
     scale : str
         Scale on which an analysis compares the values, `natural` or `log10`.
+    life : bool
+        Whether the value is a life: longer is better, 0 and infinity are values, and hours become years of a duty.
+    of : str
+        `roller`, `guide` or `pair`, if the value is that of one of them and has no dimension `body`.
+    estimate : bool
+        Whether the value is an estimated error of another result.
     label : str
         Words of a report, if they are not the long name.
     """
@@ -45,4 +52,7 @@ class Variable:
     shown: bool = False
     joined: str = ""
     scale: str = "natural"
+    life: bool = False
+    of: str = ""
+    estimate: bool = False
     label: str = ""

@@ -141,7 +141,7 @@ def unit_of(name: str) -> str:
     """
     if name in PARAMETERS:
         return PARAMETERS[name].unit
-    if "_life_years" in name or name.endswith("_limit_years"):
+    if name not in PARTS and name.replace("years", "hours") in PARTS:
         return "year"
     return unit_text(PARTS[name].variable.units).replace("–", "-") if name in PARTS else "-"
 

@@ -18,6 +18,7 @@ from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.roles import roles_of
 
@@ -157,7 +158,7 @@ class Candidates:
     @property
     def rising(self) -> bool:
         """Return whether more of the goal is better."""
-        return "life" in self.goal[0]
+        return is_life(self.goal[0])
 
     @property
     def usable(self) -> np.ndarray:

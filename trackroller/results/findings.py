@@ -20,7 +20,7 @@ from trackroller.results import effects
 from trackroller.results.candidates import Candidates, of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
-from trackroller.results.first_limits import first_limit, turn
+from trackroller.results.first_limits import first_limit, settled, turn, varied
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import (
@@ -34,7 +34,7 @@ from trackroller.results.ranking import (
     used_share,
 )
 from trackroller.results.results import Results
-from trackroller.results.unsure import settled, varied
+from trackroller.roller.output_names import is_life, pair_first
 from trackroller.study.design.entries import OPTION_FACTORS
 
 MOST = 5  # findings under *Why*
@@ -200,7 +200,7 @@ def _whichever(results: Results, candidates: Candidates, rows: np.ndarray) -> li
 def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
     """Return the findings of the indices: the factors that decide, by group and by level, and an interaction."""
     names = [str(n) for n in sens["output"].values if str(n) not in REGIMES]  # `ends` says where these occur
-    lives = sorted((n for n in names if "life" in n), key=lambda n: ("pair" not in n, "roller" not in n))
+    lives = pair_first(filter(is_life, names))
     output = next((n for n in dict.fromkeys([*lives, *names]) if decisive(sens, n)), None)
     if output is None or not carries_indices(results, sens, output):
         return []
@@ -237,7 +237,7 @@ def index_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
     ties = [r for r in ranks[1:] if abs(r.value - ranks[0].value) <= ALIKE * abs(ranks[0].value)]
     small = [r for r in ranks[1:] if _small(r, ranks[0], sized)]
     values = {"output": output, "index": index, "sized": sized, "ranks": ranks, "ties": ties, "small": small}
-    return values | {"correlated": correlated, "used": used_share(sens, output), "outside": 0}
+    return values | {"correlated": correlated, "used": used_share(sens, output)}
 
 
 def _small(rank: Rank, first: Rank, sized: bool) -> bool:
@@ -440,7 +440,7 @@ def slip_law(results: Results) -> Finding | None:
     return finding(results, "slip_law", "all", looked, what="full_slip", **values)
 
 
-def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray | None = None) -> Finding | None:
+def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
     """Say how often an event occurs and at which levels of the factors.
 
     That it occurs only at some levels is said of a grid, in which every combination was tried, and of a sample if one
@@ -450,22 +450,19 @@ def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray |
     ----------
     hit : whether the event occurs, shape (n,) bool
     what : name of the event
-    among : the cases that are looked at, shape (n,) bool; all if not given
 
     Returns
     -------
     Finding or None
         None if the event never occurs.
     """
-    every = np.ones(len(hit), dtype=bool) if among is None else among
-    looked = of_one_model(results, every)
+    looked = of_one_model(results, np.ones(len(hit), dtype=bool))
     hit, whole, cases = hit & looked, int(looked.sum()), int((hit & looked).sum())
     if not cases:
         return None
     values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
-    place = "all" if among is None else "rolling"
     if cases == whole:
-        return finding(results, "everywhere", place, looked, **values)
+        return finding(results, "everywhere", "all", looked, **values)
     only = confining(results, hit, looked)
     if not results.grid:  # a sample carries no more than a law: one factor decides each of its cases
         only = [pair for pair in only if cases >= FEW and (meets(results, *pair) & looked == hit).all()][:1]
@@ -476,14 +473,14 @@ def occurrence(results: Results, hit: np.ndarray, what: str, among: np.ndarray |
     # few events may share levels by chance, unless all cases at these levels have the event
     common = met == cases and all(isinstance(levels, list) for _, levels in only)
     if only and (cases >= FEW or common):
-        return finding(results, "only", place, looked, **values, conditions=only, inside=met)
+        return finding(results, "only", "all", looked, **values, conditions=only, inside=met)
     if cases < FEW:
-        return finding(results, "cases", place, looked, **values, cases=np.flatnonzero(hit).tolist())
+        return finding(results, "cases", "all", looked, **values, cases=np.flatnonzero(hit).tolist())
     most = most_frequent(results, hit, looked)
     if most is None:
-        return finding(results, "share", place, looked, **values)
+        return finding(results, "share", "all", looked, **values)
     return finding(
-        results, "frequent", place, looked, **values, **dict(zip(("factor", "most", "least"), most, strict=True))
+        results, "frequent", "all", looked, **values, **dict(zip(("factor", "most", "least"), most, strict=True))
     )
 
 

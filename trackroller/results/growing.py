@@ -20,8 +20,7 @@ from trackroller.study.run import Runner
 from trackroller.study.store.folder import StudyFolder, Tell
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.inventory import take_inventory
-from trackroller.study.store.plan import Plan, study_folder, working_plan
+from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
 
 
 class Growing:
@@ -40,30 +39,28 @@ class Growing:
     def __init__(self, study: Study, folder: StudyFolder, tell: Tell) -> None:
         assert study.config.until is not None
         self.study, self.until, self.tell = study, study.config.until, tell
-        self.folder, self.found = folder, take_inventory(folder)
+        self.folder = folder
         self.looks: list[dict[str, Any]] = []
 
     def advance(self) -> str:
         """Look at every solved step; return why the study stops, '' if its step has cases to solve."""
-        self.found = take_inventory(self.folder)
         while True:
-            cases = Cases(self.study)
-            place = self.found.find(cases.fingerprints)
-            if (place < 0).any():
+            ledger = Ledger(Cases(self.study), self.folder)
+            if (ledger.place < 0).any():
                 return ""
-            seen = look(solved_results(self.study, cases, self.found, place, self.folder))
+            seen = look(solved_results(ledger))
             self.looks.append(seen)
             widest = ", ".join(f"{name} ± {_text(seen, name)}" for name in self.until.of)
             self.tell(f"look {len(self.looks)}: {seen['cases']} cases, widest 95 % interval: {widest}")
             if unsure := seen.get("unsure"):
                 self.tell(f"wider than wanted at {len(unsure)} of {len(self.study.drawn.points)} design points")
             larger = doubled(self.study, unsure)
-            if why := self._why(larger):
+            if why := self._why(larger, ledger):
                 self.tell(f"stopped: {why}")
                 return why
             self.study = larger
 
-    def _why(self, larger: Study) -> str:
+    def _why(self, larger: Study, ledger: Ledger) -> str:
         """Return why the study stops at its last look, '' if it goes on with the larger sample."""
         seen, until = self.looks[-1], self.until
         widths = seen["half_width"].values()
@@ -78,10 +75,10 @@ class Growing:
             return f"the next step has {many} cases, and at_most is {until.at_most}"
         if until.hours is None:
             return ""
-        missing = int((self.found.find(Cases(larger).fingerprints) < 0).sum())
-        needed = self.found.hours * missing / max(1, self.found.states.sizes["case"])
-        if missing and self.found.hours + needed > until.hours:
-            spent = duration(3600 * self.found.hours)
+        missing = int((ledger.find(Cases(larger).fingerprints) < 0).sum())
+        needed = ledger.hours * missing / max(1, ledger.states.sizes["case"])
+        if missing and ledger.hours + needed > until.hours:
+            spent = duration(3600 * ledger.hours)
             left = f"about {duration(3600 * needed)} of solving"
             return f"{spent} of the {until.hours:g} h are spent, and the next step needs {left}"
         return ""
@@ -97,7 +94,7 @@ def _text(seen: dict[str, Any], name: str) -> str:
     return "unknown" if width is None else f"{width:.2g} ({seen['at'][name]})"
 
 
-def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Plan:
+def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
     """Let the sample of a study grow until its intervals are narrow, and gather the cases.
 
     Parameters
@@ -111,8 +108,8 @@ def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Pla
 
     Returns
     -------
-    Plan
-        The plan of the last step. The attribute `until` of `study.nc` holds the looks and why it stopped (JSON).
+    Ledger
+        The ledger of the last step. The attribute `until` of `study.nc` holds the looks and why it stopped (JSON).
 
     Raises
     ------
@@ -126,9 +123,9 @@ def grow_study(study: Study, results: Path | str = "results", **how: Any) -> Pla
         while not (why := growing.advance()):
             with runner.solved(growing.study):
                 pass
-        with runner.solved(growing.study) as plan:
-            gather(plan, runner.tell, growing.record(why))
-    return plan
+        with runner.solved(growing.study) as ledger:
+            gather(ledger, runner.tell, growing.record(why))
+    return ledger
 
 
 def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
@@ -142,5 +139,5 @@ def next_step(study: Study, results: Path | str, tell: Tell) -> dict[str, Any]:
     growing = Growing(study, study_folder(study.name, results).create(), tell)
     if why := growing.advance():
         return {"stopped": why, "chunks": []}
-    with working_plan(growing.study, results, tell=tell) as plan:
-        return {"stopped": "", "chunks": plan.open}
+    with working_ledger(growing.study, results, tell=tell) as ledger:
+        return {"stopped": "", "chunks": ledger.open}

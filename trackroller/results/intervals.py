@@ -12,11 +12,10 @@ from trackroller.methods.b10 import b10
 from trackroller.parameters import FIRST_TO_FAIL, REGIMES
 from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.columns import codes
-from trackroller.results.first_limits import first_at, first_limit
+from trackroller.results.first_limits import UNSURE, first_at, first_limit
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
-from trackroller.results.unsure import UNSURE
 from trackroller.study.outputs import flat
 
 # limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict

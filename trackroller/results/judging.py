@@ -15,6 +15,7 @@ from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.results.constraints import Column
 from trackroller.results.results import OUTSIDE, Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.file.search import judged_by
 
 SAFE_B10 = "B10 of {}, other cases as life 0"  # other cases: those that do not roll, or have no known life
@@ -186,7 +187,7 @@ def beyond_data(results: Results, goal: str) -> np.ndarray:
     """Return for which designs a life that is a goal rests on a life beyond the S-N data, shape (n,)."""
     kind, output = judged_by(goal)
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    if "life" not in output or kind == "probability":
+    if not is_life(output) or kind == "probability":
         return np.zeros(shape[0], dtype=bool)
     lives = results.quantity(output)[0].astype(float).reshape(shape)
     counted = results.valid.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))

@@ -13,7 +13,7 @@ from trackroller.parameters import REGIMES
 from trackroller.results.labels import factor_name
 from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
-from trackroller.results.targets import body_of, hits_of
+from trackroller.results.targets import hits_of, scattering_body
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import outputs, regimes
@@ -85,7 +85,7 @@ def _of_points(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
         column = outputs(
             results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed
         )[0]
-        values, scatter = results.with_breaks(column), own.get(body_of(output))
+        values, scatter = results.with_breaks(column), own.get(scattering_body(output))
         if kind != "probability":
             scatter = np.zeros(design.size) if scatter is None else scatter
             halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]

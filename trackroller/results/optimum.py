@@ -14,7 +14,7 @@ from __future__ import annotations
 import dataclasses
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,6 @@ from trackroller.methods.factor import Factor
 from trackroller.methods.optimise import first_generation, genes_of, next_generation, nondominated_ranks, survivors
 from trackroller.parameters import PARAMETERS
 from trackroller.results.judging import OPTIMUM, Judged, goals_of_search, judge, recommended, spread
-from trackroller.results.results import Results
 from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
@@ -34,8 +33,7 @@ from trackroller.study.run import Runner
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.inventory import Inventory, take_inventory
-from trackroller.study.store.plan import Plan
+from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.seal import put_text
 
 TABLE, ELEMENTS = "kalker_table", "kalker"
@@ -52,10 +50,6 @@ class _Search:
     study: Study
     folder: StudyFolder
     runner: Runner
-    found: Inventory = field(init=False)
-
-    def __post_init__(self) -> None:
-        self.found = take_inventory(self.folder)
 
     def of(self, study: Study, genes: np.ndarray) -> Study:
         """Return a study with these designs, which stand in `designs.csv`."""
@@ -66,24 +60,20 @@ class _Search:
         inputs = study.inputs | {path: ("table", sha256(path))}
         return dataclasses.replace(study, config=config, path=path, inputs=inputs)
 
-    def stored(self, cases: Cases) -> bool:
-        """Return whether all cases are solved."""
-        return bool((self.found.find(cases.fingerprints) >= 0).all())
+    def ledger(self, study: Study) -> Ledger:
+        """Return the ledger of a study of designs."""
+        return Ledger(Cases(study), self.folder)
 
     def judged(self, study: Study, genes: np.ndarray) -> Judged:
         """Solve designs, as far as they are not solved yet, and judge them."""
         one = self.of(study, genes)
-        cases = Cases(one)
-        if not self.stored(cases):
-            with self.runner.solved(one):
-                self.found = take_inventory(self.folder)
+        ledger = self.ledger(one)
+        if (ledger.place < 0).any():
+            with self.runner.solved(one) as ledger:
+                pass
         else:
-            self.runner.progress(len(cases.fingerprints), 0)
-        return judge(self.collected(one, cases), genes)
-
-    def collected(self, study: Study, cases: Cases) -> Results:
-        """Return the results of solved cases of a study."""
-        return solved_results(study, cases, self.found, self.found.find(cases.fingerprints), self.folder)
+            self.runner.progress(len(ledger.place), 0)
+        return judge(solved_results(ledger), genes)
 
 
 def cheaper(study: Study) -> Study:
@@ -102,7 +92,7 @@ def _with(study: Study, **values: str) -> Study:
     return dataclasses.replace(other, inputs=study.inputs)
 
 
-def search_designs(study: Study, results: Path | str = "results", **how: Any) -> Plan:
+def search_designs(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
     """Search for the best designs of a study and gather the designs among which its model decided.
 
     Parameters
@@ -116,8 +106,8 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
 
     Returns
     -------
-    Plan
-        The plan of the gathered designs. The attribute `optimum` of `study.nc` holds the optima (JSON).
+    Ledger
+        The ledger of the gathered designs. The attribute `optimum` of `study.nc` holds the optima (JSON).
 
     Raises
     ------
@@ -146,8 +136,9 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
     genes, known, number, why = genes_of(choices), None, 0, "every design is solved"
     drawn = first_generation(genes, min(budget.generation, budget.designs), study.config.seed)
     while len(drawn):
-        if known is not None and budget.hours is not None and search.found.hours >= budget.hours:
-            if not search.stored(Cases(search.of(study, drawn))):
+        if known is not None and budget.hours is not None:
+            ledger = search.ledger(search.of(study, drawn))
+            if ledger.hours >= budget.hours and (ledger.place < 0).any():
                 why = f"the {budget.hours:g} hours are spent"
                 break
         new = search.judged(study, drawn)
@@ -170,7 +161,7 @@ def _choices(study: Study) -> dict[str, Factor]:
     return {name: study.drawn.factors[name] for name in study.drawn.meta["outer"]}
 
 
-def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Plan:
+def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Ledger:
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
     study, choices = search.study, _choices(search.study)
     many, usable = len(decided.genes), decided.violation.min() < 1  # a design that is never valid is no optimum
@@ -191,7 +182,7 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     beside += f"optima at reference ({len(shown)})"
     tell(f"solved beside the budget: {beside}" if usable else "no design is valid, so there is no optimum to check")
     final = search.of(study, decided.genes)
-    goals = goals_of_search(search.collected(final, Cases(final)))
+    goals = goals_of_search(solved_results(search.ledger(final)))
     result = facts | {
         "beside": beside if usable else "",
         "goals": goals,
@@ -212,9 +203,9 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
             for (name, step, _), values, violation in zip(around, moved.values, moved.violation, strict=True)
         ],
     }
-    with search.runner.solved(final) as plan:
-        gather(plan, tell, {OPTIMUM: json.dumps(result)})
-    return plan
+    with search.runner.solved(final) as ledger:
+        gather(ledger, tell, {OPTIMUM: json.dumps(result)})
+    return ledger
 
 
 def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> Judged:

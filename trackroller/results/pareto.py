@@ -16,7 +16,9 @@ from trackroller.results.candidates import Candidates
 from trackroller.results.constraints import Column, meeting
 from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import names_in, statistic
+from trackroller.study.file.search import judged_by
 from trackroller.study.outputs import regimes
 
 
@@ -309,7 +311,7 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
 
 def _beyond(results: Results, cases: Mapping[str, np.ndarray]) -> dict[str, tuple[str, np.ndarray]]:
     """Return for each life among the goals whether it lies beyond the S-N data in the cases that are compared."""
-    lives = {name: rows for name, rows in cases.items() if "life" in name}
+    lives = {name: rows for name, rows in cases.items() if is_life(name)}
     return {f"beyond_{n}": ("row", results.beyond_data(n)[rows].astype(np.int8)) for n, rows in lives.items()}
 
 
@@ -328,8 +330,9 @@ def pareto_of_search(results: Results) -> xr.Dataset:
     excluded = f"{left} that are valid in {'fewer conditions' if least < 1 else 'no condition'}" if left else ""
     attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
-    lives = {f"beyond_{n}": ("row", beyond_data(results, n)[kept].astype(np.int8)) for n in goals if "life" in n}
-    return front_of(factors, columns, goals, kept, excluded, **attrs).assign(lives)
+    lives = [name for name in goals if is_life(judged_by(name)[1])]
+    beyond = {f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8)) for name in lives}
+    return front_of(factors, columns, goals, kept, excluded, **attrs).assign(beyond)
 
 
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:

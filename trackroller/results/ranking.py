@@ -12,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.methods import METHODS, Method
+from trackroller.roller.output_names import is_life, pair_first
 
 ENDS = ("low", "high")
 SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
@@ -52,10 +53,9 @@ def main_lives(sens: xr.Dataset) -> list[str]:
 
     The life of the pair decides, or that of the roller where the guide's hours are unknown.
     """
-    lives = [str(n) for n in sens["output"].values if "life" in str(n)]
+    lives = [str(n) for n in sens["output"].values if is_life(str(n))]
     lives = [n for n in lives if np.isfinite(sens["percentile_value"].sel(output=n)).any()]
-    first = sorted(lives, key=lambda n: ("pair" not in n, "roller" not in n))[:1]
-    return lives if sens.attrs.get("outputs_named") else first
+    return lives if sens.attrs.get("outputs_named") else pair_first(lives)[:1]
 
 
 def best_points(part: xr.Dataset) -> np.ndarray:

@@ -24,11 +24,12 @@ from trackroller.results.columns import base_values, case_columns, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.lives import FIRST_LIMIT, LIVES, body_lives, past_data
 from trackroller.roller.duty import years
+from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
-from trackroller.study.outputs import Output, case_dims, of_fatigue
+from trackroller.study.outputs import Output, case_dims, of_fatigue, of_first_limit
 
 log = logging.getLogger("trackroller")
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
@@ -224,7 +225,7 @@ class Results:
         table, duty = self.table.copy(), self.config.duty
         if duty is None:
             return table
-        lives = [name for name in map(str, table) if "life" in name and "hours" in name]
+        lives = [name for name in map(str, table) if is_life(name) and declared(name).units == "h"]
         return table.assign(**{name.replace("hours", "years"): years(table[name], duty) for name in lives})
 
     def export(self, path: Path | str) -> Path:
@@ -484,14 +485,14 @@ class Results:
         ----------
         column : a life, such as `pair_life_hours` or `life_cycles_guide`
         """
-        if "life" not in column or "wear" in column:
+        if not (of_fatigue(column) or of_first_limit(column)):
             return np.zeros(len(self.table), dtype=bool)
-        if not any(body in column for body in BODIES):
+        body = body_of(column)
+        if not body:
             guide = self.first_failing(column) == FIRST_TO_FAIL.index("guide")
             own = body_lives(column)
             return np.where(guide, *(self.beyond_data(own[body]) for body in ("guide", "roller")))
-        body = "guide" if "guide" in column else "roller"
-        if "first_limit" in column:
+        if of_first_limit(column):
             fatigue = self.column(f"limiting_mechanism_{body}") == self.limits.index("fatigue")
             rate = self.column(f"life_cycles_{body}") / self.column(f"{body}_life_hours")  # overrollings an hour
             by_fatigue = fatigue & self.beyond_data(f"{body}_life_hours")
@@ -509,7 +510,7 @@ class Results:
         """
         if not of_fatigue(column.name):
             return column.values
-        body = next((body for body in BODIES if body in column.name and self.by_body), "")
+        body = body_of(column.name) if self.by_body else ""
         return np.where(self.counted & self.flagged("static", body), 0.0, column.values)
 
     def has(self, *columns: str) -> bool:

@@ -23,7 +23,8 @@ from trackroller.methods.factor import readable
 from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
 from trackroller.results.labels import output_labels
 from trackroller.results.results import Results
-from trackroller.results.targets import at_points, body_of
+from trackroller.results.targets import at_points, scattering_body
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
 from trackroller.study.outputs import Output, default_names, flat, outputs, regimes
@@ -71,9 +72,9 @@ def robustness(
     columns = outputs(ds, design.factors, wanted, scale="natural", unlimited=True, allowed=results.allowed)
     by_output = []
     for column in columns:
-        scatter = log_life_scatter.get(body_of(column.name), np.zeros(design.size))
+        scatter = log_life_scatter.get(scattering_body(column.name), np.zeros(design.size))
         values = results.with_breaks(column)
-        by_output.append(_statistics(values, regime, "life" in column.name, scatter, design.points))
+        by_output.append(_statistics(values, regime, is_life(column.name), scatter, design.points))
         beyond = np.where(results.beyond_data(column.name), column.values, np.nan)
         by_output[-1]["beyond_data"] = np.array([np.fmin.reduce(beyond[rows]) for rows in design.points])
     out = xr.Dataset(coords=_coordinates(design, columns))

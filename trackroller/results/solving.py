@@ -1,4 +1,4 @@
-"""Solve a study in this process and return its results."""
+"""Solve a study of any kind, also one whose results decide which cases follow."""
 
 from __future__ import annotations
 
@@ -9,13 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.numerics.threads import limited_to
-from trackroller.results.deciding import decides, run_any
 from trackroller.results.results import Results
 from trackroller.results.stored_study import open_study
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
 from trackroller.study.progress import progress_bar
-from trackroller.study.run import solve_study
+from trackroller.study.run import run_study, solve_study
+from trackroller.study.store.ledger import Ledger
 
 
 def run(
@@ -61,8 +61,22 @@ def run(
     checked = study if isinstance(study, Study) else load_study(study)
     with limited_to(cores), progress_bar(checked.name, progress) as bar:
         shown: dict[str, Any] = {"started": bar.started, "progress": bar.advanced, "tell": bar.tell}
-        if results is None and not decides(checked):
+        if results is None and not checked.decides:
             return Results(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
         # the cases of a study that decides follow from stored results
         with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
             return open_study(run_any(checked, place, **shown).folder.root)
+
+
+def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
+    """Run a study; see `trackroller.study.run.run_study` for the arguments.
+
+    The failed cases of a search that are to be solved again are solved before it goes on.
+    """
+    if study.config.until is not None:
+        from trackroller.results.growing import grow_study as run  # heavy: scipy.stats, as below
+    elif study.decides:
+        from trackroller.results.optimum import search_designs as run  # heavy: no job of a workflow needs it
+    else:
+        run = run_study
+    return run(study, results, **how)

@@ -28,10 +28,9 @@ from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
 from trackroller.study.store.gather import collect
 from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import study_of_folder
-from trackroller.study.store.inventory import Inventory
 from trackroller.study.store.labels import labelled
+from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.ownership import check_readable
-from trackroller.study.store.plan import locate
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.seal import digest_of, read_result
 from trackroller.study.store.sources import solver_digest
@@ -108,10 +107,10 @@ def open_as_reported(root: Path) -> Results:
     return dataclasses.replace(results, known_indices=read_result(stored) if known else xr.Dataset())
 
 
-def solved_results(study: Study, cases: Cases, found: Inventory, place: np.ndarray, folder: StudyFolder) -> Results:
-    """Return the results of a study whose cases lie at `place`, shape (n,), in the inventory of its folder."""
-    data = labelled(study, study.drawn, cases.design, collect(found, place, folder.root))
-    return Results(study, study.drawn, data)
+def solved_results(ledger: Ledger) -> Results:
+    """Return the results of a study whose cases are all solved."""
+    study = ledger.study
+    return Results(study, study.drawn, labelled(study, study.drawn, ledger.cases.design, collect(ledger)))
 
 
 def _gathered(path: Path) -> xr.Dataset | None:
@@ -133,13 +132,14 @@ def _gathered(path: Path) -> xr.Dataset | None:
 def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
     """Return the solved cases of a study that is not gathered yet."""
     study = study_of_folder(folder)
-    design, inventory, place = locate(study, folder)
+    ledger = Ledger(Cases(study), folder)
+    place = ledger.place
     rows = np.flatnonzero(place >= 0)
     if len(rows) in (0, len(place)):
         state = "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
         raise InputError("study", str(folder.root), "a study with results", "Run the study to its end first.", state)
-    drawn, cases = solved_part(study.drawn, rows), design.isel(case=rows)
-    data = labelled(study, drawn, cases, collect(inventory, place[rows], folder.root)).assign_coords(case=rows)
+    drawn, cases = solved_part(study.drawn, rows), ledger.cases.design.isel(case=rows)
+    data = labelled(study, drawn, cases, collect(ledger, rows)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
     only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
     notice = (

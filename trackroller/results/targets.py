@@ -15,6 +15,7 @@ from trackroller.methods.factor import Factor
 from trackroller.methods.probability import probabilities
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.ranking import estimate
+from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.outputs import Output, outputs
 
@@ -71,7 +72,7 @@ def targets(
     If these have different numbers of samples, the bounds are the means of their bounds.
     """
     columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
-    hits = np.stack([hits_of(c, wanted[c.name], deviations.get(body_of(c.name))) for c in columns], axis=1)
+    hits = np.stack([hits_of(c, wanted[c.name], deviations.get(scattering_body(c.name))) for c in columns], axis=1)
     names = [c.name for c in columns]
     if len(names) > 1:
         hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]
@@ -85,9 +86,9 @@ def targets(
     return out
 
 
-def body_of(output: str) -> str:
+def scattering_body(output: str) -> str:
     """Return the body whose material's scatter counts for a life, '' for another output."""
-    return ("guide" if "guide" in output else "roller") if "life" in output else ""
+    return (body_of(output) or "roller") if is_life(output) else ""
 
 
 def hits_of(column: Output, limits: Mapping[str, float], deviation: np.ndarray | None) -> np.ndarray:
@@ -110,7 +111,7 @@ def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
 
     ASSUME: the materials of roller and guide scatter independently of each other.
     """
-    bodies = np.array([body_of(name) for name in names])
+    bodies = np.array([scattering_body(name) for name in names])
     return np.asarray(np.prod([hits[:, bodies == body].min(axis=1) for body in dict.fromkeys(bodies)], axis=0))
 
 

@@ -8,7 +8,6 @@ at both ends of the ranges of the placeholders.
 from __future__ import annotations
 
 import json
-import re
 from collections import Counter
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
@@ -21,13 +20,12 @@ from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates
-from trackroller.results.first_limits import reached_by_body
+from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
-from trackroller.results.limit_notes import guessed_values
+from trackroller.results.limit_notes import Placeholder, placeholders_of
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
-from trackroller.results.unsure import COEFFICIENT
 from trackroller.roller.record import names_not_given
 from trackroller.study.outputs import flat
 
@@ -767,7 +765,8 @@ def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
     of, on = _bodies(cases, one)
     if one.ends != "wear":
         return Turn("placeholder_position", of, on, candidate=one.number)
-    low, high, units = _range(cases.results, "wear", of, rf"wear_coefficient \(on {re.escape(on)}, ")
+    found = [p for p in _placeholders(cases.results, "wear", of) if p.on == on]
+    low, high, units = (found[0].low, found[0].high, found[0].units) if found else (np.nan, np.nan, "")
     if COEFFICIENT in cases.spans:
         levels = cases.results.levels(COEFFICIENT)
         low, high, units = float(levels[0]), float(levels[-1]), "times its value"
@@ -787,20 +786,13 @@ def _of_limit(cases: Cases, one: Candidate, limit: str) -> Turn:
     use = flat(results.data, "utilisation", results.dims)[rows, place]
     body = BODIES[int(np.nanargmax(np.nanmax(use, axis=0)))] if np.isfinite(use).any() else one.body
     of = str(results.material(body)[one.case])
-    texts = [
-        text for name, material, text in guessed_values(results.data) if (name, material.strip("'")) == (limit, of)
-    ]
-    what = next(iter(re.findall(r"(\w+) \(", " ".join(texts))), "placeholder")
-    low, high, units = _range(results, limit, of, rf"{what} \(")
-    stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(of, {}).get(what, np.nan)
-    value = float(stored) * float(np.nanmax(use)) if what == "yield_strength" and np.isfinite(use).any() else np.nan
-    return Turn(what, of, value=value, low=low, high=high, units=units, candidate=one.number)
+    own = next(iter(_placeholders(results, limit, of)), Placeholder(limit, of, "placeholder"))
+    stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(of, {}).get(own.name, np.nan)
+    known = own.name == "yield_strength" and np.isfinite(use).any()
+    value = float(stored) * float(np.nanmax(use)) if known else np.nan
+    return Turn(own.name, of, value=value, low=own.low, high=own.high, units=own.units, candidate=one.number)
 
 
-def _range(results: Results, limit: str, material: str, begin: str) -> tuple[float, float, str]:
-    """Return the range of a placeholder and its unit from the notes on limits; NaN if there is none."""
-    for name, of, text in guessed_values(results.data):
-        found = re.search(begin + r"expected from (\S+) to (\S+) ([^)]*\)?[^)]*)\)", text)
-        if (name, of.strip("'")) == (limit, material) and found:
-            return float(found[1]), float(found[2]), found[3]
-    return np.nan, np.nan, ""
+def _placeholders(results: Results, limit: str, material: str) -> list[Placeholder]:
+    """Return the placeholders of a material on which a limit rests."""
+    return [one for one in placeholders_of(results.data) if (one.limit, one.material) == (limit, material)]

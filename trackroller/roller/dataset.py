@@ -11,7 +11,7 @@ import numpy as np
 from trackroller import __version__
 from trackroller.damage import verdict, with_limits
 from trackroller.damage.limit import variables
-from trackroller.numerics.variable import LARGEST, SUM
+from trackroller.numerics.variable import ESTIMATE, LARGEST, SUM
 from trackroller.parameters import CONTACT_MODELS, FIRST_TO_FAIL, LIMITS, REGIMES
 from trackroller.parameters.accuracy import RUNGS
 from trackroller.parameters.validity import VALIDITY
@@ -46,9 +46,16 @@ _GROUPS = {
         ("lateral_force", _C, "N", "F_T", "lateral friction force on the roller", _SHOWN | _ODD),
         ("driving_force", _C, "N", "F_A", "longitudinal friction force on the roller", _SHOWN),
         ("spin_moment", _C, "N mm", "M_R", "spin moment about the contact normal", _SHOWN | _ODD),
-        ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N", LARGEST),
-        ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N", LARGEST),
-        ("error_over_tolerance", (), "1", "", "largest estimated error over its tolerance, if accuracy is a tolerance"),
+        ("force_error_estimate", _C, "1", "delta(F)/(mu F_N)", "estimated error of F_T and F_A over mu F_N", ESTIMATE),
+        ("normal_force_error_estimate", _C, "1", "delta(F_N)/F_N", "estimated relative error of F_N", ESTIMATE),
+        (
+            "error_over_tolerance",
+            (),
+            "1",
+            "",
+            "largest estimated error over its tolerance, if accuracy is a tolerance",
+            ESTIMATE,
+        ),
         ("slip", (), "1", "xi", "longitudinal creepage, > 0 braking", _SHOWN | {"label": "longitudinal creepage"}),
         ("rolling_radius_shift", (), "mm", "r_Delta0", "deviation of the rolling radius", _SHOWN),
         ("transmitted_force", (), "N", "F_A1 + F_A2", "force transmitted to the roller along the track", _SHOWN),
@@ -99,7 +106,7 @@ _GROUPS = {
             "1",
             "delta(W_f)/W_f",
             "estimated relative error of the friction energy from discretisation",
-            LARGEST,
+            ESTIMATE,
         ),
         ("energy_residual", (), "1", "", "relative difference of friction energy and work of the drive"),
     ),
@@ -144,7 +151,7 @@ _GROUPS = {
     ),
     "status": (
         ("residual", (), "1", "", "largest imbalance of forces and torque over the load"),
-        ("error_estimate", _CB, "1", "", "estimated relative error of the peak stress", LARGEST),
+        ("error_estimate", _CB, "1", "", "estimated relative error of the peak stress", ESTIMATE),
     ),
 }
 
@@ -287,7 +294,7 @@ def _labelled(data: Mapping[str, np.ndarray], attrs: Mapping[str, Any]) -> xr.Da
     further: dict[str, Any] = {}
     if "utilisation" in data:
         further["limit"] = ("limit", np.array(str(attrs["limits"]).split()), {"long_name": "limit"})
-    if any(name.startswith("stress_") for name in data):
+    if any("component" in variable.dims for variable in made.values()):
         components = np.array(["xx", "yy", "zz", "xy", "yz", "zx"])
         further["component"] = ("component", components, {"long_name": "stress component"})
     return ds.assign_coords(further) if further else ds

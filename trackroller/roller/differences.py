@@ -216,7 +216,6 @@ _BY_NAME: dict[str, Kind] = {
     **dict.fromkeys(("peak_x", "peak_y", "peak_z", "wear_place", "xz_x", "xz_z", "yz_y", "yz_z"), _PLACED),
     **dict.fromkeys(("von_mises_xz", "von_mises_yz", "stress_xz", "stress_yz"), _SECTIONED),
     **dict.fromkeys(("life_cycles", "catalogue_life_km"), _OF_LIFE),
-    "error_over_tolerance": _ESTIMATED,
     "hysteresis_moment": _OF_SEARCH,  # no lever arm: far smaller than the moments of forces
 }
 
@@ -225,7 +224,7 @@ def _kind(name: str) -> Kind:
     """Return tolerance, words for the scale, and scale of a variable: by its name, its unit, or its group."""
     if name in _BY_NAME or name not in VARIABLES:
         return _BY_NAME.get(name, _OWN)
-    if name.endswith("error_estimate"):
+    if VARIABLES[name].estimate:
         return _ESTIMATED
     by_group = _OWN if VARIABLES[name].group in SOLVED else _OF_SEARCH
     return _BY_UNIT.get(VARIABLES[name].units, by_group)

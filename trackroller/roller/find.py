@@ -13,6 +13,7 @@ from trackroller.damage import groups_of
 from trackroller.damage.verdict import GROUP as VERDICT
 from trackroller.errors import InputError, unknown_name
 from trackroller.materials import MaterialDatabase
+from trackroller.numerics.brackets import narrowed
 from trackroller.numerics.units import without_units
 from trackroller.parameters import PARAMETERS, REGIMES, Parameter
 from trackroller.parameters.expressions import condition as meets
@@ -252,15 +253,15 @@ class _Search:
         ends = [(float(values[first]), float(values[first - 1]) if first else math.nan)]
         ends += [(float(values[last]), float(values[last + 1]) if last < len(values) - 1 else math.nan)]
         whys = [told[first - 1][1] if first else "", told[last + 1][1] if last < len(values) - 1 else ""]
-        for parts in PARTS_OF_A_STEP:
-            going = [i for i, (_, outside) in enumerate(ends) if not math.isnan(outside)]
-            inner = {i: np.linspace(*ends[i], parts + 1)[1:-1] for i in going}
-            answers = self.at([value for i in going for value in inner[i]]) if going else []
-            for place, i in enumerate(going):
-                own = answers[place * (parts - 1) : (place + 1) * (parts - 1)]
-                good = [held for held, _ in own]
-                stop = good.index(False) if False in good else len(good)
-                line = [ends[i][0], *inner[i].tolist(), ends[i][1]]
-                whys[i] = own[stop][1] if stop < len(own) else whys[i]
-                ends[i] = (line[stop], line[stop + 1])
+        there = [(end, why) for end, why in zip(ends, whys, strict=True) if not math.isnan(end[1])]
+        said = {end[1]: why for end, why in there}
+
+        def meets_at(_: list[int], inner: list[float]) -> list[bool]:
+            answers = self.at(inner)
+            said.update(zip(inner, (text for _, text in answers), strict=True))
+            return [good for good, _ in answers]
+
+        closer = iter(narrowed([end for end, _ in there], PARTS_OF_A_STEP, meets_at))
+        ends = [end if math.isnan(end[1]) else next(closer) for end in ends]
+        whys = [said.get(outside, "") for _, outside in ends]
         return Found(self.name, unit, self.condition, start, ends[0][0], ends[1][0], tried, *whys)

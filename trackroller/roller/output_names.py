@@ -60,6 +60,11 @@ class Part:
             words += " of both contacts"
         return f"{words}: {LIMITS[limit].title}" if limit in LIMITS else words
 
+    @property
+    def of(self) -> str:
+        """Return `roller`, `guide` or `pair`, whose value it is; an empty text if it is that of none of them."""
+        return self.at.get("body", self.variable.of)
+
     def values(self, ds: xr.Dataset) -> xr.DataArray:
         """Return the values of every case; NaN where no contact has a value.
 
@@ -121,6 +126,36 @@ def present_names(text: str) -> str:
 PARTS: Mapping[str, Part] = MappingProxyType(
     {part.name: part for variable in VARIABLES.values() for part in parts_of(variable)}
 )
+
+
+def declared(name: str) -> Variable:
+    """Return the declaration of a result by its name in a data set or by that of a part.
+
+    A name of another solver has no declaration; the result counts as a life if its name says so.
+    """
+    if name in PARTS:
+        return PARTS[name].variable
+    life = "life" in name
+    unknown = Variable(name, "", (), "1", "", name, scale="log10" if life else "natural", life=life)
+    return VARIABLES.get(name, unknown)
+
+
+def is_life(name: str) -> bool:
+    """Return whether a result is a life."""
+    return declared(name).life
+
+
+def body_of(name: str) -> str:
+    """Return `roller` or `guide`, whose value a result is; an empty text for any other result."""
+    of = PARTS[name].of if name in PARTS else declared(name).of
+    return of if of in BODIES else ""
+
+
+def pair_first(lives: Iterable[str]) -> list[str]:
+    """Return lives, those of the pair first, then those of the roller."""
+    order = ("pair", "roller")
+    of = {name: PARTS[name].of if name in PARTS else "" for name in lives}
+    return sorted(of, key=lambda name: order.index(of[name]) if of[name] in order else len(order))
 
 
 def unit_of(name: str) -> str | None:

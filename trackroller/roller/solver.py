@@ -25,8 +25,8 @@ from trackroller.roller.failures import with_reasons
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
 from trackroller.roller.reflection import handed, reflect
-from trackroller.roller.stages import case as stages_case
 from trackroller.roller.stages import mechanics as stages
+from trackroller.roller.stages import outcome as stages_outcome
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import finer_across
@@ -189,7 +189,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(table, block)
     if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
-        ds.attrs[NOTES] = "\n".join([*stages_case.notes_on_limits(table, options), *warm])
+        ds.attrs[NOTES] = "\n".join([*stages_outcome.notes_on_limits(table, options), *warm])
     return ds
 
 
@@ -222,11 +222,11 @@ def _solve_window(table: CaseTable, options: Options) -> Block:
 
     distinct, number = table, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not stages_case.of_patches(_limits(table, options)):
+    if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(table, options)):
         rows, number = requirements.distinct_mechanics(table)
         distinct = table.take(rows)
     table, block = temperature.settle(table, solve_all(distinct).take(number), options, solve_all)
-    stages_case.finish(table, block, options)
+    stages_outcome.finish(table, block, options)
     reflect(block.values, mirrored)
     return block
 
@@ -285,7 +285,7 @@ def block_of(results: Results, options: Options) -> Block:
         stages_stress.subsurface(results, options)
     stages.settle(results)
     results.values |= {name: results.in_mm(name) for name in results.values}  # the limits take N and mm
-    stages_case.patch_limits(results, options, limits)
+    stages_outcome.patch_limits(results, options, limits)
     model = np.array([CONTACT_MODELS.index(name) for name in scene.model.used(scene.n)], dtype=np.int8)
     settings = options.settings.name
     rung = np.full(scene.n, RUNGS.index(settings) if settings in RUNGS else 0, dtype=np.int8)
@@ -294,7 +294,7 @@ def block_of(results: Results, options: Options) -> Block:
 
 def _limits(table: CaseTable, options: Options) -> tuple[Limit, ...]:
     """Return the limits to compute for cases that are not solved yet."""
-    return stages_case.to_compute(stages_case.solved_of(table, {}, options), options)
+    return stages_outcome.to_compute(stages_outcome.solved_of(table, {}, options), options)
 
 
 def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
@@ -311,7 +311,7 @@ def assemble(block: Block, options: Options, single: bool) -> xr.Dataset:
     attrs: dict[str, Any] = {
         **file_attributes("Forces, stresses and life of track rollers", "solved"),
         **options.attributes(),
-        "life_conventions": stages_case.LIFE_CONVENTIONS,
+        "life_conventions": stages_outcome.LIFE_CONVENTIONS,
         "sign_conventions": stages.SIGN_CONVENTIONS,
     }
     flags = {"regime": block.regime, "converged": block.converged, "validity": block.bits}

@@ -12,7 +12,7 @@ from trackroller.parameters.accuracy import RUNGS, Tolerance
 from trackroller.roller.blocks import Block, join
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.expected_errors import least_errors
-from trackroller.roller.stages.case import solved_of
+from trackroller.roller.stages.outcome import solved_of
 
 if TYPE_CHECKING:
     from trackroller.roller.case import CaseTable

@@ -8,11 +8,10 @@ from functools import lru_cache
 
 import numpy as np
 
-from trackroller.roller.groove import Groove, between
 from trackroller.roller.options import Options
 from trackroller.roller.reflection import handed
 from trackroller.roller.table import CaseTable
-from trackroller.roller.wearing import ENDS, Wearing
+from trackroller.roller.wearing import ENDS, Groove, Wearing, between
 
 KEPT = 64  # marches that a process keeps
 

@@ -16,14 +16,13 @@ from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES
-from trackroller.roller.groove import Groove, between, travel_to_depth
 from trackroller.roller.options import Options
 from trackroller.roller.record import CASE, MATERIALS, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.solver import assemble, block_of
-from trackroller.roller.stages import case as stages_case
+from trackroller.roller.stages import outcome as stages_outcome
 from trackroller.roller.stages.scene import Results
-from trackroller.roller.wearing import ENDS, Wearing
+from trackroller.roller.wearing import ENDS, Groove, Wearing, between, travel_to_depth
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -176,7 +175,7 @@ class _Record:
     def _add(self, state: Groove, turned: Groove, results: Results, onward: float) -> None:
         """Add the row of a solved state; `turned` has the inclination by its own pressure."""
         block = block_of(results, self.options)
-        stages_case.finish(self.table, block, self.options)
+        stages_outcome.finish(self.table, block, self.options)
         reflect(block.values, self.mirrored)
         row = assemble(block, self.options, single=True)
         values = self._values(state, turned, onward) | {"pressure_error": _pressure_error(state, results)}
@@ -223,7 +222,7 @@ class _Record:
         if "life_cycles" in ds:
             ds = ds.assign(_of_lives(ds, self.wearing.per_km))
         ds.attrs |= {"title": "A roller and its guide while they wear", "end": end, "to": self.to}
-        ds.attrs[NOTES] = "\n".join(stages_case.notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
+        ds.attrs[NOTES] = "\n".join(stages_outcome.notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
         ds.attrs |= {"wear_per_km": self.wearing.rates.tolist(), "end_meaning": ENDS.get(end, "")}
         return with_inputs(ds, self.case, self.database)
 

@@ -16,7 +16,7 @@ from trackroller.environment import SAFE_PATH
 from trackroller.errors import InputError, WorkError
 from trackroller.files import cores
 from trackroller.study.cost import rate
-from trackroller.study.solve import Executor, solve_cases
+from trackroller.study.solve_chunk import Executor, solve_cases
 from trackroller.study.store import chunks
 
 BATCH_SECONDS = 2.0
@@ -34,7 +34,7 @@ def workers(scheduler: str) -> Iterator[Executor]:
     Yields
     ------
     callable
-        An executor for `trackroller.study.solve.solve_chunk`.
+        An executor for `trackroller.study.solve_chunk.solve_chunk`.
 
     Raises
     ------

@@ -2,21 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import verdict
 from trackroller.errors import InputError, unknown_name
-from trackroller.numerics.variable import Variable
 from trackroller.parameters import BODIES, LIMITS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.roller.dataset import FLAGS, VARIABLES
-from trackroller.roller.output_names import PARTS, Part, parts_of
+from trackroller.roller.output_names import PARTS, Part, declared, parts_of
 
 BOOKKEEPING = {  # variables that describe how a case was solved; an analysis compares other results
     *(*FLAGS, "validity", "validity_body", "reason", "material_pair", "residual"),
-    *(name for name in VARIABLES if "error_" in name),
+    *(name for name, variable in VARIABLES.items() if variable.estimate),
 }
 FIELDS = {"x", "y", "z", "grid"}
 
@@ -59,8 +59,14 @@ def of_fatigue(name: str) -> bool:
     part = PARTS.get(name)
     if part is None:
         return False
-    by_curve = part.variable.group == "life" and part.variable.scale == "log10"
+    by_curve = part.variable.group == "life" and part.variable.life
     return by_curve or (part.variable.name == "life_hours_by_limit" and part.at.get("limit") == "fatigue")
+
+
+def of_first_limit(name: str) -> bool:
+    """Return whether a result is a life to the first limit that is reached."""
+    variable = declared(name)
+    return variable.group == verdict.GROUP and variable.life and "limit" not in variable.dims
 
 
 def case_dims(ds: xr.Dataset, factors: Iterable[str]) -> tuple[str, ...]:
@@ -101,8 +107,9 @@ def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dic
         var = ds[name]
         inner = tuple(str(dim) for dim in var.dims if dim not in dims)
         words = str(var.attrs.get("long_name", name))
-        scale = "log10" if "life" in name else "natural"  # of a result of another solver, by its name
-        own = VARIABLES.get(name) or Variable(name, "", inner, str(var.attrs.get("units", "1")), "", words, scale=scale)
+        own = declared(name)
+        if name not in VARIABLES:  # of another solver
+            own = replace(own, units=str(var.attrs.get("units", "1")), long_name=words)
         asked = set(map(str, ds["limit"].values)) if "limit" in inner else set()
         limits = [LIMITS[limit] for limit in LIMITS if limit in asked]
         found |= {part.name: part for part in parts_of(replace(own, dims=inner), limits)}
@@ -111,15 +118,19 @@ def parts_in(ds: xr.Dataset, names: Iterable[str], dims: tuple[str, ...]) -> dic
 
 def every_name(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the names of all outputs, those that are analysed by default first."""
-    factors = list(factors)
-    names = [*default_names(ds, factors, dims), *parts_in(ds, available(ds, factors, dims), dims)]
-    return list(dict.fromkeys(names))
+    free = available(ds, factors, dims)
+    known = parts_in(ds, free, dims)
+    return list(dict.fromkeys([*_usual(ds, free, known, dims), *known]))
 
 
 def default_names(ds: xr.Dataset, factors: Iterable[str], dims: tuple[str, ...]) -> list[str]:
     """Return the outputs that are analysed by default: those of `USUAL`, otherwise every scalar result."""
     free = available(ds, factors, dims)
-    known = parts_in(ds, free, dims)
+    return _usual(ds, free, parts_in(ds, free, dims), dims)
+
+
+def _usual(ds: xr.Dataset, free: Sequence[str], known: Mapping[str, Part], dims: tuple[str, ...]) -> list[str]:
+    """Return the outputs that are analysed by default among the variables `free`, whose parts are `known`."""
     names = [name for name in USUAL if name in known and np.isfinite(ds[known[name].variable.name]).any()]
     for body in BODIES:  # Hours and cycles of one body are proportional, so only the hours are kept.
         if f"{body}_life_hours" in names and f"life_cycles_{body}" in names:
@@ -224,9 +235,10 @@ def outputs(
     regime = regimes(ds, dims)
     usable, lost = _usable(ds, dims, regime, keep, allowed)
     stopped = flat(ds, "stopped", dims) == 1 if "stopped" in ds else np.zeros(len(regime), dtype=bool)
-    known = parts_in(ds, available(ds, factors, dims), dims)
+    free = available(ds, factors, dims)
+    known = parts_in(ds, free, dims)
     columns = []
-    for name in list(names) if names is not None else default_names(ds, factors, dims):
+    for name in list(names) if names is not None else _usual(ds, free, known, dims):
         if name not in known:
             raise unknown_name("analysis.outputs", name, known)
         part = known[name]

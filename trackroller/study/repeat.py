@@ -14,7 +14,8 @@ from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import as_planned
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.plan import locate
+from trackroller.study.store.identity import Cases
+from trackroller.study.store.ledger import Ledger
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -70,14 +71,15 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     from trackroller.roller.solver import solve  # numba compiles on import; the checks come first
 
     study = as_planned(study, folder.record())
-    design, inventory, place = locate(study, folder)
+    ledger = Ledger(Cases(study), folder)
+    design, place = ledger.cases.design, ledger.place
     if not 0 <= number < len(place):
         raise InputError("case", number, f"a case number from 0 to {len(place) - 1}")
     if place[number] < 0:
         raise WorkError("this case is not solved by this version of the program: run the study first.")
     options, group = options_of_cases(design, {})
-    state = inventory.states.isel(case=place[[number]])
-    before = chunks.read(inventory.paths[state["file"].item()]).isel(case=state["row"].values)
+    state = ledger.states.isel(case=place[[number]])
+    before = chunks.read(ledger.paths[state["file"].item()]).isel(case=state["row"].values)
     row = design.drop_vars(list(design.coords)).drop_attrs().isel(case=[number])
     solved = solve(row, database=study.materials, **options[group[number]])
     again = chunks.from_results(solved, state["case"].values)

@@ -16,14 +16,13 @@ import xarray as xr
 
 from trackroller.files import interrupts_wait_for_files
 from trackroller.study.cluster import workers
-from trackroller.study.solve import Executor, Solver, solve_chunk, solve_here
+from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Count, StudyFolder, Tell, locked, unheard
 from trackroller.study.store.gather import gather
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.inventory import forget_failed, take_inventory
 from trackroller.study.store.labels import labelled
-from trackroller.study.store.plan import Plan, study_folder, working_plan
+from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
@@ -75,15 +74,15 @@ class Runner:
         return self._until_end.enter_context(workers(self.scheduler))
 
     @contextlib.contextmanager
-    def solved(self, study: Study, rerun_failed: bool = False) -> Iterator[Plan]:
-        """Plan a study, solve its missing cases, and keep the plan as it is until the context ends."""
-        with working_plan(study, self.results, tell=self.tell, rerun_failed=rerun_failed) as plan:
-            left, tell, progress = plan.open, self.tell, self.progress
-            self.started(plan.distinct, plan.distinct - sum(plan.chunks[name] for name in left))
+    def solved(self, study: Study, rerun_failed: bool = False) -> Iterator[Ledger]:
+        """Plan a study, solve its missing cases, and keep its ledger as it is until the context ends."""
+        with working_ledger(study, self.results, tell=self.tell, rerun_failed=rerun_failed) as ledger:
+            left, tell, progress = ledger.open, self.tell, self.progress
+            self.started(ledger.distinct, ledger.distinct - sum(ledger.chunks[name] for name in left))
             for name in left:
                 how: dict[str, Any] = {"executor": self.executor, "tell": tell, "progress": progress}
-                tell(solve_chunk(plan.folder, name, study.materials, inputs=study.inputs, **how))
-            yield plan
+                tell(solve_chunk(ledger.folder, name, study.materials, inputs=study.inputs, **how))
+            yield ledger.anew()
 
     @contextlib.contextmanager
     def deciding(self, study: Study) -> Iterator[StudyFolder]:
@@ -91,11 +90,11 @@ class Runner:
         folder = study_folder(study.name, self.results).create()
         with locked(folder.lock.with_name(".search"), tell=self.tell):
             if self.rerun_failed:
-                forget_failed(folder, take_inventory(folder))
+                Ledger(Cases(study), folder).forget_failed()
             yield folder
 
 
-def run_study(study: Study, results: Path | str = "results", **how: Any) -> Plan:
+def run_study(study: Study, results: Path | str = "results", **how: Any) -> Ledger:
     """Plan a study, solve the missing cases and gather the results.
 
     Parameters
@@ -109,8 +108,8 @@ def run_study(study: Study, results: Path | str = "results", **how: Any) -> Plan
 
     Returns
     -------
-    Plan
-        The plan that was carried out.
+    Ledger
+        The ledger of the study, whose chunks are all solved.
 
     Raises
     ------
@@ -120,9 +119,9 @@ def run_study(study: Study, results: Path | str = "results", **how: Any) -> Plan
         If the work cannot be completed, because an input was edited meanwhile or the disk is full, for example; every
         finished chunk is kept.
     """
-    with Runner(results, **how) as runner, runner.solved(study, runner.rerun_failed) as plan:
-        gather(plan, runner.tell)
-    return plan
+    with Runner(results, **how) as runner, runner.solved(study, runner.rerun_failed) as ledger:
+        gather(ledger, runner.tell)
+    return ledger
 
 
 def solve_study(study: Study, started: Count = unheard, progress: Count = unheard) -> xr.Dataset:

@@ -19,9 +19,10 @@ from trackroller.study.design.levels import in_words
 from trackroller.study.file.load import load_study
 from trackroller.study.store.chunks import FAILED, CorruptFile, read
 from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.identity import Cases
 from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.ledger import Ledger, chunk_size, study_folder, unused_cases
 from trackroller.study.store.ownership import check
-from trackroller.study.store.plan import chunk_size, locate, study_folder, unused_cases
 from trackroller.study.store.seal import altered
 
 if TYPE_CHECKING:
@@ -138,25 +139,25 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     """
     check(folder.root)
     study = as_planned(study, folder.record())
-    _, inventory, place = locate(study, folder)
-    solved = np.flatnonzero(place >= 0)
-    states = inventory.states.isel(case=place[solved])
+    ledger = Ledger(Cases(study), folder)
+    solved = np.flatnonzero(ledger.place >= 0)
+    states = ledger.states.isel(case=ledger.place[solved])
     bad = states["regime"].values == FAILED
-    failed, seconds = solved[bad], inventory.states.attrs["seconds"]
+    failed, seconds = solved[bad], ledger.states.attrs["seconds"]
     status = Status(
-        total=len(place),
+        total=len(ledger.place),
         done=len(solved),
         failed=len(failed),
         regimes={name: int((states["regime"] == code).sum()) for code, name in enumerate(REGIMES)},
         by_reason=dict(Counter(states["reason"].values[bad].tolist()).most_common()),
-        speed=inventory.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
+        speed=ledger.states.sizes["case"] / seconds if seconds > 0 else study_rate(study),
         measured=seconds > 0,
         gathered=folder.gathered.is_file(),
         outdated=folder.of_another_solver,
-        unused=unused_cases(study, folder, inventory, place),
+        unused=unused_cases(ledger),
         upcoming=_upcoming(folder),
         corrupt=[
-            *inventory.corrupt.values(),
+            *ledger.corrupt.values(),
             *(f"{path}: it is gone" for path in folder.lost_files()),
             *filter(None, map(altered, (folder.design, folder.gathered))),
         ],

@@ -25,9 +25,9 @@ import yaml
 
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.file.load import load_study
-from trackroller.study.solve import load_cases, solve_cases
+from trackroller.study.solve_chunk import load_cases, solve_cases
 from trackroller.study.store import chunks
-from trackroller.study.store.plan import working_plan
+from trackroller.study.store.ledger import working_ledger
 from validation.benchmarks.command import run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -57,14 +57,14 @@ STUDY = {
 def plan() -> None:
     """Write the case lists."""
 
-    with working_plan(load_study("study.yaml"), "results"):
+    with working_ledger(load_study("study.yaml"), "results"):
         pass
 
 
 def hand_out() -> None:
     """Fill every chunk with the results of the first one, over and over."""
 
-    with working_plan(load_study("study.yaml"), "results") as made:
+    with working_ledger(load_study("study.yaml"), "results") as made:
         pass
     solved = None
     for name in made.chunks:

@@ -2,7 +2,7 @@
 # `--set-threads search=8`, dask workers solve the cases of a generation. A job that was stopped goes on where it stopped.
 rule search:
     input:
-        study=study_inputs(PLAN.study),
+        study=study_inputs(LEDGER.study),
         code=digest_file(f"{RESULTS}/code", "results"),
     output:
         design=f"{RESULTS}/design.nc",

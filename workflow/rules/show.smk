@@ -59,7 +59,7 @@ rule report:
 
 rule crate:
     input:
-        inputs=study_inputs(PLAN.study),
+        inputs=study_inputs(LEDGER.study),
         design=f"{RESULTS}/design.nc",
         study=f"{RESULTS}/study.nc",
         sensitivity=rules.sensitivity.output,

@@ -8,7 +8,7 @@ localrules:
 
 rule design:
     input:
-        study_inputs(PLAN.study),
+        study_inputs(LEDGER.study),
         code=digest_file(f"{RESULTS}/code", "study"),
     output:
         f"{RESULTS}/design.nc",
@@ -38,9 +38,9 @@ rule solve:
 
 rule gather:
     input:
-        study=study_inputs(PLAN.study),
+        study=study_inputs(LEDGER.study),
         design=rules.design.output,
-        chunks=expand(f"{RESULTS}/plan/{{chunk}}.solved", chunk=PLAN.chunks),
+        chunks=expand(f"{RESULTS}/plan/{{chunk}}.solved", chunk=LEDGER.chunks),
         code=digest_file(f"{RESULTS}/code", "study"),
     output:
         f"{RESULTS}/study.nc",

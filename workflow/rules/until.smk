@@ -29,7 +29,7 @@ wildcard_constraints:
 checkpoint look:
     input:
         lambda wildcards: chunks_of(int(wildcards.number) - 1),
-        study=study_inputs(PLAN.study),
+        study=study_inputs(LEDGER.study),
         code=digest_file(f"{RESULTS}/code", "results"),
     output:
         f"{RESULTS}/looks/{{number}}.json",
@@ -61,7 +61,7 @@ rule solve:
 rule gather:
     input:
         looks,
-        study=study_inputs(PLAN.study),
+        study=study_inputs(LEDGER.study),
         code=digest_file(f"{RESULTS}/code", "results"),
     output:
         design=f"{RESULTS}/design.nc",

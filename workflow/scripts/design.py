@@ -1,7 +1,7 @@
 """Write the design of a study."""
 
-from trackroller.cli.workflow import log_to, workflow_plan
+from trackroller.cli.workflow import log_to, workflow_ledger
 from trackroller.study.store.gather import write_design
 
 log_to(snakemake.log[0])
-write_design(workflow_plan(snakemake.params.config, main=False))
+write_design(workflow_ledger(snakemake.params.config, main=False))

@@ -2,8 +2,8 @@
 
 import logging
 
-from trackroller.cli.workflow import log_to, workflow_plan
+from trackroller.cli.workflow import log_to, workflow_ledger
 from trackroller.study.store.gather import gather
 
 log_to(snakemake.log[0])
-gather(workflow_plan(snakemake.params.config, main=False), tell=logging.getLogger("trackroller").info)
+gather(workflow_ledger(snakemake.params.config, main=False), tell=logging.getLogger("trackroller").info)

@@ -4,7 +4,7 @@ import logging
 from pathlib import Path
 
 from trackroller.cli.workflow import log_to, show_progress
-from trackroller.study.solve import solve_chunk
+from trackroller.study.solve_chunk import solve_chunk
 from trackroller.study.store.folder import StudyFolder
 
 log_to(snakemake.log[0])

@@ -20,6 +20,7 @@ from trackroller.results.first_limits import first_limit
 from trackroller.results.groups import spaced_by_ratio
 from trackroller.results.results import Results
 from trackroller.roller.duty import years
+from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.roller.record import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
@@ -123,7 +124,7 @@ def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
     A column that marks no life is left out.
     """
     remarks = []
-    for column in (c for c in columns if c.role == "output" and "life" in c.name):
+    for column in (c for c in columns if c.role == "output" and is_life(c.name)):
         marks = results.beyond_data(column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
@@ -136,7 +137,7 @@ def _in_years(results: Results, columns: Sequence[Column]) -> list[Column]:
     duty = results.config.duty
     if duty is None:
         return []
-    lives = [c for c in columns if c.unit == "h" and "life" in c.name]
+    lives = [c for c in columns if c.unit == "h" and is_life(c.name)]
     return [Column(f"{c.name}:years", c.label, "years", "detail", years(c.values, duty)) for c in lives]
 
 
@@ -145,11 +146,11 @@ def _outputs(ds: xr.Dataset, dims: tuple[str, ...], names: list[str]) -> list[Ou
 
 
 def _output(one: Output, role: str, results: Results) -> Column:
-    if "life" in one.name:  # a roller that skids, and a body above its tensile strength, have no fatigue life
-        body = next((b for b in BODIES if b in one.name and results.by_body), "")
+    if is_life(one.name):  # a roller that skids, and a body above its tensile strength, have no fatigue life
+        body = body_of(one.name) if results.by_body else ""
         one = replace(one, values=np.where(results.rolling & ~results.flagged("static", body), one.values, np.nan))
     values = one.values.astype(np.float32) if role == "detail" else one.values
-    log = "life" in one.name or one.name == "run_in_distance"
+    log = declared(one.name).scale == "log10"
     return Column(one.name, capital(one.long_name), unit_text(one.units), role, values, log=log)
 
 

@@ -20,8 +20,10 @@ from trackroller.results.pareto import goals_of
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 from trackroller.results.verdict import Verdict
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import OF_MATERIALS
+from trackroller.study.file.goals import statistic
 
 MOST = 10  # candidates drawn
 WIDEST = 44  # letters of a line of a name beside the axis
@@ -183,7 +185,7 @@ def _trade(
         axes.plot(xs[shown][order], ys[shown][order], color="0.1", linewidth=0.8, drawstyle=step)
     axes.scatter(xs[shown], ys[shown], s=18, c=colour[shown].tolist(), marker="D", edgecolor="0.1", zorder=3)
     for name, axis, values in ((x, axes.xaxis, xs[finite]), (y, axes.yaxis, ys[finite])):
-        if values.size and "life" in name and values.min() > 0 and values.max() > 20 * values.min():
+        if values.size and is_life(statistic(name)[1]) and values.min() > 0 and values.max() > 20 * values.min():
             (axes.set_xscale if name == x else axes.set_yscale)("log")
             style.log_ticks(axis, values.min(), values.max())
     axes.set(xlabel=f"{goal_heading(front, x)} {_ARROWS[up_x]}", ylabel=f"{goal_heading(front, y)} {_ARROWS[up_y]}")

@@ -14,6 +14,7 @@ from trackroller.results.findings import shown_output
 from trackroller.results.groups import Groups, classes, groups
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import OF_MATERIALS
 
 MAX_PANELS = 9
@@ -41,7 +42,7 @@ def by_factor(results: Results) -> style.Drawn:
     if rows.sum() < 2:
         return None
     lead = _lead(results, column)
-    values, top = capped(results.column(column)[rows]) if "life" in words else (results.column(column)[rows], None)
+    values, top = capped(results.column(column)[rows]) if is_life(column) else (results.column(column)[rows], None)
     names = [name for name in results.factors if _drawable(results, name, rows, np.ones(rows.sum(), bool))][:MAX_PANELS]
     if not names:
         return None
@@ -56,7 +57,7 @@ def by_factor(results: Results) -> style.Drawn:
     for axes, name in zip(panels, names, strict=False):
         _panel(axes, groups(results.table, name, rows, BINS), values, series[name], colours)
         mark_unlimited(axes, top)
-    if "life" in words:
+    if is_life(column):
         panels[0].set_yscale("log")
         style.log_ticks(panels[0].yaxis, *panels[0].get_ylim())
     figure.supylabel(with_unit(capital(words), unit), fontsize=7.5)

@@ -1,7 +1,8 @@
-"""The sheet of one roller: its facts (verdict, inputs, results, limits, flags), and its page to print or to send."""
+"""The sheet of one roller: its facts (verdict, inputs, results, limits, flags), printed, as a page and as JSON."""
 
 from __future__ import annotations
 
+import json
 import math
 import tempfile
 from collections.abc import Callable, Iterable, Mapping
@@ -13,14 +14,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import LIMITS
+from trackroller.damage.verdict import STATES
 from trackroller.materials import Material
-from trackroller.parameters import BODIES, FIRST_TO_FAIL, OPTIONS, PARAMETERS, REGIMES
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report import html
 from trackroller.report.figures.roller_section import drawing
 from trackroller.report.numbers import BEYOND, listing, lives_in_years, number, plain, rounded, row_unit
 from trackroller.report.tables.inputs import Row, as_material, input_rows, material_rows, material_source
 from trackroller.report.tables.limits import (
+    BOTH,
     OVERLOADED,
     Margin,
     at_temperature,
@@ -32,6 +36,7 @@ from trackroller.report.tables.limits import (
     what_ends,
 )
 from trackroller.report.tables.lives import life_rows
+from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.assumptions import (
     assumptions,
@@ -46,8 +51,10 @@ from trackroller.results.columns import at_surface
 from trackroller.roller import record
 from trackroller.roller.dataset import VARIABLES, shown, solved_by, validity_bit
 from trackroller.roller.duty import FIELD as DUTY
-from trackroller.roller.duty import duty_of
-from trackroller.roller.limits import Limits, limits
+from trackroller.roller.duty import duty_of, years
+from trackroller.roller.output_names import is_life
+from trackroller.roller.record import doubts_of, friction_records, inputs_of, is_default, materials_of
+from trackroller.roller.regime_limits import Limits, limits
 from trackroller.roller.settings import SHEET_FIELDS, sheet_of
 from trackroller.roller.temperature import temperatures_of
 from trackroller.study.store.provenance import versions
@@ -288,3 +295,100 @@ def _words(name: str) -> str:
     words, _, _ = VARIABLES[name].long_name.partition(",")
     symbol = VARIABLES[name].symbol
     return f"{words} {symbol}" if symbol.replace("_", "").isalnum() else words
+
+
+@lives_in_years
+def print_facts(ds: xr.Dataset) -> None:
+    """Print the facts of a solved roller: verdict, inputs, contacts, life and warnings, and its margins at the end."""
+    facts = collect(ds)
+    print_text(facts.verdict)
+    regime = REGIME_LABELS[int(ds["regime"])]
+    print_text(f"regime: {regime}, {'converged' if int(ds['converged']) else 'NOT converged'}")
+    if facts.reason:
+        print_text(f"reason: {facts.reason}")
+    rows = [[row.words, row.value, row.unit, "example" if row.default else "given"] for row in facts.inputs]
+    print_table(["input", "value", "unit", "from"], rows, (1,))
+    example = "Values from 'example' were not given: the paper's example has them. Give yours."
+    for text in filter(None, (example if facts.not_given else "", facts.drive)):
+        print_text(text)
+    print_text(facts.options, "options")
+    if regime == "failed":  # nothing else is known
+        return
+    if facts.lines:
+        print_table(["quantity", "contact 1", "contact 2", "unit"], facts.lines, (1, 2))
+    own = [[row.words, row.value, row.unit] for row in facts.whole]
+    if own:
+        print_table(["whole roller", "value", "unit"], own, (1,))
+    for row in facts.lives:
+        print_text(f"{row.words}: {row.value} {row.unit}".rstrip(), "life")
+    for sentence in facts.data:
+        print_text(sentence, "data")
+    for flag in facts.flags:
+        print_text(f"{flag.sentence} {flag.remedy}", "warning")
+    fields = [str(name) for name, variable in ds.data_vars.items() if variable.ndim > 2]
+    if fields:
+        print_text(f"{', '.join(fields)} (write them with -o)", "fields")
+    print_margins(facts, float(ds.attrs["failure_probability"]))
+
+
+def print_margins(facts: SimpleNamespace, probability: float) -> None:
+    """Print the table of margins, what comes first for roller, guide and pair, and what was not checked."""
+    rows = [[m.title, "both" if m.body == BOTH else m.body, m.now, m.required, m.share, m.life] for m in facts.margins]
+    if rows:
+        title = f"Margins, the first limit first, at {100 * probability:g} % failure probability"
+        print_table(["limit", "of", "now", "at most", "used", "reached after"], rows, (2, 4, 5), title)
+    for sentence in (*facts.first, *facts.guesses, *facts.not_checked):
+        print_text(sentence)
+
+
+_RECORDS = ("case", "materials", "friction", "doubts")  # attributes with keys of their own in JSON
+
+
+def as_json(ds: xr.Dataset) -> str:
+    """Return a result as JSON: every variable with dims, units and values; NaN is null, infinity a text.
+
+    Lives in hours also have years where the duty is known, and `doubts` holds a sentence for each unusual value. The
+    result of one case also has its inputs and which of them are defaults, its materials with sources, its flags in
+    words, the options and the versions.
+    """
+    content: dict[str, Any] = {
+        str(name): {
+            "dims": list(variable.dims),
+            "units": variable.attrs.get("units", "1"),
+            "value": _plain(variable.values.tolist()),
+        }
+        for name, variable in ds.variables.items()
+    }
+    for name, words in (
+        ("regime", REGIMES),
+        ("first_to_fail", FIRST_TO_FAIL),
+        ("limiting_mechanism", (*LIMITS, "unknown")),
+        ("limit_state", STATES),
+    ):
+        if name in content:
+            content[name]["meaning"] = np.array(words)[ds[name].values].tolist()
+    if "contact_model_used" in content:
+        content["contact_model_used"]["meaning"] = solved_by(ds).tolist()
+    duty = duty_of(ds)
+    if duty is not None:
+        for name in (n for n, of in content.items() if of["units"] == "h" and is_life(n)):
+            content[name]["years"] = _plain(years(ds[name].values, duty).tolist())
+    content["doubts"] = doubts_of(ds)
+    if "case" in ds.attrs:
+        inputs = inputs_of(ds)
+        content["inputs"] = {name: {"value": _plain(v), "default": is_default(name, v)} for name, v in inputs.items()}
+        content["materials"], content["friction"] = materials_of(ds), friction_records(ds.attrs)
+        content["flags"] = [vars(flag) for flag in flags_of(ds)]
+        content["options"] = {k: _plain(v) for k, v in ds.attrs.items() if k not in _RECORDS}
+        content["versions"] = versions()
+    return json.dumps(content)
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, list):
+        return [_plain(v) for v in value]
+    if isinstance(value, np.generic):
+        return _plain(value.item())
+    if isinstance(value, float) and not np.isfinite(value):
+        return None if np.isnan(value) else str(value)
+    return value

@@ -31,6 +31,7 @@ from trackroller.report.pages.sheet import body_materials, pictures, versions_te
 from trackroller.report.tables.inputs import Row, input_rows
 from trackroller.report.tables.limits import at_temperature, not_checked, placeholders, unchecked
 from trackroller.report.tables.table import Table, cell
+from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.accuracy import flags_of
 from trackroller.report.words.spectrum import UNITS, known_damage, sentences
 from trackroller.roller.record import NOT_GIVEN, doubts_of
@@ -162,3 +163,21 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
         "versions": versions_text(),
     }
     return html.write_page(Path(path), html.render("spectrum.html.j2", content))
+
+
+@lives_in_years
+def print_spectrum(ds: xr.Dataset) -> None:
+    """Print the damage of each block, the lives, sentences on their causes and warnings."""
+    for part, words in ((block_table(ds), "damage per shift"), (limit_table(ds), "limits")):
+        if part is not None:
+            print_table(part.heads, part.rows, range(1, len(part.heads)), f"{ds.attrs['title']}: {words}")
+            print_text(part.note)
+    for body in BODIES:
+        lives = "; ".join(f"{row.words}: {row.value} {row.unit}".rstrip() for row in life_rows(ds, body))
+        print_text(lives, body)
+    for sentence in sentences(ds):
+        print_text(sentence.text)
+    for text in warnings(ds):
+        print_text(text, "warning")
+    for text in assumed(ds):
+        print_text(text)

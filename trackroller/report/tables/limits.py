@@ -10,17 +10,17 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, heat
+from trackroller.damage import LIMITS, heat, judged
 from trackroller.damage.limit import OF_GUIDE, SN_SCATTER
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.materials import Material
 from trackroller.parameters import BODIES
 from trackroller.report.numbers import between, capital, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
-from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of
+from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of, placeholders_of
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
-from trackroller.roller.limits import Limits
+from trackroller.roller.regime_limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
 YIELD = 1.6  # of the yield strength: the pressure at which a contact yields below its surface
@@ -161,7 +161,7 @@ def _of_limits(
     """Return the margins of the limits of a result, for the bodies that they concern."""
     out = []
     places = {dim: ds[dim].values.tolist() for dim in ("limit", "body") if dim in ds}
-    notes = notes_of(ds)
+    rests_on = placeholders_of(ds)
     broken = {body: OVERLOADED in lifeless[body] for body in lifeless}
     for name in places["limit"] if "utilisation" in ds else ():
         limit = LIMITS[name]
@@ -186,8 +186,8 @@ def _of_limits(
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
             # both bodies share the heat of a contact
-            own = "" if limit is heat.LIMIT else f" '{materials[body].name}'"
-            guessed = any(note.startswith(f"{name}{GUESSES}{own}") for note in notes)
+            of = [one.material for one in rests_on if one.limit == name]
+            guessed = bool(of) if limit is heat.LIMIT else materials[body].name in of
             of_life = timed and not (name == "fatigue" and lifeless[body])
             numbers = used, hours, low, high
             kind = of_life, limit.beside, beyond, guessed
@@ -361,7 +361,7 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     parts += [f"{listing(for_guide)} of the guide (give {OF_GUIDE[0]})"] if for_guide else []
     out = [f"Not checked: {'; '.join(parts)}."] if parts else []
     asked = str(ds.attrs.get("limits", "")).split()
-    missing = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in asked]
+    missing = [limit.name for limit in judged() if limit.name not in asked]
     return out + ([f"Left out: {listing(missing)}."] if missing else [])
 
 

@@ -29,8 +29,8 @@ from trackroller.report.numbers import (
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, Candidates, factor_roles
+from trackroller.results.first_limits import UNSURE
 from trackroller.results.results import Results
-from trackroller.results.unsure import UNSURE
 from trackroller.results.verdict import Candidate
 
 BEST = 5  # designs that stand side by side

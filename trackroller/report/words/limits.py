@@ -10,11 +10,10 @@ from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words, limit_title
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.findings import Finding
-from trackroller.results.first_limits import deciding, first_limit
+from trackroller.results.first_limits import COEFFICIENT, POSITION, deciding, first_limit
 from trackroller.results.limit_notes import guessed_values
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
-from trackroller.results.unsure import COEFFICIENT, POSITION
 
 
 def limit_words(results: Results, finding: Finding) -> Sentence:

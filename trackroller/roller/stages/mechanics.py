@@ -1,6 +1,6 @@
 """The stages of a solution up to the tractions; each stage takes the `Results` so far and adds its quantities.
 
-The stages that compute stresses stand in `stages.stress`; friction power, life and warnings stand in `stages.case`.
+The stages that compute stresses stand in `stages.stress`; friction power, life and warnings stand in `stages.outcome`.
 """
 
 from __future__ import annotations

@@ -29,7 +29,7 @@ from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity, without_units
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
-from trackroller.roller.output_names import PARTS, parts_of, unit_of
+from trackroller.roller.output_names import PARTS, body_of, is_life, parts_of, unit_of
 from trackroller.study.design.entries import choice
 
 SCALES = ("natural", "log10")
@@ -73,7 +73,7 @@ def _limit(name: str, given: Any, where: str) -> float:
     number = number_or_nan(given, unit, where)
     if not math.isfinite(number):
         raise InputError(where, given, "a number", f"It may have a unit that can be converted to {unit or 'its own'}.")
-    if "life" in name and number <= 0:
+    if is_life(name) and number <= 0:
         raise InputError(where, given, "a life above 0")
     return number
 
@@ -188,7 +188,7 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
     asked = config.analysis.outputs or [f"life_cycles_{body}" for body in materials if "life" in config.outputs]
     for body, used in materials.items():
         bare = [m.name for m in used if m.scatter_in_cycles is None and m.scatter_in_stress is None]
-        if wanted is True and bare and any("life" in name and body in name for name in asked):
+        if wanted is True and bare and any(is_life(name) and body_of(name) == body for name in asked):
             raise InputError(
                 "analysis.material_scatter",
                 True,
@@ -253,7 +253,7 @@ def check_statistic(config: Any, entry: tuple[str, str], kind: str, output: str,
         raise InputError(*entry, "the probability of a target or of a regime", remedy)
     if kind != "probability" and output not in known:
         raise unknown_result(entry[0], output, known, config.outputs)
-    if kind.startswith("b10") and "life" not in output:
+    if kind in ("b10", "b10_safe") and not is_life(output):
         raise InputError(*entry, "b10 of a life", f"Use mean({output}).")
 
 

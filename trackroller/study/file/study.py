@@ -86,6 +86,11 @@ class Study:
         return load_database() if self.database is None else self.database
 
     @property
+    def decides(self) -> bool:
+        """Return whether results decide which cases follow; with a table of its designs a search is at its end."""
+        return self.config.until is not None or (self.config.method.proposes and self.config.table is None)
+
+    @property
     def table_path(self) -> Path:
         """Return the path of the CSV of cases; a relative path starts from the folder of the study file."""
         folder = Path() if self.path is None else self.path.parent

@@ -12,6 +12,7 @@ from pydantic import BaseModel, ConfigDict, Field, field_validator
 from trackroller.errors import InputError, listing
 from trackroller.methods import METHODS, those_with
 from trackroller.parameters import REGIMES
+from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import output_names, statistic, unknown_result
 
 
@@ -79,7 +80,7 @@ def _check_of(config: Any, name: str, known: list[str]) -> None:
         raise InputError("until.of", name, allowed, "Statistics such as b10(..) need design: inner_outer.")
     if output not in known:
         raise unknown_result("until.of", output, known, config.outputs)
-    if points and (kind not in ("", "b10") or "life" not in output):
+    if points and (kind not in ("", "b10") or not is_life(output)):
         allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a target or of a regime"
         raise InputError("until.of", name, allowed, f"For example probability({output}) with analysis.target.")
 

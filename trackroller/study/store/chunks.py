@@ -21,8 +21,8 @@ from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
 from trackroller.study.store.digests import sums_up
 from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.netcdf import too_large
 from trackroller.study.store.ownership import write as write_own
-from trackroller.study.store.seal import too_large
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")

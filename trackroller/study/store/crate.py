@@ -2,7 +2,7 @@
 
 The crate is the study folder. `ro-crate-metadata.json` lists the files. `inputs/` holds what is needed to solve the
 study anywhere: the study file with every default written out, its table of cases and the user's materials. Results are
-listed if their digests were recorded when they were written; a result that does not fit its digest is refused.
+listed with the digests that were recorded when they were written; a result that does not fit its digest is refused.
 
 References
 ----------
@@ -60,11 +60,11 @@ def write_crate(root: Path) -> Path:
     study = study_of_folder(StudyFolder(root))
     # a user may delete what a report made: `trackroller report` makes it again
     kept = [*DATA, *(name for name in REPORT if (root / name).exists())]
-    inputs, *results = (sorted(recorded(check_sealed(root / name)) or ()) for name in (INPUTS, *kept))
-    made = [name for names in results for name in names]
-    newest = str(np.datetime64(int(max((root / name).stat().st_mtime for name in made)), "s")) + "Z"
+    inputs, *parts = (dict(sorted((recorded(check_sealed(root / name)) or {}).items())) for name in (INPUTS, *kept))
+    results = {name: digest for part in parts for name, digest in part.items()}
+    newest = str(np.datetime64(int(max((root / name).stat().st_mtime for name in results)), "s")) + "Z"
     # a copy has other dates, and describes the same run
-    known, text = (_text(study, root, inputs, made, ended) for ended in (_end_of_run(root), newest))
+    known, text = (_text(study, root, inputs, results, ended) for ended in (_end_of_run(root), newest))
     path = root / METADATA
     if path.is_file() and is_sealed(path) and path.read_text(encoding="utf-8") == known:
         return path
@@ -76,7 +76,7 @@ def _end_of_run(root: Path) -> str:
     return next((str(entry.get("endTime", "")) for entry in crate_graph(root) if entry.get("@id") == "#run"), "")
 
 
-def _text(study: Study, root: Path, inputs: list[str], results: list[str], ended: str) -> str:
+def _text(study: Study, root: Path, inputs: dict[str, str], results: dict[str, str], ended: str) -> str:
     graph = _graph(study, root, inputs, results, ended)
     return json.dumps({"@context": "https://w3id.org/ro/crate/1.1/context", "@graph": graph}, indent=1) + "\n"
 
@@ -89,9 +89,9 @@ def _references(names: Iterable[str]) -> list[dict[str, str]]:
     return [{"@id": name} for name in names]
 
 
-def _file(root: Path, name: str) -> dict[str, Any]:
+def _file(root: Path, name: str, digest: str) -> dict[str, Any]:
     path = root / name
-    entry = _entry(name, "File", sha256=sha256(path), contentSize=path.stat().st_size)
+    entry = _entry(name, "File", sha256=digest, contentSize=path.stat().st_size)
     kind = "application/yaml" if path.suffix == ".yaml" else mimetypes.guess_type(name, strict=False)[0]
     if kind is not None:
         entry["encodingFormat"] = kind
@@ -101,8 +101,13 @@ def _file(root: Path, name: str) -> dict[str, Any]:
     return entry
 
 
-def _graph(study: Study, root: Path, inputs: list[str], results: list[str], ended: str) -> list[dict[str, Any]]:
-    """Return the entries of the metadata file, the study, its run, the programs, the licence and every file."""
+def _graph(
+    study: Study, root: Path, inputs: dict[str, str], results: dict[str, str], ended: str
+) -> list[dict[str, Any]]:
+    """Return the entries of the metadata file, the study, its run, the programs, the licence and every file.
+
+    `inputs` and `results` hold the digest of each file by its name.
+    """
     programs, work = versions(), "CreativeWork"
     return [
         _entry(METADATA, work, about={"@id": "./"}, conformsTo={"@id": "https://w3id.org/ro/crate/1.1"}),
@@ -132,7 +137,7 @@ def _graph(study: Study, root: Path, inputs: list[str], results: list[str], ende
         _entry(LICENCE, work, name="MIT License", identifier="MIT"),
         *(_entry(name, work, name=f"Workflow Run Crate profile {name[28:]}") for name in PROFILES),
         *(_entry(f"#{name}", "SoftwareApplication", name=name, softwareVersion=v) for name, v in programs.items()),
-        *(_file(root, name) for name in (*inputs, *results)),
+        *(_file(root, name, digest) for name, digest in (inputs | results).items()),
     ]
 
 

@@ -16,31 +16,30 @@ from trackroller.files import reserve, sha256
 from trackroller.roller.dataset import file_attributes, united
 from trackroller.study.store import chunks
 from trackroller.study.store.folder import Tell, reporting, unheard
-from trackroller.study.store.inventory import Inventory, take_inventory
 from trackroller.study.store.labels import labelled
-from trackroller.study.store.plan import Plan
+from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.provenance import DATE
 from trackroller.study.store.seal import forget_report, is_sealed, put, recorded
 
 MOST_MEMORY = 10_000_000  # bytes of a result in memory; a larger one lies in a temporary file
 
 
-def write_design(plan: Plan) -> None:
+def write_design(ledger: Ledger) -> None:
     """Write `design.nc`, the cases of a study, and record its digest."""
-    design, path = plan.cases.design, plan.folder.design
-    title = f"Cases of the parameter study '{plan.study.name}' of locating-bearing track rollers"
+    design, path = ledger.cases.design, ledger.folder.design
+    title = f"Cases of the parameter study '{ledger.study.name}' of locating-bearing track rollers"
     described = design.assign_attrs(file_attributes(title, "drawn") | design.attrs)
     encoding = {str(name): {"_FillValue": None} for name in described.variables}
     put(path, lambda beside: described.to_netcdf(beside, engine="netcdf4", encoding=encoding))
 
 
-def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = None) -> Path:
-    """Gather the solved cases of a plan into `study.nc`, and write `design.nc` if it is missing.
+def gather(ledger: Ledger, tell: Tell = unheard, attrs: Mapping[str, str] | None = None) -> Path:
+    """Gather the solved cases of a ledger into `study.nc`, and write `design.nc` if it is missing.
 
     Parameters
     ----------
-    plan : Plan
-        A plan whose chunks are solved.
+    ledger : Ledger
+        A ledger whose chunks are solved.
     tell : callable
         Receives one line when the file is complete.
     attrs : mapping, optional
@@ -61,18 +60,16 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
     The time is proportional to the number of results. A result above `MOST_MEMORY` passes through a temporary
     file in the study's folder.
     """
-    study, folder = plan.study, plan.folder
+    study, folder, ledger = ledger.study, ledger.folder, ledger.anew()
     if not is_sealed(folder.design):
-        write_design(plan)
-    design, inventory = plan.cases.design, take_inventory(folder)
-    place = inventory.find(plan.cases.fingerprints)
-    count = len(place)
-    if missing := int((place < 0).sum()):
-        damaged = "".join(f" Corrupt: {why}." for why in inventory.corrupt.values())
+        write_design(ledger)
+    count = len(ledger.place)
+    if missing := int((ledger.place < 0).sum()):
+        damaged = "".join(f" Corrupt: {why}." for why in ledger.corrupt.values())
         raise WorkError(f"{missing} of {count} cases are not solved.{damaged} Start the run again.")
 
     def save(beside: Path) -> None:
-        results = labelled(study, study.drawn, design, collect(inventory, place, folder.root))
+        results = labelled(study, study.drawn, ledger.cases.design, collect(ledger))
         results.attrs.pop(DATE)  # equal results are equal files; the plan keeps the date
         results.assign_attrs(attrs or {}).to_netcdf(beside, engine="netcdf4")
 
@@ -85,27 +82,26 @@ def gather(plan: Plan, tell: Tell = unheard, attrs: Mapping[str, str] | None = N
     return folder.gathered
 
 
-def collect(found: Inventory, place: np.ndarray, scratch: Path) -> xr.Dataset:
+def collect(ledger: Ledger, solved: slice | np.ndarray = slice(None)) -> xr.Dataset:
     """Return the results of solved cases along `case`, with the coordinates of their other axes.
 
     Parameters
     ----------
-    found : Inventory
-        Solved cases of the study.
-    place : numpy.ndarray of int, shape (n,)
-        Index of each wanted case in `found.states`.
-    scratch : pathlib.Path
-        Folder for temporary files.
+    ledger : Ledger
+        The ledger of the study.
+    solved : slice or numpy.ndarray of int, shape (n,)
+        The wanted cases of the design, each of which is solved; all by default.
     """
+    place = ledger.place[solved]
     results: dict[Hashable, xr.Variable] = {}
     coords: dict[Hashable, xr.Variable] = {}
     attrs: dict[str, Any] = {}
-    file, row = (found.states[name].values[place] for name in ("file", "row"))
+    file, row = (ledger.states[name].values[place] for name in ("file", "row"))
     order = np.argsort(file, kind="stable")
     numbers, start = np.unique(file[order], return_index=True)
     for number, rows in zip(numbers, np.split(order, start[1:]), strict=True):
         try:
-            block = chunks.read(found.paths[number])
+            block = chunks.read(ledger.paths[number])
         except (chunks.CorruptFile, FileNotFoundError) as exc:
             raise WorkError(f"corrupt results: {exc}. Start again: only its cases are solved.") from None
         attrs = united((attrs or block.attrs, block.attrs))
@@ -114,7 +110,7 @@ def collect(found: Inventory, place: np.ndarray, scratch: Path) -> xr.Dataset:
             known = results.get(name, v[:0].variable)
             shape = (len(place), *np.maximum(known.shape[1:], v.shape[1:]))  # grids of different sizes
             if known.shape != shape:
-                room = _room(shape, v.dtype, scratch)
+                room = _room(shape, v.dtype, ledger.folder.root)
                 room[tuple(map(slice, known.shape))] = known.values
                 results[name] = xr.Variable(v.dims, room, known.attrs)
             into: Any = (rows, *map(slice, v.shape[1:]))

@@ -9,7 +9,7 @@ from trackroller.contact.kalker.correction import Correction
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.kalker.patch import shares, to_tractions
 from trackroller.contact.kalker.problem import KalkerSettings
-from trackroller.contact.normal.models import GridKalkerModel
+from trackroller.contact.normal.patch_models import GridKalkerModel
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Rollers
 from trackroller.contact.slip import Creepage

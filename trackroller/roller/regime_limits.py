@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from trackroller.contact.friction_laws import law_of
+from trackroller.numerics.brackets import narrowed
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.case import Case
 from trackroller.roller.dataset import validity_bit
@@ -21,9 +22,9 @@ if TYPE_CHECKING:
 
     from trackroller.materials import MaterialDatabase
 
-# Parts into which each round cuts the range of each search. Cases near lift-off are dear, and many rounds of few cases
-# need the least of them.
-PARTS = (16, *(4,) * 12)
+# Parts into which the first round, and each further one, cuts the range of each search. Cases near lift-off are dear,
+# and many rounds of few cases need the least of them.
+FIRST, ROUNDS = 16, (4,) * 12
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
 _FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
@@ -121,23 +122,23 @@ def _edges(
     NaN if it does not hold at the start, and infinity with the sign of the direction if it holds as far as the end. A
     round solves the cases of all searches in one batch.
     """
-    ranges = [(start, end) for _, start, end in searches]
-    edges = [math.nan] * len(searches)
-    going = list(range(len(searches)))
-    for number, parts in enumerate(PARTS):
-        values = {i: np.linspace(*ranges[i], parts + 1) for i in going}
-        asked = slice(1, -1) if number else slice(None)  # the ends are known after the first round
-        places = [(_FIELD.get(searches[i][0], searches[i][0]), v) for i in going for v in values[i][asked].tolist()]
-        near = holds([replace(case, **{field: v}) for field, v in places])
-        for row, i in enumerate(tuple(going)):
-            inner = near[searches[i][0]].reshape(-1, len(values[i][asked]))[row]
-            far = np.flatnonzero(~np.concatenate([[True], inner, [False]]) if number else ~inner)
-            if far.size and far[0]:
-                ranges[i] = (float(values[i][far[0] - 1]), float(values[i][far[0]]))
-                edges[i] = ranges[i][0]
-            else:
-                going.remove(i)
-                edges[i] = math.nan if far.size else math.copysign(math.inf, ranges[i][1] - ranges[i][0])
-        if not going:
-            break
-    return edges
+    names = [name for name, _, _ in searches]
+
+    def near(places: Sequence[int], values: Sequence[float]) -> list[bool]:
+        """Return whether the condition of each search `places` holds at a value."""
+        fields = [_FIELD.get(names[place], names[place]) for place in places]
+        found = holds([replace(case, **{field: value}) for field, value in zip(fields, values, strict=True)])
+        return [bool(found[names[place]][row]) for row, place in enumerate(places)]
+
+    edges, going = [math.nan] * len(searches), {}
+    lines = [np.linspace(start, end, FIRST + 1).tolist() for _, start, end in searches]
+    answers = iter(near([i for i, line in enumerate(lines) for _ in line], [v for line in lines for v in line]))
+    for i, line in enumerate(lines):
+        held = [next(answers) for _ in line]
+        if all(held):
+            edges[i] = math.copysign(math.inf, line[-1] - line[0])
+        elif held[0]:
+            going[i] = line[held.index(False) - 1], line[held.index(False)]
+    places = list(going)
+    found = narrowed(list(going.values()), ROUNDS, lambda numbers, v: near([places[n] for n in numbers], v))
+    return [edges[i] if i not in going else found[places.index(i)][0] for i in range(len(searches))]

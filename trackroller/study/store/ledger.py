@@ -1,11 +1,11 @@
-"""The plan of a study: which cases must be solved, in which chunks, and from which inputs.
+"""The ledger of a study: which case is solved in which chunk, and which chunk is open.
 
-Data goes one way. The design of a study is built and its cases are identified once; the inventory says which of them
-are solved; the other cases go into chunks, each with a case list that is named by its content. Growing a study
-therefore adds chunks and changes no finished one.
+Data goes one way. The design of a study is built and its cases are identified once; the files of the chunks say which
+of them are solved; the other cases are planned: they go into new chunks, each with a case list that is named by its
+content. Growing a study therefore adds chunks and changes no finished one.
 
-Every process that works from a plan holds the study's lock together with the others (`working_plan`). Only the sole
-holder of the lock repairs the folder and may change the plan.
+Every process that works from a ledger holds the study's lock together with the others (`working_ledger`). Only the
+sole holder of the lock repairs the folder and may plan anew.
 """
 
 from __future__ import annotations
@@ -15,7 +15,8 @@ import hashlib
 import json
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
+from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -36,7 +37,6 @@ from trackroller.study.store import chunks, digests, ownership
 from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
 from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
 from trackroller.study.store.inputs import store_inputs
-from trackroller.study.store.inventory import Inventory, forget_failed, take_inventory
 from trackroller.study.store.ownership import MADE_BY
 from trackroller.study.store.provenance import now
 from trackroller.study.store.seal import discard
@@ -52,50 +52,115 @@ MOST_LEVELS = 3  # that the words for a chunk list
 
 
 @dataclass(frozen=True)
-class Plan:
-    """The chunks of a study, and which of them are open.
+class Ledger:
+    """Which case of a study is solved in which chunk, and which chunk is open.
+
+    The files of the solved chunks are read when a caller first asks for a solved case; `anew` reads them again.
 
     Attributes
     ----------
-    study : Study
-        The study, with the size to which its sample has grown.
+    cases : Cases
+        The cases of the study, which a process builds and identifies once.
     folder : StudyFolder
         Files of the study.
     chunks : dict
-        Number of cases by the name of the chunk, in the order of the design.
+        Number of cases by the name of each planned chunk, in the order of the design.
     size : int
-        Number of cases of the design.
+        Number of cases of the planned design.
     distinct : int
         Number of different cases among these.
     uses : tuple of str
-        Names of the files that hold the cases which are in no chunk of this plan.
-    cases : Cases
-        The cases, which a process builds and identifies once.
+        Names of the files that hold the cases which are in no planned chunk.
     """
 
-    study: Study
-    folder: StudyFolder
-    chunks: dict[str, int]
-    size: int
-    distinct: int
-    uses: tuple[str, ...]
     cases: Cases
+    folder: StudyFolder
+    chunks: dict[str, int] = field(default_factory=dict)
+    size: int = 0
+    distinct: int = 0
+    uses: tuple[str, ...] = ()
+
+    @property
+    def study(self) -> Study:
+        """Return the study, with the size to which its sample has grown."""
+        return self.cases.study
 
     @property
     def open(self) -> list[str]:
         """Return the names of the chunks that are not complete."""
         return [name for name in self.chunks if not self.folder.chunk(name).is_file()]
 
+    def anew(self) -> Ledger:
+        """Return the ledger without what was read, so that it reads the files as they are now."""
+        return replace(self)
+
+    @cached_property
+    def _read(self) -> tuple[xr.Dataset, list[Path], dict[Path, str]]:
+        """Read every file with solved cases and verify its checksum; return `states`, `paths` and `corrupt`."""
+        corrupt: dict[Path, str] = {}
+        sound = list(chunks.read_sound(self.folder.solved_files(), corrupt, chunks.read_state))
+        none = chunks.failure(np.empty(0, dtype="S32"), "")[["regime", "reason"]]
+        numbered = [none.assign(file=("case", np.empty(0, int)), row=("case", np.empty(0, int)))]
+        for number, (_, state) in enumerate(sound):
+            rows = np.arange(state.sizes["case"])
+            numbered.append(state.assign(file=("case", np.full(len(rows), number)), row=("case", rows)))
+        every = chunks.join(numbered)
+        _, first = np.unique(every["case"].values, return_index=True)
+        return every.isel(case=first), [path for path, _ in sound], corrupt
+
+    @property
+    def states(self) -> xr.Dataset:
+        """Return the solved cases of the folder, each once, also those of earlier designs.
+
+        `regime` (code of `REGIMES`), `reason` of a failure, `file` (index into `paths`) and `row` in that file, along
+        `case` in ascending order of the fingerprints; the attribute `seconds` is the time spent on solving [s].
+        """
+        return self._read[0]
+
+    @property
+    def paths(self) -> list[Path]:
+        """Return the sound files with solved cases."""
+        return self._read[1]
+
+    @property
+    def corrupt(self) -> dict[Path, str]:
+        """Return the damaged files, and what is wrong with each."""
+        return self._read[2]
+
+    @property
+    def hours(self) -> float:
+        """Return the time of solving, of all runs together [h]."""
+        return float(self.states.attrs["seconds"]) / 3600
+
+    def find(self, wanted: np.ndarray) -> np.ndarray:
+        """Return the index of each wanted case in `states`, shape (n,); -1 marks a case that is not solved."""
+        cases = self.states["case"].values
+        place = np.searchsorted(cases, wanted)
+        return np.where(np.append(cases, b"")[place] == wanted, place, -1)
+
+    @cached_property
+    def place(self) -> np.ndarray:
+        """Return the index of each case of the design in `states`, shape (n,); -1 marks a case that is not solved."""
+        return self.find(self.cases.fingerprints)
+
+    def forget_failed(self) -> int:
+        """Remove the failed cases from the files, so that they are planned again; return their number.
+
+        A file without its failed cases gets another name, because its name is the hash of its cases.
+        """
+        failed = self.states["file"].values[self.states["regime"].values == chunks.FAILED]
+        for number in np.unique(failed):
+            block = chunks.read(self.paths[number])
+            solved = block.isel(case=(block["regime"] != chunks.FAILED).values)
+            if solved.sizes["case"]:
+                chunks.write(self.folder.chunk(chunk_name(solved["case"].values)), solved, packed=True)
+            ownership.remove(self.paths[number], self.folder.root)
+        return len(failed)
+
 
 def study_folder(study_name: str, results: Path | str = "results") -> StudyFolder:
     """Return the folder in which a run of a study keeps its results."""
     return StudyFolder(Path(results) / check_name(study_name))
-
-
-def locate(study: Study, folder: StudyFolder) -> tuple[xr.Dataset, Inventory, np.ndarray]:
-    """Return a study's design, its solved cases, and the index of each case of the design there; -1 if not solved."""
-    cases, inventory = Cases(study), take_inventory(folder)
-    return cases.design, inventory, inventory.find(cases.fingerprints)
 
 
 def chunk_size(study: Study, cases: int) -> int:
@@ -118,41 +183,36 @@ def plan_key(study: Study) -> str:
     return hashlib.sha256(repr(stated).encode()).hexdigest()
 
 
-def read_plan(study: Study, folder: StudyFolder) -> Plan | None:
-    """Return the plan on the disk, or None if it is missing or was made for another version of the study."""
-    return _recorded(study, folder, folder.record())
-
-
-def _recorded(study: Study, folder: StudyFolder, record: Mapping[str, Any]) -> Plan | None:
-    """Return the plan of a record, or None if the record was made for another version of the study."""
+def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
+    """Return the ledger on the disk, or None if it is missing or was made for another version of the study."""
+    record = folder.record()
     if record.get("key") != plan_key(study):
         return None
-    uses = tuple(record["uses"])
-    return Plan(study, folder, record["chunks"], record["size"], record["distinct"], uses, Cases(study))
+    return Ledger(Cases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"]))
 
 
-def sound_plan(study: Study, folder: StudyFolder, found: Inventory) -> tuple[Plan | None, list[str]]:
-    """Return the plan on the disk if it accounts for every case, and a line on each damaged case list.
+def sound_ledger(found: Ledger) -> tuple[Ledger | None, list[str]]:
+    """Return the ledger on the disk if it accounts for every case, and a line on each damaged case list.
 
     Each case must be in a solved file or in the sound list of an open chunk, and no case of an open chunk may be solved
     already, as it is after a process was killed while it forgot failed cases.
     """
-    plan = _recorded(study, folder, folder.record())
-    if plan is None:
+    folder, ledger = found.folder, read_ledger(found.study, found.folder)
+    if ledger is None:
         return None, []
-    sound, damaged = set(plan.uses) <= {path.name for path in found.paths}, []
-    for name in plan.chunks:
+    sound, damaged = set(ledger.uses) <= {path.name for path in found.paths}, []
+    for name in ledger.chunks:
         try:
             listed = chunks.check(folder.case_list(name))
             sound &= folder.chunk(name).is_file() or bool((found.find(listed) < 0).all())
         except (chunks.CorruptFile, FileNotFoundError) as exc:
             damaged.append(f"corrupt or missing case list, its cases are planned anew: {exc}")
-    return (plan if sound and not damaged else None), damaged
+    return (ledger if sound and not damaged else None), damaged
 
 
-def new_plan(study: Study, folder: StudyFolder, found: Inventory) -> Plan:
-    """Return a plan of the cases that no file holds, and write its case lists."""
-    cases = Cases(study)
+def planned(found: Ledger) -> Ledger:
+    """Return the ledger in which each case that no file holds has a chunk, and write the case lists of these chunks."""
+    study, folder, cases = found.study, found.folder, found.cases
     names, (options, group) = cases.fingerprints, cases.options
     wanted, first = np.unique(names, return_index=True)
     place = found.find(wanted)
@@ -174,24 +234,19 @@ def new_plan(study: Study, folder: StudyFolder, found: Inventory) -> Plan:
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)
     uses = sorted(found.paths[i].name for i in np.unique(found.states["file"].values[place[place >= 0]]))
-    return Plan(study, folder, sizes, len(names), len(wanted), tuple(uses), cases)
+    return replace(found, chunks=sizes, size=len(names), distinct=len(wanted), uses=tuple(uses))
 
 
-def unused_cases(study: Study, folder: StudyFolder, found: Inventory, place: np.ndarray) -> str:
+def unused_cases(ledger: Ledger) -> str:
     """Say how many solved cases the design of a study does not hold, and why; '' if it holds all of them.
 
     Parameters
     ----------
-    study : Study
-        The study, whose design may differ from the one that was solved.
-    folder : StudyFolder
-        Its folder.
-    found : Inventory
-        Its solved cases.
-    place : numpy.ndarray of int, shape (n,)
-        Index of each case of the design in `found.states`; -1 for a case that is not solved.
+    ledger : Ledger
+        The ledger of the study, whose design may differ from the one that was solved.
     """
-    solved = found.states.sizes["case"]
+    study, folder = ledger.study, ledger.folder
+    solved, place = ledger.states.sizes["case"], ledger.place
     if study.config.method.proposes or study.config.until is not None:  # each step is a design of its own
         return ""
     if not solved or folder.of_another_solver or not (unused := solved - len(np.unique(place[place >= 0]))):
@@ -238,28 +293,28 @@ def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
     return words
 
 
-def record_of(plan: Plan, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the record of a plan, which `read_plan` reads: what it was made from, and its chunks."""
+def record_of(ledger: Ledger, inputs: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the record of a ledger, which `read_ledger` reads: what it was made from, and its chunks."""
     return {
         **MADE_BY,
-        "key": plan_key(plan.study),
+        "key": plan_key(ledger.study),
         "solver_digest": solver_digest(),
-        "name": plan.study.name,
-        "study": plan.study.merged(),
-        "not_given": list(plan.study.not_given),
+        "name": ledger.study.name,
+        "study": ledger.study.merged(),
+        "not_given": list(ledger.study.not_given),
         "inputs": dict(inputs),
-        "size": plan.size,
-        "distinct": plan.distinct,
-        "chunks": plan.chunks,
-        "uses": list(plan.uses),
-        **({"grown": list(plan.study.grown), "sample": sample_of(plan.study)} if plan.study.grown else {}),
+        "size": ledger.size,
+        "distinct": ledger.distinct,
+        "chunks": ledger.chunks,
+        "uses": list(ledger.uses),
+        **({"grown": list(ledger.study.grown), "sample": sample_of(ledger.study)} if ledger.study.grown else {}),
     }
 
 
 @contextlib.contextmanager
-def working_plan(
+def working_ledger(
     study: Study, results: Path | str = "results", *, tell: Tell = unheard, rerun_failed: bool = False
-) -> Iterator[Plan]:
+) -> Iterator[Ledger]:
     """Plan a study and keep other processes from changing the plan.
 
     Parameters
@@ -275,8 +330,8 @@ def working_plan(
 
     Yields
     ------
-    Plan
-        The plan, which stays as it is until the context ends.
+    Ledger
+        The ledger, whose chunks stay as they are until the context ends.
 
     Raises
     ------
@@ -289,42 +344,40 @@ def working_plan(
     """
     folder = study_folder(study.name, results).create()
     with open(folder.lock, "rb+") as lock:
-        plan = _make_plan(study, folder, tell, rerun_failed) if try_lock(lock) else None
+        ledger = _plan(study, folder, tell, rerun_failed) if try_lock(lock) else None
         wait_for_lock(lock, shared=True)
-        if plan is None and not rerun_failed:  # another process has planned
-            plan = read_plan(study, folder)
-        if plan is None:
+        if ledger is None and not rerun_failed:  # another process has planned
+            ledger = read_ledger(study, folder)
+        if ledger is None:
             raise WorkError(
                 f"study '{study.name}': another process is solving it, from another version of the study file or "
                 f"of the materials. Wait until that process ends, or stop it; then start again: {folder.root} keeps "
                 "every finished case. To solve both versions at once, give this one another name."
             )
-        yield plan
+        yield ledger
 
 
-def _make_plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Plan:
-    """Remove damaged files, and plan anew unless the plan on the disk accounts for every case."""
+def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Ledger:
+    """Remove damaged files, and plan anew unless the ledger on the disk accounts for every case."""
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
     for path in (folder.design, folder.gathered, folder.root / digests.METADATA):
         ownership.make_way(path, folder.root, lambda line: tell(f"{line}, and made anew"))
-    inventory = _sound_inventory(folder, tell)
+    _set_damaged_aside(found := Ledger(Cases(study), folder), tell)
     if rerun_failed:
-        tell(f"{forget_failed(folder, inventory)} failed cases are solved again")
-        inventory = take_inventory(folder)
-    plan, damaged = sound_plan(study, folder, inventory)
+        tell(f"{found.forget_failed()} failed cases are solved again")
+        found = found.anew()
+    ledger, damaged = sound_ledger(found)
     for line in damaged:
         tell(line)
-    if plan is None:
-        plan = new_plan(study, folder, inventory)
-        if inventory.paths and (
-            unused := unused_cases(study, folder, inventory, inventory.find(plan.cases.fingerprints))
-        ):
+    if ledger is None:
+        ledger = planned(found)
+        if found.paths and (unused := unused_cases(found)):
             tell(unused)
         discard(folder.design)
-    _keep(plan, tell)
-    return plan
+    _keep(ledger, tell)
+    return ledger.anew()
 
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
@@ -337,28 +390,26 @@ def _check_same_study(study: Study, folder: StudyFolder) -> None:
         raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
 
 
-def _sound_inventory(folder: StudyFolder, tell: Tell) -> Inventory:
-    """Return the solved cases after damaged files are moved away and temporary files are removed."""
-    inventory = take_inventory(folder)
-    for path, why in inventory.corrupt.items():
-        kept = ownership.set_aside(folder.root, path)
+def _set_damaged_aside(ledger: Ledger, tell: Tell) -> None:
+    """Move damaged files of solved cases away, and remove temporary files."""
+    for path, why in ledger.corrupt.items():
+        kept = ownership.set_aside(ledger.folder.root, path)
         tell(f"corrupt results, their cases are solved again, and the file is kept as {kept}: {why}")
-    ownership.sweep(folder.root)
-    return inventory
+    ownership.sweep(ledger.folder.root)
 
 
-def _keep(plan: Plan, tell: Tell) -> None:
-    """Write the record of a plan after its inputs, and remove the files of earlier plans."""
-    folder, earlier = plan.folder, plan.folder.record()
-    record = record_of(plan, store_inputs(plan.study, folder))
+def _keep(ledger: Ledger, tell: Tell) -> None:
+    """Write the record of a ledger after its inputs, and remove the files of earlier plans."""
+    folder, earlier = ledger.folder, ledger.folder.record()
+    record = record_of(ledger, store_inputs(ledger.study, folder))
     record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
     if record != earlier:
         folder.write_record(record, tell)
     for path in folder.lock.parent.iterdir():
         of_chunk = path.suffix in (".nc", ".solved", ".lock") and not path.name.startswith(".")
-        if of_chunk and path.stem not in plan.chunks:
+        if of_chunk and path.stem not in ledger.chunks:
             ownership.remove(path, folder.root)
-    for name in plan.chunks:
+    for name in ledger.chunks:
         mark = folder.mark(name)
         ownership.make_way(mark, folder.root)
         if not folder.chunk(name).is_file():

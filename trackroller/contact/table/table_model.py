@@ -15,7 +15,7 @@ import numpy as np
 
 from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.kalker.correction import SERVING
-from trackroller.contact.kalker.model import KalkerModel
+from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
 from trackroller.contact.settings import Rollers

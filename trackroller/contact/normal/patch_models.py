@@ -15,7 +15,7 @@ from trackroller.contact import kalker
 from trackroller.contact.common import Resultants, SurfaceTractions, Works
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
-from trackroller.contact.normal import sliding as normal_sliding
+from trackroller.contact.normal import patch_sliding as normal_sliding
 from trackroller.contact.normal.measure import roughness
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE

@@ -1,0 +1,65 @@
+"""Read netCDF files that somebody else may have written."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import netCDF4
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.files import memory
+
+ANY_BYTES = 1_000_000_000  # any file may declare so many bytes
+MOST_PACKED = 200  # bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
+TEXT_BYTES = 100  # of a text in memory
+
+
+def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
+    """Return a netCDF file in memory; the one way to read a netCDF file that somebody else may have written.
+
+    Parameters
+    ----------
+    path : pathlib.Path
+        The file.
+    what, remedy : str
+        Kind of file and what the user can do, for messages.
+
+    Raises
+    ------
+    InputError
+        If it is not a netCDF file, or declares more values than it can hold.
+    """
+    try:
+        with netCDF4.Dataset(path) as file:
+            excess = too_large(file, path.stat().st_size)
+        if excess is None:
+            return xr.load_dataset(path, engine="netcdf4")
+    except (OSError, ValueError, RuntimeError, AttributeError, IndexError, KeyError, TypeError, OverflowError) as exc:
+        reason = " ".join(str(exc).split())[:200]
+        raise InputError(what, str(path), "a netCDF file", remedy, f"cannot be read as netCDF ({reason})") from None
+    raise InputError(what, str(path), "a netCDF file that fits the memory", remedy, excess)
+
+
+def too_large(file: netCDF4.Dataset, size: int) -> str | None:
+    """Return why a file must not be read into memory: a file of a few kB can declare thousands of millions of values.
+
+    Parameters
+    ----------
+    file : netCDF4.Dataset
+        The open file, of which no value was read.
+    size : int
+        Its size on the disk [bytes].
+
+    Returns
+    -------
+    str or None
+        None if the values fit the memory, and are as many as a file of this size can hold.
+    """
+    variables = file.variables.values()
+    values = sum(math.prod(variable.shape) for variable in variables)
+    declared = sum(math.prod(v.shape) * getattr(v.dtype, "itemsize", TEXT_BYTES) for v in variables)
+    if declared <= min(memory(), max(ANY_BYTES, MOST_PACKED * size)):
+        return None
+    return f"declares {values:,} values, which take {declared / 1e9:,.0f} GB, in a file of {size:,} bytes"
