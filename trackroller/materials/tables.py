@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from math import nan
+
 from trackroller.errors import unknown_name
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
@@ -38,8 +40,15 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
             continue
         record = material.records.get(prop.name, Value(value, prop.unit, "not given"))
         rows.append(_row(prop.name, prop.symbol, record))
-    limit = Value(material.fatigue_limit, "MPa", "R_m times sigma_D/R_m", origin="derived")
-    exponent = Value(material.woehler_exponent, "-", "ln(N_k/N_Rm) / ln(R_m/sigma_D)", origin="derived")
+    of_limit, of_exponent = "R_m times sigma_D/R_m", "ln(N_k/N_Rm) / ln(R_m/sigma_D)"
+    if material.sn_points:
+        of_limit, of_exponent = "the last point of sn_points", "of the last two points of sn_points"
+        ratio = material.records.get("fatigue_strength_ratio")
+        record = Value(nan, "MPa, -", ratio.source if ratio else "not given", bool(ratio and ratio.placeholder))
+        shown = "; ".join(f"{stress:g}, {cycles:g}" for stress, cycles in material.sn_points)
+        rows.append(_row("sn_points", "sigma_a, N", record) | {"value": shown})
+    limit = Value(material.fatigue_limit, "MPa", of_limit, origin="derived")
+    exponent = Value(material.woehler_exponent, "-", of_exponent, origin="derived")
     if (table := material.temperature_dependence) is not None:
         over = ", ".join(f"{value:g}" for value in table.temperature)
         for name, column in table.columns.items():

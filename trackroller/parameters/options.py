@@ -231,8 +231,8 @@ _OPTIONS = (
         "elementary",
         "S-N curve below the fatigue limit",
         {
-            "elementary": "the curve runs on (Miner elementary)",
-            "haibach": "slope 2k - 1 (Haibach)",
+            "elementary": "the curve runs on (Miner elementary), with its second exponent if the material gives one",
+            "haibach": "slope 2k - 1 (Haibach), or the second exponent if the material gives one",
             "unlimited": "no failure (Miner original)",
         },
     ),

@@ -74,7 +74,13 @@ def material_rows(material: Material) -> list[Row]:
         # a symbol that the words or the unit hold already is not repeated
         words = one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
         rows.append(Row(words, "not given") if value is None else Row(words, number(value), row_unit(one.unit)))
-    return [*rows, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
+    rows.append(Row("exponent k of the S-N curve", rounded(material.woehler_exponent)))
+    if material.second_exponent is not None:
+        rows.append(Row(f"{PROPERTIES['second_exponent'].label} k_2", rounded(material.second_exponent)))
+    if material.sn_points:
+        shown = "; ".join(f"{rounded(stress)} MPa at {rounded(cycles)}" for stress, cycles in material.sn_points)
+        rows.append(Row("S-N curve by points", shown))
+    return rows
 
 
 def factor_table(results: Results) -> Table | None:
