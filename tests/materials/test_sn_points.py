@@ -101,6 +101,8 @@ def test_each_number_of_a_line_keeps_its_own_mark():
     assert one.placeholders == ("cycles_at_tensile_strength",)
     assert one.records["cycles_at_tensile_strength"].note == "measure"
     assert material(sn_points={"value": POINTS, "placeholder": True}).placeholders
+    in_gpa = [[stress / 1e3, cycles] for stress, cycles in POINTS]
+    assert material(sn_points={"value": in_gpa, "unit": "GPa"}).fatigue_limit == pytest.approx(400)
 
 
 def test_the_values_of_a_material_make_the_same_material_again():

@@ -229,8 +229,8 @@ class EntryParser:
     ) -> tuple[Points, dict[str, Value]]:
         """Return the points that an entry gives, and a value that holds their source and mark by names of `CURVE`."""
         record = entry[POINTS] if isinstance(entry[POINTS], Mapping) else {"value": entry[POINTS]}
-        check_names(f"{where}.{POINTS}: key", record, ("value", "source", "placeholder", "note"))
-        points = read_points(record.get("value"), where)
+        check_names(f"{where}.{POINTS}: key", record, ("value", "unit", "source", "placeholder", "note"))
+        points = read_points(record.get("value"), where, str(record.get("unit", "MPa")))
         mark = {key: record[key] for key in ("source", "placeholder", "note") if key in record}
         line = self.value(ALTERNATIVES["fatigue_limit"], {"value": points[-1][0], **mark}, where)
         # R_m may lie below the line, so that the bounds of these numbers do not hold beside points

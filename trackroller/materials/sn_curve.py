@@ -36,7 +36,7 @@ _OF_POINT = (
 )
 
 
-def read_points(given: Any, where: str) -> Points:
+def read_points(given: Any, where: str, unit: str = "MPa") -> Points:
     """Return the points of a line from the largest stress to the knee, whose order in a file does not matter.
 
     Parameters
@@ -45,6 +45,8 @@ def read_points(given: Any, where: str) -> Points:
         At least two points [stress in MPa, cycles]; a number may have a unit of its own.
     where : str
         Place of the material, for messages.
+    unit : str
+        Unit of the stresses.
 
     Raises
     ------
@@ -60,7 +62,7 @@ def read_points(given: Any, where: str) -> Points:
         if not isinstance(point, (list, tuple)) or len(point) != 2:
             raise InputError(f"{field}, point {i}", point, "a pair [stress in MPa, cycles]", "Give both numbers.")
         of = f"{field}, point {i}"
-        points.append((check_number(_OF_POINT[0], point[0], of), check_number(_OF_POINT[1], point[1], of)))
+        points.append((check_number(_OF_POINT[0], point[0], of, unit), check_number(_OF_POINT[1], point[1], of)))
     points.sort(key=lambda point: -point[0])
     for (high, early), (low, late) in itertools.pairwise(points):
         if not (high > low and early < late):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import nan
 
-from trackroller.errors import unknown_name
+from trackroller.errors import InputError
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
@@ -16,7 +16,8 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
     """
     rows, names = [], database.search(search) if search else database.names()
     if not names:
-        raise unknown_name("material", search, database.names())
+        remedy = "`trackroller materials list` shows all materials."
+        raise InputError("material", search, "words of the name or the description of a material", remedy)
     for material in map(database.material, names):
         row = {"name": material.name, "family": material.family or "-"}
         for name in REQUIRED:

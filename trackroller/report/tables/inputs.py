@@ -158,7 +158,9 @@ def material_source(values: Mapping[str, Any]) -> str:
     """Return where the values of a material come from, and which of them are guesses."""
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
     guesses = values.get("guesses", ())
-    return f"{source}." + (f" Guesses without a source: {', '.join(map(plain, guesses))}." if guesses else "")
+    return f"{source}." + (
+        f" Guesses without a source: {', '.join(map(plain, guesses))}. Measure them." if guesses else ""
+    )
 
 
 def friction_table(attrs: Mapping[str, Any]) -> Table | None:
@@ -172,8 +174,9 @@ def friction_table(attrs: Mapping[str, Any]) -> Table | None:
 
 
 def friction_source(record: Mapping[str, Any]) -> str:
-    """Return where a friction coefficient of the database comes from, and whether it is a placeholder."""
-    return f"{record['source']}{' (placeholder)' * record['placeholder']}"
+    """Return where a friction coefficient of the database comes from, its note, and whether it is a placeholder."""
+    note = f"; {record['note']}" if record.get("note") else ""
+    return f"{record['source']}{' (placeholder)' * record['placeholder']}{note}"
 
 
 def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:
