@@ -114,10 +114,7 @@ def line_values(points: Points, strength: Value, sources: Mapping[str, Value]) -
         Values whose source and mark the three numbers of the line take over, by their names in `CURVE`.
     """
     numbers = numbers_of_line(points, strength.value)
-    return {
-        name: _derived(value, sources[name], sources[name].note or "from the S-N curve as given")
-        for name, value in numbers.items()
-    }
+    return {name: _derived(value, sources[name], sources[name].note) for name, value in numbers.items()}
 
 
 def refuse_other_line(points: Points, given: Mapping[str, float], strength: float | None, where: str) -> None:
