@@ -15,6 +15,8 @@ from pathlib import Path
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))  # docs/validation must not stand for the package
 
 from trackroller import parameters as p
+from trackroller.materials import builtin_database
+from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.dataset import COMMENTS, VARIABLES
@@ -60,6 +62,9 @@ The [theory](theory.md) derives the quantities.*
 """
 
 
+_VALUES = (*PROPERTIES.values(), *ALTERNATIVES.values())
+
+
 def _row(*cells: object) -> str:
     return "| " + " | ".join(str(cell).replace("|", "\\|") for cell in cells) + " |"
 
@@ -98,6 +103,20 @@ def _option(option: p.Option) -> tuple[str, str, str, str]:
     )
 
 
+def _materials() -> list[tuple[object, ...]]:
+    """Return a row for each material of the built-in database."""
+    return [
+        (
+            f"`{m.name}`",
+            f"{m.tensile_strength:g}",
+            f"{m.fatigue_limit:g}",
+            len(m.placeholders) + len(m.guesses_of_limits),
+            m.description,
+        )
+        for m in map(builtin_database().material, builtin_database())
+    ]
+
+
 def render() -> str:
     """Return the text of docs/parameters.md."""
     lines = [HEAD, "## Parameters of a case\n"]
@@ -120,6 +139,15 @@ def render() -> str:
         "`roller_material` and `guide_material` take a name of the material database, or a mapping of material values;",
         "the default is `1.7225-normalised`. Both relative curvatures must be positive, else the input is refused.\n",
         *_table(("name", "meaning"), [(f"`{name}`", told) for name, told in p.MAPPING_FIELDS.items()]),
+        "### Materials of the database\n",
+        "`trackroller materials show NAME` lists every value with its source and mark.\n",
+        *_table(("name", "R_m [MPa]", "sigma_D [MPa]", "guesses", "description"), _materials()),
+        "### Values of a material\n",
+        "`sn_points`, `temperature_dependence`, `family`, `description` and `like` stand beside these numbers.\n",
+        *_table(
+            ("name", "symbol", "unit", "meaning"),
+            [(f"`{v.name}`", v.symbol or "-", v.unit, v.long_name) for v in _VALUES],
+        ),
         "## Options\n",
     ]
     lines += _table(("name", "values", "default", "meaning"), [_option(option) for option in p.OPTIONS.values()])

@@ -129,7 +129,7 @@ def groups() -> dict[str, tuple[Cases, dict[str, Any]]]:
     }
     found |= {f"sliding_{spin}": (ORDINARY[:4], preview | {"spin_model": spin}) for spin in ("concentric", "edge")}
     found |= {f"life_{rule}": (ORDINARY, preview | {"life_rule": rule}) for rule in ("haibach", "unlimited")}
-    for criterion in ("von_mises_amplitude", "findley", "dang_van"):
+    for criterion in ("von_mises_amplitude", "goodman", "findley", "dang_van"):
         own = {"life_criterion": criterion, "credit_pressure": False, "outputs": ("peak_stress", "life")}
         found[f"limits_{criterion}"] = (ORDINARY[:2], preview | own)
     published = {"hertz": "published", "stress_bodies": "published"}

@@ -19,6 +19,7 @@ QUICK = {"contact_model": "sliding", "accuracy": "preview"}
     ("criterion", "credit", "result"),
     [
         ("von_mises_amplitude", True, "von_mises_amplitude"),
+        ("goodman", True, "goodman_stress"),
         ("findley", True, "findley_utilisation"),
         ("dang_van", True, "dang_van_utilisation"),
         ("dang_van", False, "dang_van_utilisation_without_pressure"),
@@ -28,7 +29,7 @@ def test_the_stress_of_the_criterion_enters_the_sn_curve(criterion, credit, resu
     """A share of 1 of a criterion's limit is the fatigue limit, so it gives N_k overrollings."""
     options = {**QUICK, "life_criterion": criterion, "credit_pressure": credit}
     ds = tr.solve(tr.Case(**FREE), outputs=("life", "multiaxial", "limits"), **options)
-    stress = ds[result] * (1.0 if criterion == "von_mises_amplitude" else 360.0)
+    stress = ds[result] * (1.0 if criterion in ("von_mises_amplitude", "goodman") else 360.0)
     assert np.allclose(ds.fatigue_stress, stress, rtol=1e-14)
     assert np.allclose(ds.life_cycles, 5e6 * (stress / 360.0) ** -STEEL_EXPONENT, rtol=1e-12)
     used = ds.utilisation.sel(limit="fatigue")
@@ -67,3 +68,17 @@ def test_softer_stress_of_a_criterion_lengthens_the_life_of_a_spectrum():
     total = lives["von_mises_amplitude"].damage_sum
     assert np.allclose(damage.sum("block").transpose(*total.dims), total, rtol=1e-12)
     assert lives["von_mises_amplitude"].roller_life_shifts > 2 * lives["von_mises_peak"].roller_life_shifts
+
+
+def test_a_roller_by_goodman_exceeds_its_amplitude_as_far_as_its_strength_lets_it():
+    """A point is unloaded in between, so that the stress pulsates, and a strength without end leaves the amplitude.
+
+    Amplitude and mean lie within a circle whose radius is the peak stress.
+    """
+    steels = [{"like": "1.7225-normalised", "tensile_strength": strength} for strength in (720.0, 2e4)]
+    cases = [tr.Case(**FREE, roller_material=steel) for steel in steels]
+    ds = tr.solve(cases, ("multiaxial", "peak_stress"), **QUICK).sel(body="roller")
+    assert (ds.goodman_stress > ds.von_mises_amplitude).all()
+    bound = ds.peak_stress[0] / np.sqrt(1.0 - (ds.peak_stress[0] / 720.0) ** 2)
+    assert (ds.goodman_stress[0] < bound).all() and (ds.goodman_stress[0] > 1.2 * ds.von_mises_amplitude[0]).all()
+    assert np.allclose(ds.goodman_stress[1], ds.von_mises_amplitude[1], rtol=0.05)

@@ -17,7 +17,7 @@ A, B = m.dang_van_constants(np.array(300.0), np.array(190.0))
 
 def amplitude(path):
     """Half the longest chord as a von Mises stress."""
-    return np.sqrt(3.0) * paths.governing(path[None], np.nan, np.nan)[0]
+    return np.sqrt(3.0) * paths.governing(path[None], np.nan, np.nan, np.inf)[0]
 
 
 def deviators(stress):
@@ -97,9 +97,48 @@ def test_skipped_lines_do_not_change_the_result():
     for k, a in ((0.3, 0.4), (0.0, 0.0), (1.5, 2.0)):
         some = rng.normal(size=(60, 20, 6)) * rng.uniform(0.2, 1, (60, 1, 1)) - 0.5 * np.eye(6)[0]
         mises, pressed = [amplitude(path) for path in some], np.array([paths.dang_van(path, a) for path in some])
-        found = paths.governing(some, k, a)
+        found = paths.governing(some, k, a, np.inf)
         assert np.sqrt(3.0) * found[0] == max(mises) and found[1] == max(paths.findley(path, k) for path in some)
-        assert found[2:].tolist() == pressed.max(axis=0).tolist()
+        assert found[2:4].tolist() == pressed.max(axis=0).tolist()
+        for strength in (1.5, 4.0, 12.0, np.inf):
+            worst = max(paths.goodman(deviators(path)[0], strength) for path in some)
+            assert paths.governing(some, k, a, strength)[4] == worst
+        assert worst == pytest.approx(max(mises), rel=1e-12)  # a material that never breaks knows no mean stress
+
+
+def goodman(path, strength):
+    return paths.governing(path[None], np.nan, np.nan, strength)[4]
+
+
+def test_goodman_in_closed_form():
+    """No mean stress changes nothing; the strength falls on a line, and is zero at a mean of R_m."""
+    assert goodman(history(bending=200.0), 800.0) == pytest.approx(200.0, rel=1e-12)
+    assert goodman(history(torsion=100.0), 800.0) == pytest.approx(np.sqrt(3) * 100.0, rel=1e-12)
+    for mean in (100.0, 400.0, 700.0, -400.0):
+        shifted = history(bending=50.0, mean=mean)
+        expected = 50.0 / (1.0 - abs(mean) / 800.0)
+        pulse = np.abs(shifted[:, 0]).max()  # of the states of the path alone, none is unloaded
+        assert goodman(shifted, 800.0) == pytest.approx(expected, rel=1e-12) and pulse > 50.0
+    assert goodman(history(bending=1e-3, mean=800.0), 800.0) == np.inf
+    assert goodman(history(mean=500.0), 800.0) == 0.0  # a steady stress is no amplitude
+    pulsating = np.array([np.zeros(6), np.eye(6)[0] * 300.0])
+    assert goodman(pulsating, 600.0) == pytest.approx(150.0 / (1.0 - 150.0 / 600.0), rel=1e-12)
+    assert goodman(pulsating - np.array([70.0, 70.0, 70.0, 0, 0, 0]), 600.0) == pytest.approx(200.0, rel=1e-12)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_goodman_of_any_path_is_that_of_its_worst_two_states(seed):
+    rng = np.random.default_rng(seed)
+    path = rng.normal(size=(15, 6)) * 100
+    pairs = [(p, q) for i, p in enumerate(path) for q in path[:i]]
+    amplitudes, means = (np.array([von_mises(f(p, q) / 2.0) for p, q in pairs]) for f in (np.subtract, np.add))
+    strength = 1.2 * means.max()
+    worst = np.max(amplitudes / (1.0 - means / strength))
+    assert goodman(path, strength) == pytest.approx(worst, rel=1e-12)
+    assert goodman(turned(path, seed), strength) == pytest.approx(worst, rel=1e-12)
+    peak = np.sqrt(np.max(von_mises(path) ** 2))
+    chord = amplitude(path)
+    assert worst <= paths.goodman_bound(chord, peak, strength) * (1 + 1e-12)
 
 
 def test_a_frictionless_roller_has_the_amplitude_of_its_path():

@@ -7,6 +7,7 @@ import trackroller as tr
 from trackroller.damage import groups_of
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
+from trackroller.materials.properties import OF_LIMITS
 
 DB = builtin_database()
 GIVEN = {"heat_transfer_coefficient": 20, "cooled_area": 5000, "permissible_wear_depth": 0.1, "required_travel": 1e3}
@@ -21,14 +22,14 @@ def test_the_ends_of_the_ranges_and_the_values_are_reached(name):
     moved = 0
     for key, record in material.records.items():
         values = [getattr(own, key) for own in (worse, same, better, between)]
-        if record.range is None or not record.placeholder:
+        if record.range is None or not record.placeholder or key not in OF_LIMITS:
             assert len(set(values)) == 1
             continue
         moved += 1
         ends = record.range if key != "loss_fraction" else record.range[::-1]
         assert (values[0], values[2]) == tuple(ends) and values[1] == record.value
         assert values[3] == pytest.approx(record.value + 0.25 * (ends[0] - record.value))
-    assert moved >= 6 and worse.youngs_modulus == material.youngs_modulus
+    assert moved >= 3 and worse.youngs_modulus == material.youngs_modulus
 
 
 @pytest.mark.parametrize("roller", DB.names())
@@ -43,8 +44,11 @@ def test_every_limit_is_worse_at_the_worse_end_and_better_at_the_better_one(roll
     with np.errstate(invalid="ignore"):
         assert not (hours[1:] < hours[:-1] * (1 - 1e-12)).any()
     moved = used[0] > used[-1] * (1 + 1e-9)
-    for limit in ("shakedown", "heat", "wear"):
-        assert moved[ds.limit.values.tolist().index(limit), 0], limit
+    records = DB.material(roller).records
+    for limit, value in (("shakedown", "yield_strength"), ("heat", "loss_fraction"), ("wear", "")):
+        rests = value not in records or records[value].placeholder  # a published yield strength does not move
+        known = limit != "shakedown" or value in records
+        assert moved[ds.limit.values.tolist().index(limit), 0] == (rests and known), limit
     assert ds.utilisation.sel(limit="static").values.std(axis=0) == pytest.approx(0.0)
 
 

@@ -301,7 +301,7 @@ def test_wear_without_friction_is_the_limit_of_little_friction():
 
 def test_placeholders_and_missing_values_are_told():
     guessed = solved(roller_material="POM", radial_force=-60, axial_force=5, motor_force=0).attrs["limits_notes"]
-    assert "wear: placeholders of material 'POM': wear_coefficient (on 1.7225-normalised, expected from" in guessed
+    assert "wear: placeholders of material 'POM': wear_coefficient (on 1.7225-normalised, measure, expected" in guessed
     measured = solved(("wear",), roller_material=steel(K), guide_material=steel(K))
     assert measured.attrs["limits_notes"] == ""
     unknown = {"like": QUENCHED, "family": "PEEK"}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -48,6 +48,43 @@ def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> No
     print_table(heads, [[row.get(head, "") for head in heads] for row in rows])
 
 
+def _points_of(path: Path) -> dict[str, Any]:
+    """Return the points of an S-N curve in a table with the columns amplitude and cycles, and their source."""
+    from trackroller.errors import Collector, InputError
+    from trackroller.files import sha256
+    from trackroller.numerics.cells import split_head
+    from trackroller.study.file.user_table import read_table
+
+    wrong = Collector()
+    table = read_table(path, "sn_points", "point", wrong)
+    wrong.check()
+    places = {split_head(head)[0]: (j, split_head(head)[1]) for j, head in enumerate(table.names)}
+    if set(places) != {"amplitude", "cycles"}:
+        remedy = "Name the columns so, the amplitude with its unit in brackets, and remove other columns."
+        given, allowed = ", ".join(table.names), "the columns amplitude [MPa] and cycles"
+        raise InputError("sn_points", given, allowed, remedy).at(path, table.head)
+    points = []
+    for number, cells in table.lines.items():
+        try:
+            points.append([_number(cells[places[name][0]], name, places[name][1]) for name in ("amplitude", "cycles")])
+        except InputError as error:
+            raise error.at(path, number) from None
+    return {"value": points, "source": f"{path.name}, SHA-256 {sha256(path)}"}
+
+
+def _number(cell: str, name: str, unit: str) -> float:
+    """Return the number of a cell in MPa or as cycles; the head of its column or the cell itself states the unit."""
+    from trackroller.errors import InputError
+    from trackroller.numerics.numbers import number_or_nan
+    from trackroller.numerics.units import in_unit, split_quantity
+
+    wanted = "MPa" if name == "amplitude" else "-"
+    value = number_or_nan(cell, wanted, name)
+    if value != value:
+        raise InputError(name, cell, "a number", "Correct the cell.")
+    return value if split_quantity(cell) or not unit else in_unit(value, unit, wanted, name)
+
+
 @materials.command("add")
 def materials_add(
     name: Annotated[str, typer.Argument(show_default=False)],
@@ -55,11 +92,14 @@ def materials_add(
     file: Annotated[Path, typer.Option(help="your materials file")] = Path("config/materials.yaml"),
     replace: Annotated[bool, typer.Option("--replace", help="change a material that the file has already")] = False,
 ) -> None:
-    """Write a material into your own file; comments in the file stay."""
+    """Write a material into your own file; comments in the file stay. sn_points takes the name of a table, too."""
     from trackroller.cli.case import settings_of
     from trackroller.materials import add_material
     from trackroller.roller.doubts import doubts
 
-    material = add_material(file, name, replace=replace, **settings_of(settings))
+    values = settings_of(settings)
+    if isinstance(values.get("sn_points"), str):
+        values["sn_points"] = _points_of(Path(values["sn_points"]))
+    material = add_material(file, name, replace=replace, **values)
     print(f"material '{material.name}' is in {file}")
     print_doubts(doubts({}, [material]))

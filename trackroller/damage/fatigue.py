@@ -1,7 +1,8 @@
 """Rolling-contact fatigue by the S-N curve: overrollings and hours to failure of both bodies.
 
 ASSUME: the stress of the life criterion is the fully reversed amplitude, without a correction for size, and one
-overrolling is one cycle. The published criterion takes the peak von Mises stress, without a correction for mean stress.
+overrolling is one cycle. The published criterion takes the peak von Mises stress, without a correction for mean stress;
+`goodman` corrects for it.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST
 # results of `multiaxial` that enter the S-N curve by a life criterion; of the ratios to a limit, 1 stands for sigma_D
 STRESS_OF = {
     "von_mises_amplitude": "von_mises_amplitude",
+    "goodman": "goodman_stress",
     "findley": "findley_utilisation",
     "dang_van": "dang_van_utilisation",
 }
@@ -36,7 +38,7 @@ def amplitude(solved: SolvedRollers) -> np.ndarray:
     name = STRESS_OF[criterion]
     if criterion == "dang_van" and not solved.options["credit_pressure"]:
         name = "dang_van_utilisation_without_pressure"
-    limit = 1.0 if criterion == "von_mises_amplitude" else solved.materials["fatigue_limit"][:, None, :]
+    limit = 1.0 if criterion in ("von_mises_amplitude", "goodman") else solved.materials["fatigue_limit"][:, None, :]
     return np.asarray(values[name] * limit)
 
 

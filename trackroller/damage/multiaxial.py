@@ -1,7 +1,10 @@
-"""Fatigue by multiaxial criteria: von Mises amplitude, Findley and Dang Van, from the stresses during an overrolling.
+"""Fatigue by multiaxial criteria: von Mises amplitude, Goodman, Findley and Dang Van, from the stresses of a point.
 
 The unloaded state before and after the overrolling belongs to the stress path of each point, see `paths`.
 
+ASSUME: Goodman's amplitude and mean are the von Mises stresses of half the difference and of the middle of two states
+of a point (Budynas and Nisbett, Shigley's Mechanical Engineering Design, 10th ed., section 6-14); the worst two count.
+A von Mises stress has no sign, so that a mean under pressure lowers the strength as one under tension does.
 ASSUME: shakedown to the centre of the smallest ball that holds the path of the deviator (Dang Van, mesoscopic).
 """
 
@@ -78,12 +81,13 @@ def evaluate(solved: SolvedRollers) -> Results:
 
     def of_patch(case: int, contact: int) -> list[np.ndarray]:
         paths = stress_paths(t, case, contact, m["poisson_ratio"][case])
-        return [governing(*own) for own in zip(paths, k[case], a[case], strict=True)]
+        return [governing(*own) for own in zip(paths, k[case], a[case], m["tensile_strength"][case], strict=True)]
 
-    criteria = t.by_patch(of_patch, 2, 4)
+    criteria = t.by_patch(of_patch, 2, 5)
     criteria[..., 0] *= np.sqrt(3.0)  # from the coordinates of the deviator to a von Mises stress
     return {
         "von_mises_amplitude": criteria[..., 0],
+        "goodman_stress": criteria[..., 4],
         "findley_stress": criteria[..., 1],
         "dang_van_stress": criteria[..., 2],
         "dang_van_stress_without_pressure": criteria[..., 3],
@@ -98,7 +102,7 @@ LIMIT = Limit(
     name="multiaxial",
     title="multiaxial fatigue (Findley, Dang Van)",
     group="multiaxial",
-    meaning="von Mises amplitude, Findley's and Dang Van's stress while a point is overrolled",
+    meaning="von Mises amplitude, Goodman's, Findley's and Dang Van's stress while a point is overrolled",
     evaluate=evaluate,
     needs=(TRACTIONS,),
     results=variables(
@@ -109,6 +113,14 @@ LIMIT = Limit(
             "MPa",
             "sigma_a",
             "half the longest chord of the deviator's path, von Mises",
+            LARGEST,
+        ),
+        (
+            "goodman_stress",
+            _CB,
+            "MPa",
+            "sigma_a/(1 - sigma_m/R_m)",
+            "von Mises amplitude, fully reversed by Goodman's line",
             LARGEST,
         ),
         ("findley_stress", _CB, "MPa", "tau_a + k_F sigma_n", "largest stress of Findley's criterion", LARGEST),

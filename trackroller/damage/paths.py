@@ -56,6 +56,44 @@ def chords(u):  # pragma: no cover (compiled)
 
 
 @compiled
+def goodman(u, strength):  # pragma: no cover (compiled)
+    """Return the largest fully reversed von Mises stress [MPa] to which Goodman's line turns two states of a path.
+
+    Parameters
+    ----------
+    u : numpy.ndarray
+        Coordinates of the deviator, (t, 5) [MPa].
+    strength : float
+        R_m > 0 [MPa], at which a mean stress leaves no strength: the stress is then infinite.
+    """
+    largest = 0.0
+    for i in range(len(u)):
+        for k in range(i):
+            apart, middle = 0.0, 0.0
+            for j in range(5):
+                apart, middle = apart + (u[i, j] - u[k, j]) ** 2, middle + (u[i, j] + u[k, j]) ** 2
+            left = 1.0 - math.sqrt(0.75 * middle) / strength
+            if apart > 0.0:
+                largest = max(largest, math.sqrt(0.75 * apart) / left if left > 0.0 else np.inf)
+    return largest
+
+
+@compiled
+def goodman_bound(amplitude, peak, strength):  # pragma: no cover (compiled)
+    """Return a stress that `goodman` does not exceed for a path with an amplitude and a largest von Mises stress.
+
+    Two states p and q keep |p - q|^2 + |p + q|^2 = 2 |p|^2 + 2 |q|^2, so that amplitude and mean lie within a circle
+    whose radius is the largest stress.
+    """
+    if peak >= strength:
+        return np.inf
+    steep = math.sqrt(1.0 - (peak / strength) ** 2)
+    if peak * steep <= amplitude:
+        return peak / steep
+    return amplitude / (1.0 - math.sqrt(peak**2 - amplitude**2) / strength)
+
+
+@compiled
 def on_plane(path, normal, k, step):  # pragma: no cover (compiled)
     """Return tau_a + k sigma_n,max on a plane with its normal (3,), from every `step`-th stress of a path."""
     x, y, z = normal[0], normal[1], normal[2]
@@ -147,18 +185,19 @@ def dang_van(path, a):  # pragma: no cover (compiled)
 
 
 @compiled
-def _bounds(paths, k, a):  # pragma: no cover (compiled)
-    """Return upper bounds (m, 4) of half the chord, Findley's and Dang Van's stress with and without credit."""
-    out, u = np.empty((len(paths), 4)), np.empty((paths.shape[1], 5))
+def _bounds(paths, k, a, strength):  # pragma: no cover (compiled)
+    """Return upper bounds (m, 5) of the stresses of `governing`."""
+    out, u = np.empty((len(paths), 5)), np.empty((paths.shape[1], 5))
     for i in range(len(paths)):
         low, high = np.full(5, np.inf), np.full(5, -np.inf)
-        normal, pressed, mean = -np.inf, -np.inf, 0.0
+        normal, pressed, mean, longest = -np.inf, -np.inf, 0.0, 0.0
         for t in range(len(u)):
             mean = deviator(paths[i, t], u[t])
             square = 0.0
             for j in range(5):
                 low[j], high[j], square = min(low[j], u[t, j]), max(high[j], u[t, j]), square + u[t, j] ** 2
             normal, pressed = max(normal, mean + 2.0 * math.sqrt(square / 3.0)), max(pressed, mean)
+            longest = max(longest, square)
         radius = 0.0  # of a ball around the middle, which holds the path: no smaller than the smallest one
         for t in range(len(u)):
             square = 0.0
@@ -168,12 +207,27 @@ def _bounds(paths, k, a):  # pragma: no cover (compiled)
         radius = math.sqrt(radius)
         out[i, 0], out[i, 1] = radius, radius + k * normal
         out[i, 2], out[i, 3] = radius + a * pressed, radius + a * max(pressed, 0.0)
+        peak = math.sqrt(3.0 * longest)
+        out[i, 4] = goodman_bound(min(math.sqrt(3.0) * radius, peak), peak, strength)
     return out
 
 
 @compiled
-def governing(paths, k, a):  # pragma: no cover (compiled)
-    """Return the largest half chord, Findley's and Dang Van's stress with and without credit over paths.
+def _governing_goodman(paths, own, strength):  # pragma: no cover (compiled)
+    """Return Goodman's largest stress over paths with upper bounds `own` (m,), which it overwrites [MPa]."""
+    best, u = -np.inf, np.empty((paths.shape[1], 5))
+    while True:
+        i = np.argmax(own)
+        if own[i] <= best:
+            return best
+        for t in range(len(u)):
+            deviator(paths[i, t], u[t])
+        best, own[i] = max(best, goodman(u, strength)), -np.inf
+
+
+@compiled
+def governing(paths, k, a, strength):  # pragma: no cover (compiled)
+    """Return the largest half chord, Findley's and Dang Van's stress with and without credit, and Goodman's over paths.
 
     Parameters
     ----------
@@ -181,13 +235,15 @@ def governing(paths, k, a):  # pragma: no cover (compiled)
         Paths, (m, t, 6) [MPa].
     k, a : float
         k_F and a_D [1]; NaN leaves out both criteria.
+    strength : float
+        R_m > 0 [MPa].
 
     Returns
     -------
     numpy.ndarray
-        (4,) [MPa]; the half chord in the coordinates of `deviator`.
+        (5,) [MPa]; the half chord in the coordinates of `deviator`.
     """
-    bounds, out = _bounds(paths, k, a), np.full(4, np.nan)
+    bounds, out = _bounds(paths, k, a, strength), np.full(5, np.nan)
     sharp, known = np.zeros(len(paths), dtype=np.bool_), np.full((len(paths), 2), np.nan)
     u = np.empty((paths.shape[1], 5))
     for kind in range(1 if np.isnan(k + a) else 4):
@@ -213,4 +269,5 @@ def governing(paths, k, a):  # pragma: no cover (compiled)
                 else:
                     own[i], sharp[i] = min(own[i], 0.5 * shear + k * highest), True
         out[kind] = best
+    out[4] = _governing_goodman(paths, bounds[:, 4].copy(), strength)
     return out

@@ -1,14 +1,16 @@
 """The S-N curve (Wöhler line): cycles to failure for a stress, its scatter and its inverse.
 
 The curve is straight in logarithms through (N_Rm, R_m) and the knee (N_k, sigma_D) (Wenzel et al. 2022 after
-DIN 50100:2016). Stresses are in MPa, cycles and probabilities in 1; arrays may have any shapes that broadcast.
+DIN 50100:2016), or through the points that a material gives, whose last one is the knee. Stresses are in MPa, cycles
+and probabilities in 1; arrays may have any shapes that broadcast.
 
 ASSUME: the curve of the database holds for a failure probability of 50 %.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import json
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -22,6 +24,7 @@ CONVENTIONS = {
     "haibach": "Haibach: slope 2k-1 below the fatigue limit",
     "unlimited": "Miner original: unlimited life below the fatigue limit",
 }
+GIVEN_SLOPE = "a second exponent that a material gives holds below its fatigue limit, except with unlimited life"
 PROBABILITIES = (0.1, 0.5, 0.9)
 DEVIATES_10_TO_90 = 2.5631031310892007  # standard deviations of a normal distribution from 10 % to 90 %
 
@@ -47,6 +50,45 @@ def curve_exponent(cycles: np.ndarray | float, stresses: np.ndarray | float) -> 
     return np.log(cycles) / np.log(stresses)
 
 
+def segments(points: Any) -> np.ndarray | None:
+    """Return where the exponent of a line by points changes: stress over sigma_D, and the exponent above it.
+
+    Parameters
+    ----------
+    points : None, sequence of pairs, or numpy.ndarray of str
+        Stresses [MPa] and cycles [1] of one line, (m, 2), from the largest stress to the knee. Or the lines of an
+        array of materials of any shape as JSON, "" for none.
+
+    Returns
+    -------
+    numpy.ndarray or None
+        Rising stresses over sigma_D from 1 on, and exponents, (..., m - 1, 2) [1]; NaN behind a line that has fewer
+        points than others. None without any line.
+
+    Examples
+    --------
+    >>> segments([(400.0, 1e4), (200.0, 1e5), (100.0, 1e7)]).round(3).tolist()
+    [[1.0, 6.644], [2.0, 3.322]]
+    """
+    if isinstance(points, np.ndarray) and points.dtype == object:
+        lines = {text: _of_line(json.loads(text)) for text in set(points.ravel().tolist()) if text}
+        if not lines:
+            return None
+        out = np.full((*points.shape, max(map(len, lines.values())), 2), np.nan)
+        for text, line in lines.items():
+            out[points == text, : len(line)] = line
+        return out
+    return _of_line(points) if points else None
+
+
+def _of_line(points: Any) -> np.ndarray:
+    """Return starts and exponents of the pieces of one line by points, (m - 1, 2)."""
+    stresses, cycles = np.asarray(points, dtype=float)[::-1].T
+    return np.stack(
+        [stresses[:-1] / stresses[0], curve_exponent(cycles[:-1] / cycles[1:], stresses[1:] / stresses[:-1])], axis=1
+    )
+
+
 @dataclass(frozen=True)
 class SNCurve:
     """An S-N curve with its rule below the fatigue limit, its scatter and its failure probability.
@@ -61,11 +103,17 @@ class SNCurve:
         Cycles at R_m and at sigma_D at a failure probability of 50 %, 0 < N_Rm < N_k [1].
     rule : str
         Below sigma_D "elementary" runs the curve on, "haibach" takes the slope 2k - 1, "unlimited" gives no failure.
+        A second exponent takes the place of k and of 2k - 1.
     scatter_cycles, scatter_stress : array_like, optional
         T_N = N_90/N_10 and T_S = S_90/S_10, both >= 1 [1]; the index is the failure probability in percent. A missing
         one (None or NaN) follows from T_N = T_S^k. Without both there is no scatter.
     failure_probability : array_like
         Failure probability of the lives, between 0 and 1 [1]. Without scatter it has no effect.
+    segments : numpy.ndarray, optional
+        Lines by points above sigma_D, see `segments`, (..., m, 2). They take the place of the line to R_m; NaN where a
+        material gives no points. The exponent k is that of the segment that ends at the knee.
+    second_exponent : array_like, optional
+        Exponent below sigma_D [1]; None or NaN where a material gives none.
 
     Raises
     ------
@@ -87,11 +135,15 @@ class SNCurve:
     scatter_cycles: Any = None
     scatter_stress: Any = None
     failure_probability: Any = 0.5
+    segments: Any = None
+    second_exponent: Any = None
 
     def __post_init__(self) -> None:
         check_names("life_rule", [self.rule], CONVENTIONS)
         strength, limit, first, knee = self._points
-        if not np.all((limit > 0) & (strength > limit) & (first > 0) & (knee > first)):
+        falls = (limit > 0) & (strength > limit) & (first > 0) & (knee > first)
+        by_points = (limit > 0) & (knee > 0) & np.isfinite(self._of_points(0)[1])
+        if not np.all(falls | by_points):
             given = "R_m, sigma_D, N_Rm, N_k"
             allowed = "a curve that falls: R_m > sigma_D > 0 and N_k > N_Rm > 0"
             raise InputError("S-N curve", given, allowed, "Correct the material.")
@@ -125,7 +177,8 @@ class SNCurve:
         limit = known["fatigue_limit"] if "fatigue_limit" in known else known["fatigue_strength_ratio"] * strength
         knees = known["cycles_at_tensile_strength"], known["cycles_at_fatigue_limit"]
         scatter = known.get("scatter_in_cycles"), known.get("scatter_in_stress")
-        return cls(strength, limit, *knees, rule, *scatter)
+        line = {"segments": segments(known.get("sn_points")), "second_exponent": known.get("second_exponent")}
+        return cls(strength, limit, *knees, rule, *scatter, **line)
 
     def changed(self, **values: Any) -> SNCurve:
         """Return the curve with other values for some of its fields."""
@@ -138,9 +191,31 @@ class SNCurve:
 
     @property
     def exponent(self) -> np.ndarray:
-        """Return the exponent k = ln(N_k/N_Rm) / ln(R_m/sigma_D) > 0 [1]."""
+        """Return the exponent k = ln(N_k/N_Rm) / ln(R_m/sigma_D) > 0 [1], or that of the segment above the knee."""
         strength, limit, first, knee = self._points
-        return np.asarray(curve_exponent(knee / first, strength / limit))
+        by_points = self._of_points(0)[1]
+        with np.errstate(divide="ignore", invalid="ignore"):  # R_m plays no part in a line by points
+            to_strength = curve_exponent(knee / first, strength / limit)
+        return np.asarray(np.where(np.isfinite(by_points), by_points, to_strength))
+
+    def _of_points(self, i: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return start [1] and exponent [1] of segment i of the lines by points, NaN where there is none."""
+        if self.segments is None:
+            return np.asarray(np.nan), np.asarray(np.nan)
+        return self.segments[..., i, 0], self.segments[..., i, 1]
+
+    def _pieces(self) -> Iterator[tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """Yield stress over sigma_D and cycles over N_k where a piece of the curve starts, and its exponent, upwards.
+
+        NaN where the curve of a material has no further piece.
+        """
+        start, cycles, exponent = np.asarray(1.0), np.asarray(1.0), self.exponent
+        yield start, cycles, exponent
+        for i in range(1, 0 if self.segments is None else self.segments.shape[-2]):
+            above, steeper = self._of_points(i)
+            cycles = cycles * (above / start) ** -exponent
+            start, exponent = above, steeper
+            yield start, cycles, exponent
 
     @property
     def scatters(self) -> np.ndarray:
@@ -178,17 +253,22 @@ class SNCurve:
         beyond = t_n**deviate * fall**-self.exponent
         return limit * fall, knee * beyond
 
+    @property
+    def _below(self) -> np.ndarray:
+        """Return the exponent below sigma_D: the one that the material gives, otherwise 2k - 1 by Haibach, or k."""
+        k, given = self.exponent, _known(self.second_exponent)
+        return np.where(np.isnan(given), 2 * k - 1 if self.rule == "haibach" else k, given)
+
     def slope(self, stress: ArrayLike) -> np.ndarray:
-        """Return the exponent of the life at a stress [1]: k, and 2k - 1 below sigma_D by Haibach.
+        """Return the exponent of the life at a stress [1]: k, and below sigma_D that of the rule or the second one.
 
         A relative error of the stress changes the life by this exponent times the error.
         """
-        return self._slope(np.asarray(stress, dtype=float) < self.knee[0])
-
-    def _slope(self, below: np.ndarray) -> np.ndarray:
-        """Return the exponent of the life where a load lies below the fatigue limit, and where it does not."""
-        k = self.exponent
-        return np.where(below, 2 * k - 1, k) if self.rule == "haibach" else k
+        ratio = np.asarray(stress, dtype=float) / self.knee[0]
+        slope = self._below
+        for start, _, exponent in self._pieces():
+            slope = np.where(ratio >= start, exponent, slope)
+        return slope
 
     def life_cycles(self, stress: ArrayLike) -> np.ndarray:
         """Return the cycles to failure, N = N_k (sigma/sigma_D)^-k above the fatigue limit.
@@ -201,14 +281,16 @@ class SNCurve:
         Returns
         -------
         numpy.ndarray
-            Cycles [1] of the broadcast shape; inf for zero stress, NaN for NaN or a negative stress. Above R_m the
-            curve is run on to fewer than N_Rm cycles; there `fatigue` gives no life.
+            Cycles [1] of the broadcast shape; inf for zero stress, NaN for NaN or a negative stress. Above R_m, or
+            above its first point, the curve is run on to fewer cycles; above R_m `fatigue` gives no life.
         """
         limit, knee = self.knee
         sigma = np.asarray(stress, dtype=float)
         with np.errstate(divide="ignore", over="ignore", invalid="ignore"):
             ratio = np.where(sigma >= 0, sigma, np.nan) / limit
-            cycles = knee * ratio ** -self._slope(ratio < 1)
+            cycles = knee * ratio**-self._below
+            for start, own, exponent in self._pieces():
+                cycles = np.where(ratio >= start, knee * own * (ratio / start) ** -exponent, cycles)
         return np.where(ratio < 1, np.inf, cycles) if self.rule == "unlimited" else cycles
 
     def allowable_stress(self, cycles: ArrayLike) -> np.ndarray:
@@ -227,8 +309,10 @@ class SNCurve:
         limit, knee = self.knee
         n = np.asarray(cycles, dtype=float)
         ratio = np.where(n > 0, n, np.nan) / knee
-        factor = ratio ** (-1.0 / self._slope(ratio > 1))
-        return limit * (np.where(ratio > 1, 1.0, factor) if self.rule == "unlimited" else factor)
+        factor = np.ones_like(ratio) if self.rule == "unlimited" else ratio ** (-1.0 / self._below)
+        for start, own, exponent in self._pieces():
+            factor = np.where(ratio <= own, start * (ratio / own) ** (-1.0 / exponent), factor)
+        return np.where(np.isnan(ratio), np.nan, limit * factor)
 
 
 def _known(value: Any) -> np.ndarray:

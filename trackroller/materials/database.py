@@ -88,11 +88,12 @@ class MaterialDatabase:
             raise InputError(field, material, "a name of the database or a mapping with its values", remedy)
         if material in self.materials:
             return self.materials[material]
-        if nearest(material, self.materials) is None:
-            akin, allowed = self.search(material), "the name of a material of the database"
+        akin, same = self.search(material), {_letters(name) for name in self.materials}
+        if nearest(material, self.materials) is None or (len(akin) > 1 and _letters(material) not in same):
+            allowed = "the name of a material of the database"
             remedy = f"Write the name of the material that is meant: {' or '.join(akin)}."
             if not akin:
-                allowed += f": {', '.join(self.materials)}"
+                allowed += ", as `trackroller materials list` shows"
                 remedy = "Use one of these names, or enter the material in config/materials.yaml."
             raise InputError(field, material, allowed, remedy)
         raise unknown_name(field, material, self.materials)
@@ -114,7 +115,7 @@ class MaterialDatabase:
         first, second : str or Material
             The two bodies: material, name of a material, or family.
         level : str
-            "typical", "upper" or "lower".
+            "typical", "upper" or "lower"; "dry" or "lubricated" where tables state these.
 
         Returns
         -------
@@ -151,7 +152,7 @@ class MaterialDatabase:
         return own
 
     def friction_record(self, roller: str | Material, guide: str | Material, level: str | None) -> dict[str, Any]:
-        """Return the friction coefficient of a pair as a result records it: pair, level, value, source, placeholder.
+        """Return the friction coefficient of a pair as a result records it: pair, level, value, source, mark and note.
 
         Without a level it is the typical coefficient.
         """
@@ -159,7 +160,8 @@ class MaterialDatabase:
         friction = self.friction(roller, guide, level)
         pair = " / ".join(self.material(body).name for body in (roller, guide))
         values = {"value": friction.value, "source": friction.source, "placeholder": friction.placeholder}
-        return {"material_pair": pair, "level": level, **values}
+        note = {"note": friction.note} if friction.note else {}
+        return {"material_pair": pair, "level": level, **values, **note}
 
     def _names_of(self, body: str | Material) -> tuple[str, ...]:
         """Return the keys of a body in the friction table: its name first, then its family."""
@@ -195,6 +197,9 @@ def _worn(own: Material, records: int, known: Value, partner: str) -> Material:
     Equal materials may have different sources. The identity of their `records` tells them apart; the cache keeps the
     material, so that no other one takes this identity.
     """
-    records_of_pair = {**own.records, "wear_coefficient": replace(known, note=f"on {partner}")}
+    records_of_pair = {
+        **own.records,
+        "wear_coefficient": replace(known, note=f"on {partner}" + f", {known.note}" * bool(known.note)),
+    }
     changed: dict[str, Any] = {"wear_coefficient": known.value, "records": records_of_pair}
     return replace(own, **changed)

@@ -20,6 +20,7 @@ from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
 from trackroller.materials.material import Material
 from trackroller.materials.properties import PROPERTIES
+from trackroller.materials.sn_curve import POINTS
 from trackroller.materials.temperature import FIELD
 from trackroller.numerics.numbers import read_number
 from trackroller.numerics.units import split_quantity
@@ -28,7 +29,7 @@ from trackroller.yaml_file import needs_quotes
 HEADER = """\
 # Your own materials and friction coefficients; they replace built-in ones of the same name.
 """
-FIELDS = (*NUMBERS, *TEXTS, FIELD, "source", "placeholder")
+FIELDS = (*NUMBERS, *TEXTS, POINTS, FIELD, "source", "placeholder")
 
 
 def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
@@ -44,8 +45,8 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
         Allow to change a material that the file already contains.
     **values
         Fields of `Material`, each a number in the unit of the field, or a mapping with value, unit, source, placeholder
-        and note. Also `family`, `description` and `like`, the table `temperature_dependence`, and `source`,
-        `placeholder` and `note` for all values that are given as numbers and for the table.
+        and note. Also `family`, `description` and `like`, the points `sn_points`, the table `temperature_dependence`,
+        and `source`, `placeholder` and `note` for all numbers, for the points and for the table.
 
     Returns
     -------
@@ -97,6 +98,9 @@ def _entry(values: Mapping[str, Any]) -> dict[str, Any]:
         record = {"unit": prop.unit} | common | note | dict(given)
         known = [part for part in VALUE_KEYS if part in record]
         entry[key] = {part: record[part] for part in (*known, *(set(record) - set(known)))}
+    if POINTS in values:
+        line = values[POINTS] if isinstance(values[POINTS], Mapping) else {"value": values[POINTS]}
+        entry[POINTS] = {"value": None, **common, **note, **line}
     if FIELD in values:
         entry[FIELD] = {**common, **note, **values[FIELD]} if isinstance(values[FIELD], Mapping) else values[FIELD]
     return entry

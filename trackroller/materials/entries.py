@@ -8,11 +8,28 @@ from typing import Any
 from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.materials.material import UNNAMED, Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
-from trackroller.materials.sn_curve import complete_curve
+from trackroller.materials.sn_curve import (
+    CURVE,
+    FREE,
+    POINTS,
+    Points,
+    complete_curve,
+    free_line,
+    line_values,
+    read_points,
+    refuse_other_line,
+)
 from trackroller.materials.temperature import FIELD, TemperatureTable
+from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import split_quantity
 from trackroller.parameters import FRICTION_LEVELS, PARAMETERS, Parameter
 
+SOURCE_OF = {  # by each number of a line, the value of `FREE` that it rests on
+    "fatigue_strength_ratio": "fatigue_limit",
+    "cycles_at_fatigue_limit": "cycles_at_fatigue_limit",
+    "cycles_at_tensile_strength": "woehler_exponent",
+}
+STRENGTH = "tensile_strength"
 TEXTS = ("family", "description", "like", "note")
 VALUE_KEYS = ("value", "unit", "source", "placeholder", "note", "range")
 NUMBERS = PROPERTIES | ALTERNATIVES
@@ -131,10 +148,7 @@ class EntryParser:
         given = self._given(where, entry, known)
         like = entry.get("like")
         base = known.get(name if like is None else like)
-        inherited = dict(base.records) if base else {}
-        records = inherited | {key: value for key, value in given.items() if key in PROPERTIES}
-        if ALTERNATIVES.keys() & given.keys():
-            records |= complete_curve(given, inherited, where)
+        records, points = self._with_curve(where, entry, given, base)
         missing = [key for key in REQUIRED if key not in records]
         if missing:
             remedy = "Give these values, or write `like: NAME` to take them from another material."
@@ -143,6 +157,7 @@ class EntryParser:
             raise InputError(where, given_names, "", remedy, wrong)
         numbers = {key: value.value for key, value in records.items()}
         numbers["fatigue_limit"] = numbers["fatigue_strength_ratio"] * numbers["tensile_strength"]
+        fields_of_line = {POINTS: points} if points else {}
         for key in contradictions(numbers).keys() - given.keys():  # inherited, but a given value excludes it
             del records[key]
         table: Any = entry.get(FIELD)
@@ -150,24 +165,87 @@ class EntryParser:
             table = {**table, "source": self.source(table["source"])}
         if FIELD not in entry and base and isinstance(base.temperature_dependence, TemperatureTable):
             table = base.temperature_dependence.without(given)  # a value that is given replaces its inherited column
-        fields: dict[str, Any] = {key: value.value for key, value in records.items()} | {
-            "name": name,
-            FIELD: table,
-            "records": records,
-            "family": entry.get("family") or (base.family if base else ""),
-            "description": entry.get("description") or (base.description if base and "like" not in entry else ""),
-        }
+        fields: dict[str, Any] = (
+            {key: value.value for key, value in records.items()}
+            | fields_of_line
+            | {
+                "name": name,
+                FIELD: table,
+                "records": records,
+                "family": entry.get("family") or (base.family if base else ""),
+                "description": entry.get("description") or (base.description if base and "like" not in entry else ""),
+            }
+        )
         try:
             return Material(**fields)
         except InputError as error:
             field = error.field.removeprefix(f"material '{name}'")
             raise error.named(f"{where}{field}") from None
 
+    def _with_curve(
+        self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value], base: Material | None
+    ) -> tuple[dict[str, Value], Points]:
+        """Return the numbers of an entry, completed by its base and its S-N curve, and the points of a free curve."""
+        inherited = dict(base.records) if base else {}
+        records = inherited | {key: value for key, value in given.items() if key in PROPERTIES}
+        points, line = self._line(where, entry, given, base)
+        if line is not None and "second_exponent" not in given:
+            records.pop("second_exponent", None)  # it belongs to the line that the entry replaces
+        if points and STRENGTH in records:
+            records |= line_values(points, records[STRENGTH], line or records)
+        elif ALTERNATIVES.keys() & given.keys():
+            records |= complete_curve(given, inherited, where)
+        return records, points
+
+    def _line(
+        self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value], base: Material | None
+    ) -> tuple[Points, dict[str, Value] | None]:
+        """Return the points of a curve that is free of R_m, or none, and the sources of a new one by names of `CURVE`.
+
+        A curve by points, or by the three values `FREE` in one entry, is free. An entry inherits the free curve of its
+        base as it is. It may change single ones of `FREE` of a curve without corners.
+        """
+        if entry.get(POINTS) is not None:
+            return self._line_by_points(where, entry, given)
+        own, inherited = given.keys() & {*CURVE, *FREE}, base.sn_points if base else ()
+        if not own:
+            return inherited, None
+        if not own <= set(FREE) or not (inherited or own == set(FREE)):
+            return (), None
+        if len(inherited) > 2 and own != set(FREE):
+            wrong = f"would change a part of the {POINTS} of the material that it changes"
+            name, allowed = min(own), f"{', '.join(FREE)} together"
+            raise InputError(f"{where}.{name}", given[name].value, allowed, f"Or give {POINTS}.", wrong)
+        strength = given[STRENGTH].value if STRENGTH in given else getattr(base, STRENGTH, None)
+        if strength is None:
+            return (), None
+        limit, knee, exponent = (given[name].value if name in given else getattr(base, name) for name in FREE)
+        former = base.records if base else {}
+        sources = {key: given[name] if name in given else former[key] for key, name in SOURCE_OF.items()}
+        return free_line(limit, knee, exponent, strength), sources
+
+    def _line_by_points(
+        self, where: str, entry: Mapping[Any, Any], given: Mapping[str, Value]
+    ) -> tuple[Points, dict[str, Value]]:
+        """Return the points that an entry gives, and a value that holds their source and mark by names of `CURVE`."""
+        record = entry[POINTS] if isinstance(entry[POINTS], Mapping) else {"value": entry[POINTS]}
+        check_names(f"{where}.{POINTS}: key", record, ("value", "unit", "source", "placeholder", "note"))
+        points = read_points(record.get("value"), where, str(record.get("unit", "MPa")))
+        mark = {key: record[key] for key in ("source", "placeholder", "note") if key in record}
+        line = self.value(ALTERNATIVES["fatigue_limit"], {"value": points[-1][0], **mark}, where)
+        # R_m may lie below the line, so that the bounds of these numbers do not hold beside points
+        beside = {name: v["value"] if isinstance(v, Mapping) else v for name, v in entry.items() if name in CURVE}
+        numbers = {name: number_or_nan(value) for name, value in beside.items() if value is not None}
+        numbers |= {name: given[name].value for name in FREE if name in given}
+        strength = given.get(STRENGTH)
+        refuse_other_line(points, numbers, strength.value if strength else None, where)
+        return points, dict.fromkeys(CURVE, line)
+
     def _given(self, where: str, entry: Mapping[Any, Any], known: Mapping[str, Material]) -> dict[str, Value]:
         """Return the numbers that an entry gives; raise the errors of all its fields together."""
         wrong, given = Collector(), {}
         with wrong.part():
-            check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS, FIELD))
+            check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 wrong.errors.append(InputError(f"{where}.{key}", entry[key], "a text", "Put it in quotes."))
@@ -177,6 +255,8 @@ class EntryParser:
                     raise InputError(f"{where}.like", like, "a material without errors", f"Mend '{like}' first.")
                 raise unknown_name(f"{where}.like", like, known)
         for key, prop in NUMBERS.items():
+            if key in CURVE and entry.get(POINTS) is not None:
+                continue  # `_line` compares these numbers with the points
             if key in entry and not (entry[key] is None and prop.allow_missing):
                 with wrong.part():
                     given[key] = self.value(prop, entry[key], where)

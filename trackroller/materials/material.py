@@ -10,9 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.sn_curve import curve_exponent
+from trackroller.damage.sn_curve import SNCurve, curve_exponent
 from trackroller.errors import InputError
 from trackroller.materials.properties import OF_LIMITS, PROPERTIES, Value, check_number
+from trackroller.materials.sn_curve import CURVE, POINTS, numbers_of_line, read_points
 from trackroller.materials.temperature import FIELD, FOLLOW_STRENGTH, TemperatureTable, read_table
 
 UNNAMED = "inline"  # name of a material that a case gives without one
@@ -45,7 +46,7 @@ def contradictions(values: Mapping[str, Any]) -> dict[str, str]:
 
 @dataclass(frozen=True)
 class Material(_OfLimits):  # type: ignore[misc, valid-type]
-    """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D).
+    """A material whose S-N curve runs through (N_Rm, R_m) and (N_k, sigma_D), or through points of its own.
 
     Parameters
     ----------
@@ -63,12 +64,17 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         N_Rm < N_k [1].
     family : str
         Group in the friction table: "metal", "PA6", "POM" or the user's own; "" if unknown.
+    second_exponent : float, optional
+        Exponent of the S-N curve below sigma_D [1]. None: `life_rule` decides.
     scatter_in_cycles : float, optional
         T_N = N_90/N_10 [1]; the index is the failure probability in percent. None: not known.
     scatter_in_stress : float, optional
         T_S = S_90/S_10 [1]. None: not known.
     description : str
         A short description.
+    sn_points : sequence of pairs
+        Points (stress [MPa], cycles [1]) of the S-N curve, straight in logarithms between them; the last one is the
+        knee. They do not depend on R_m and replace sigma_D/R_m, N_Rm and N_k, which follow from them. Empty: none.
     temperature_dependence : TemperatureTable or mapping, optional
         E and R_m over temperature, for the output `heat`; see `trackroller.materials.temperature`.
     records : mapping of str to Value
@@ -92,9 +98,11 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     cycles_at_tensile_strength: float
     cycles_at_fatigue_limit: float
     family: str = ""
+    second_exponent: float | None = None
     scatter_in_cycles: float | None = None
     scatter_in_stress: float | None = None
     description: str = ""
+    sn_points: tuple[tuple[float, float], ...] = ()
     temperature_dependence: Any = None
     records: Mapping[str, Value] = field(default_factory=dict, compare=False, repr=False, hash=False)
 
@@ -102,10 +110,14 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         where = f"material '{self.name}'"
         for prop in PROPERTIES.values():
             value = getattr(self, prop.name)
-            if value is None and prop.allow_missing:
+            if (value is None and prop.allow_missing) or (self.sn_points and prop.name in CURVE):
                 continue
             object.__setattr__(self, prop.name, check_number(prop, value, where))
-        if not self.cycles_at_tensile_strength < self.cycles_at_fatigue_limit:
+        if self.sn_points:
+            points = read_points(self.sn_points, where)
+            for name, number in {POINTS: points, **numbers_of_line(points, self.tensile_strength)}.items():
+                object.__setattr__(self, name, number)
+        elif not self.cycles_at_tensile_strength < self.cycles_at_fatigue_limit:
             raise InputError(
                 f"{where}.cycles_at_tensile_strength",
                 self.cycles_at_tensile_strength,
@@ -121,13 +133,21 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
     @property
     def fatigue_limit(self) -> float:
         """Return the fatigue limit sigma_D [MPa] at N_k cycles."""
-        return self.fatigue_strength_ratio * self.tensile_strength
+        return self.sn_points[-1][0] if self.sn_points else self.fatigue_strength_ratio * self.tensile_strength
 
     @property
     def woehler_exponent(self) -> float:
-        """Return the exponent k > 0 of the S-N curve [1]."""
+        """Return the exponent k > 0 of the S-N curve [1], of the segment above the knee if it has several."""
+        if self.sn_points:
+            return float(SNCurve.of(self).exponent)
         cycles = self.cycles_at_fatigue_limit / self.cycles_at_tensile_strength
         return float(curve_exponent(cycles, 1.0 / self.fatigue_strength_ratio))
+
+    @property
+    def sn_line(self) -> tuple[tuple[float, float], ...]:
+        """Return the points (stress [MPa], cycles [1]) that the S-N curve runs through, the last one its knee."""
+        upper, knee = (self.tensile_strength, self.cycles_at_tensile_strength), self.cycles_at_fatigue_limit
+        return self.sn_points or (upper, (self.fatigue_limit, knee))
 
     @property
     def shear_modulus(self) -> float:
@@ -205,6 +225,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         values: dict[str, Any] = {name: float(table.at(name, np.asarray(temperature))) for name in table.columns}
         share = values.get("tensile_strength", self.tensile_strength) / self.tensile_strength
         values |= {name: share * v for name in FOLLOW_STRENGTH if (v := getattr(self, name)) is not None}
+        values[POINTS] = tuple((share * stress, cycles) for stress, cycles in self.sn_points)
         return dataclasses.replace(self, **values)
 
     def as_dict(self) -> dict[str, Any]:
@@ -212,7 +233,7 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         values = {f.name: getattr(self, f.name) for f in dataclasses.fields(self) if f.name != "records"}
         if self.temperature_dependence is not None:
             values[FIELD] = self.temperature_dependence.as_dict()
-        return {key: value for key, value in values.items() if value not in (None, "")}
+        return {key: value for key, value in values.items() if value not in (None, "", ())}
 
     def with_sources(self) -> dict[str, Any]:
         """Return `as_dict` with `sources` and `notes` of the values, and the names of those that are `guesses`."""

@@ -48,6 +48,7 @@ _PROPERTIES = (
     _number("fatigue_strength_ratio", "sigma_D/R_m", "-", "fatigue limit over tensile strength", 0.0, 1.0),
     _number("cycles_at_tensile_strength", "N_Rm", "-", "cycles at the tensile strength", 0.0, math.inf),
     _number("cycles_at_fatigue_limit", "N_k", "-", "cycles at the fatigue limit", 0.0, math.inf),
+    _number("second_exponent", "k_2", "-", "exponent of the S-N curve below sigma_D", 0.0, 1e3, optional=True),
     _number("scatter_in_cycles", "T_N", "-", "scatter of the life T_N = N_90/N_10", 1.0, 1e6, True, True),
     _number("scatter_in_stress", "T_S", "-", "scatter of the strength T_S = S_90/S_10", 1.0, 1e3, True, True),
 )
@@ -106,7 +107,7 @@ def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> flo
         If the value is not a number or lies outside its bounds.
     """
     remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
-    if prop.name == "woehler_exponent" and isinstance(value, (int, float)) and -1.0 < value < 0.0:
+    if prop.name in ("woehler_exponent", "second_exponent") and isinstance(value, (int, float)) and -1.0 < value < 0.0:
         remedy = f"If Basquin's b is meant, the exponent is k = -1/b: write {-1.0 / value:.3g}."
     if prop.name.startswith("scatter"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from trackroller.errors import unknown_name
+from math import nan
+
+from trackroller.errors import InputError
 from trackroller.materials.database import MaterialDatabase
 from trackroller.materials.properties import PROPERTIES, REQUIRED, Value
 
@@ -14,7 +16,8 @@ def material_rows(database: MaterialDatabase, search: str = "") -> list[dict[str
     """
     rows, names = [], database.search(search) if search else database.names()
     if not names:
-        raise unknown_name("material", search, database.names())
+        remedy = "`trackroller materials list` shows all materials."
+        raise InputError("material", search, "words of the name or the description of a material", remedy)
     for material in map(database.material, names):
         row = {"name": material.name, "family": material.family or "-"}
         for name in REQUIRED:
@@ -38,8 +41,15 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
             continue
         record = material.records.get(prop.name, Value(value, prop.unit, "not given"))
         rows.append(_row(prop.name, prop.symbol, record))
-    limit = Value(material.fatigue_limit, "MPa", "R_m times sigma_D/R_m", origin="derived")
-    exponent = Value(material.woehler_exponent, "-", "ln(N_k/N_Rm) / ln(R_m/sigma_D)", origin="derived")
+    of_limit, of_exponent = "R_m times sigma_D/R_m", "ln(N_k/N_Rm) / ln(R_m/sigma_D)"
+    if material.sn_points:
+        of_limit, of_exponent = "the last point of sn_points", "of the last two points of sn_points"
+        ratio = material.records.get("fatigue_strength_ratio")
+        record = Value(nan, "MPa, -", ratio.source if ratio else "not given", bool(ratio and ratio.placeholder))
+        shown = "; ".join(f"{stress:g}, {cycles:g}" for stress, cycles in material.sn_points)
+        rows.append(_row("sn_points", "sigma_a, N", record) | {"value": shown})
+    limit = Value(material.fatigue_limit, "MPa", of_limit, origin="derived")
+    exponent = Value(material.woehler_exponent, "-", of_exponent, origin="derived")
     if (table := material.temperature_dependence) is not None:
         over = ", ".join(f"{value:g}" for value in table.temperature)
         for name, column in table.columns.items():

@@ -69,7 +69,7 @@ _ALL = (
         0.0,
         2.0,
         allow_missing=True,
-        words=("typical", "upper", "lower"),
+        words=("typical", "upper", "lower", "dry", "lubricated"),
         **_USE,
     ),
     Parameter(

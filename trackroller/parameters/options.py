@@ -231,8 +231,8 @@ _OPTIONS = (
         "elementary",
         "S-N curve below the fatigue limit",
         {
-            "elementary": "the curve runs on (Miner elementary)",
-            "haibach": "slope 2k - 1 (Haibach)",
+            "elementary": "the curve runs on (Miner elementary), with its second exponent if the material gives one",
+            "haibach": "slope 2k - 1 (Haibach), or the second exponent if the material gives one",
             "unlimited": "no failure (Miner original)",
         },
     ),
@@ -243,6 +243,7 @@ _OPTIONS = (
         {
             "von_mises_peak": "the largest von Mises stress (as published)",
             "von_mises_amplitude": "half the longest chord of the path in the deviatoric space",
+            "goodman": "von Mises amplitude of the path, corrected for its mean by Goodman's line to R_m",
             "findley": "Findley's stress, as a share of its limit",
             "dang_van": "Dang Van's stress, as a share of its limit",
         },

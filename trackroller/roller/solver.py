@@ -101,7 +101,8 @@ def solve(
     life_rule : str
         S-N curve below the fatigue limit: "elementary", "haibach" or "unlimited".
     life_criterion : str
-        Stress that enters the S-N curve: "von_mises_peak", "von_mises_amplitude", "findley" or "dang_van".
+        Stress that enters the S-N curve: "von_mises_peak", "von_mises_amplitude", "goodman",
+        "findley" or "dang_van".
     credit_pressure : bool
         Whether hydrostatic pressure lowers Dang Van's stress (default).
     wear_law : str

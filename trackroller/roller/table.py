@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass, fields, make_dataclass
 from typing import Any
 
@@ -21,7 +22,8 @@ _Fields: Any = make_dataclass(
 )
 
 
-TEXTS = ("name", "guesses", "ends", "temperature_dependence")  # columns of `MaterialArrays` that hold no numbers
+# columns of `MaterialArrays` that hold no numbers
+TEXTS = ("name", "guesses", "ends", "temperature_dependence", "sn_points")
 
 
 @dataclass(frozen=True)
@@ -30,7 +32,8 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
 
     The base class adds the optional values of a material, NaN where they are not given. `guesses` holds the values of
     limits that are placeholders, a mapping of names to words for each material, and `ends` the ends of their ranges
-    over the values. `temperature_dependence` holds the tables over temperature as JSON, "" for none.
+    over the values. `temperature_dependence` holds the tables over temperature as JSON, "" for none, and
+    `sn_points` the points of S-N curves as JSON, "" for none.
     """
 
     name: np.ndarray
@@ -43,6 +46,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     guesses: np.ndarray
     ends: np.ndarray
     temperature_dependence: np.ndarray
+    sn_points: np.ndarray
 
     @classmethod
     def of(cls, materials: list[Material]) -> MaterialArrays:
@@ -52,6 +56,8 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
         def values(attribute: str) -> np.ndarray:
             return np.array([getattr(m, attribute) for m in different], dtype=float)[index]
 
+        lines = [json.dumps(m.sn_points) if m.sn_points else "" for m in different]
+
         return cls(
             name=np.array([m.name for m in different], dtype=object)[index],
             guesses=np.array([m.guesses_of_limits for m in different], dtype=object)[index],
@@ -59,6 +65,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
             temperature_dependence=np.array(
                 ["" if (own := m.temperature_dependence) is None else own.text for m in different], dtype=object
             )[index],
+            sn_points=np.array(lines, dtype=object)[index],
             **{f.name: values(f.name) for f in fields(cls) if f.name not in TEXTS},
         )
 

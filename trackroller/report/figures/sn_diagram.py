@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 from matplotlib.axes import Axes
 
-from trackroller.damage.sn_curve import CONVENTIONS, PROBABILITIES, SNCurve
+from trackroller.damage.sn_curve import CONVENTIONS, GIVEN_SLOPE, PROBABILITIES, SNCurve
 from trackroller.materials import Material
 from trackroller.materials.properties import REQUIRED
 from trackroller.parameters import BODIES
@@ -90,7 +90,7 @@ def _amplitude(results: Results) -> str:
 
 def _ends(points: list, materials: list[Material]) -> tuple[float, float]:
     lives = np.concatenate([p[1] for p in points])
-    low = min(m.cycles_at_tensile_strength for m in materials)
+    low = min(m.sn_line[0][1] for m in materials)
     knee = max(m.cycles_at_fatigue_limit for m in materials)
     finite = lives[np.isfinite(lives)]
     top = min(max(finite.max() * 2 if finite.size else knee, 20 * knee), BEYOND * knee)
@@ -105,9 +105,9 @@ def _lines(axes: Axes, material: Material, rule: str, colour: Any, ends: tuple[f
         stress = median.changed(failure_probability=probability).allowable_stress(at)
         width = 1.0 if probability == 0.5 else 0.8
         axes.plot(at, stress, color=colour, linewidth=width, linestyle=_DASHES.get(probability, "-"), zorder=2)
-    knees = [material.cycles_at_tensile_strength, material.cycles_at_fatigue_limit]
+    points = [(cycles, stress) for stress, cycles in material.sn_line if ends[0] <= cycles <= ends[1]]
     ends_look: dict[str, Any] = {"marker": "|", "markersize": 9, "markeredgewidth": 0.9, "linestyle": "none"}
-    axes.plot(knees, [material.tensile_strength, material.fatigue_limit], color="0.1", zorder=3, **ends_look)
+    axes.plot(*zip(*points, strict=True), color="0.1", zorder=3, **ends_look)
 
 
 def _cases(axes: Axes, stress: np.ndarray, life: np.ndarray, look: dict[str, Any], top: float) -> None:
@@ -132,7 +132,9 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
     none = {"linestyle": "none", "color": "0.1"}
     entries.append(("90 % of the cases", {"color": "0.5", "linewidth": 4}))
     entries.append(("their median", {"marker": "o", "markerfacecolor": "white", **none}))
-    entries.append((r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$", {"marker": "|", "markersize": 8, **none}))
+    ends = r"$R_\mathrm{m}$ and $\sigma_\mathrm{D}$"
+    given = f"{ends}, or points as given" if any(known[n].sn_points for n in names) else ends
+    entries.append((given, {"marker": "|", "markersize": 8, **none}))
     if any(SNCurve.of(known[n]).scatters for n in names):
         dashes = [(p, {"color": "0.3", "linestyle": _DASHES.get(p, "-")}) for p in PROBABILITIES]
         entries += [(f"{100 * p:.0f} % fail", look) for p, look in dashes]
@@ -146,6 +148,8 @@ def _info(results: Results, shown: list, known: Mapping[str, Material], rule: st
         "contact. "
         f"{CONVENTIONS[rule]}."
     )
+    if any(known[name].second_exponent is not None for _, points in shown for name in points):
+        caption += f" {capital(GIVEN_SLOPE)}."
     left = int((~results.rolling).sum())
     caption += f" {count(left)} cases that do not roll are not drawn." if left and results.rolling.any() else ""
     beyond = sum(int((life > top).sum()) for _, points in shown for _, life in points.values())

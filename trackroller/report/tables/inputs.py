@@ -74,7 +74,13 @@ def material_rows(material: Material) -> list[Row]:
         # a symbol that the words or the unit hold already is not repeated
         words = one.label if one.symbol in f"{one.label} {one.unit}" else f"{one.label} {one.symbol}"
         rows.append(Row(words, "not given") if value is None else Row(words, number(value), row_unit(one.unit)))
-    return [*rows, Row("exponent k of the S-N curve", rounded(material.woehler_exponent))]
+    rows.append(Row("exponent k of the S-N curve", rounded(material.woehler_exponent)))
+    if material.second_exponent is not None:
+        rows.append(Row(f"{PROPERTIES['second_exponent'].label} k_2", rounded(material.second_exponent)))
+    if material.sn_points:
+        shown = "; ".join(f"{rounded(stress)} MPa at {rounded(cycles)}" for stress, cycles in material.sn_points)
+        rows.append(Row("S-N curve by points", shown))
+    return rows
 
 
 def factor_table(results: Results) -> Table | None:
@@ -155,7 +161,9 @@ def material_source(values: Mapping[str, Any]) -> str:
     """Return where the values of a material come from, and which of them are guesses."""
     source = "; ".join(dict.fromkeys(values.get("sources", {}).values())) or "not given"
     guesses = values.get("guesses", ())
-    return f"{source}." + (f" Guesses without a source: {', '.join(map(plain, guesses))}." if guesses else "")
+    return f"{source}." + (
+        f" Guesses without a source: {', '.join(map(plain, guesses))}. Measure them." if guesses else ""
+    )
 
 
 def friction_table(attrs: Mapping[str, Any]) -> Table | None:
@@ -169,8 +177,9 @@ def friction_table(attrs: Mapping[str, Any]) -> Table | None:
 
 
 def friction_source(record: Mapping[str, Any]) -> str:
-    """Return where a friction coefficient of the database comes from, and whether it is a placeholder."""
-    return f"{record['source']}{' (placeholder)' * record['placeholder']}"
+    """Return where a friction coefficient of the database comes from, its note, and whether it is a placeholder."""
+    note = f"; {record['note']}" if record.get("note") else ""
+    return f"{record['source']}{' (placeholder)' * record['placeholder']}{note}"
 
 
 def record_rows(attrs: Mapping[str, Any], skip: set[str]) -> list[Row]:

@@ -30,8 +30,9 @@ if TYPE_CHECKING:
 
 LIFE_CONVENTIONS = (
     "S-N curve N = N_k (sigma/sigma_D)^-k through (N_Rm, R_m) and (N_k, sigma_D); the peak von Mises stress is taken "
-    "as the amplitude (as published); below sigma_D: elementary continues the curve, haibach uses the slope 2k - 1, "
-    "unlimited gives inf; no life (NaN) in full slip and where the peak stress exceeds R_m; roller: one overrolling "
+    "as the amplitude (as published), or through the points of a material; below sigma_D: elementary continues the "
+    "curve, haibach uses the slope 2k - 1, a second exponent of the material takes their place, unlimited gives inf; "
+    "no life (NaN) in full slip and where the peak stress exceeds R_m; roller: one overrolling "
     "per revolution; guide: overrollings per hour are the user's input"
 )
 
@@ -49,7 +50,8 @@ def solved_of(
     table: CaseTable, values: dict[str, np.ndarray], options: Options, regime: np.ndarray | None = None
 ) -> SolvedRollers:
     """Return cases, materials and results as the limits receive them."""
-    names = [field.name for field in dataclasses.fields(table.roller) if field.name not in TEXTS]
+    fields = [field.name for field in dataclasses.fields(table.roller)]
+    names = [name for name in fields if name not in TEXTS or name == "sn_points"]
     return SolvedRollers(
         {name: getattr(table, name) for name in (*PARAMETERS, *MAPPING_FIELDS)},
         {name: np.array([getattr(body, name) for body in (table.roller, table.guide)]).T for name in names},

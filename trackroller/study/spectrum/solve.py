@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 # values of a material that make its S-N curve
 OF_CURVE = (
     *("tensile_strength", "fatigue_limit", "cycles_at_tensile_strength", "cycles_at_fatigue_limit"),
-    *("scatter_in_cycles", "scatter_in_stress"),
+    *("scatter_in_cycles", "scatter_in_stress", "second_exponent"),
 )
 _BCB, _CB = ("block", "contact", "body"), ("contact", "body")
 
@@ -87,7 +87,8 @@ def curves(spectrum: Spectrum, solved: xr.Dataset, bodies: list[Material], rule:
     for material, at in zip(bodies, reached.T, strict=True):
         warm = [material.at(temperature) for temperature in at]
         values = {name: np.array([[getattr(own, name)] for own in warm], dtype=float) for name in OF_CURVE}
-        out.append(SNCurve.of(values, rule))
+        # the line by points moves with the knee, so that its shape does not depend on the temperature
+        out.append(SNCurve.of(values | {"sn_points": material.sn_points}, rule))
     return out
 
 

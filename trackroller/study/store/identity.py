@@ -78,7 +78,7 @@ def fingerprints(table: CaseTable, *options: Mapping[str, Any], group: np.ndarra
     heads = [hashlib.sha256(_prefix(one)) for one in options]
     numbers = [0] * len(rows) if group is None else group.tolist()
     texts = [getattr(table, name) for name in MAPPING_FIELDS]
-    texts += [body.temperature_dependence for body in (table.roller, table.guide)]
+    texts += [text for body in (table.roller, table.guide) for text in (body.temperature_dependence, body.sn_points)]
     given = any(np.any(column != "") for column in texts)
     data, width = rows.reshape(-1).view(np.uint8).data, rows.itemsize * rows.shape[1]
     digests = bytearray()
