@@ -5,7 +5,15 @@ from __future__ import annotations
 import copy
 
 SIDES = {"FL": (150, 40), "FR": (150, -40), "RL": (-150, 40), "RR": (-150, -40)}
-ROLLER = {"contact_model": "sliding", "motor_force": 0, "friction_coefficient": 0.1, "guide_curve_radius": "inf"}
+STEEL = "1.7225-quenched-tempered"
+ROLLER = {
+    "roller_material": STEEL,
+    "guide_material": STEEL,
+    "contact_model": "sliding",
+    "motor_force": 0,
+    "friction_coefficient": 0.1,
+    "guide_curve_radius": "inf",
+}
 
 
 def rollers_between(**more):

@@ -94,7 +94,7 @@ def forces_of(whole: Carriage) -> xr.Dataset:
     loads = [loads_of(whole, case) for case in whole.cases]
     found = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
     variables = _forces(whole, found, loads)
-    variables |= _of_catalogue(whole, variables)
+    variables |= _of_catalogue(whole, variables) | _places(whole)
     coords = {
         "load_case": ("load_case", [case.name for case in whole.cases], {"long_name": "load case"}),
         "roller": ("roller", [roller.name for roller in whole.rollers], {"long_name": "roller of the carriage"}),
@@ -219,6 +219,24 @@ def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> di
     }
 
 
+def _places(whole: Carriage) -> dict[str, Any]:
+    """Return places and directions of rollers and masses, which the picture shows, as variables."""
+    masses = [whole.mass, *whole.payloads]
+    names = ["carriage", *(f"payload {i + 1}" for i in range(len(whole.payloads)))]
+    rd, md = ("roller", "direction"), ("mass_name", "direction")
+    at, pushes, axis = (np.array([getattr(r, key) for r in whole.rollers]) for key in ("at", "pushes", "axis"))
+    return {
+        "roller_at": (rd, at, _attrs("mm", "place of the roller")),
+        "roller_pushes": (rd, pushes, _attrs("1", "direction in which the roller presses on its rail")),
+        "roller_axis": (rd, axis, _attrs("1", "axis x_R of the roller")),
+        "locating": ("roller", np.array([r.locating for r in whole.rollers]), {"long_name": "carries axial load"}),
+        "mass": (("mass_name",), np.array([one.value for one in masses]), _attrs("kg", "mass")),
+        "mass_at": (md, np.array([one.at for one in masses]), _attrs("mm", "place of the mass")),
+        "direction": (("direction",), np.array(["x", "y", "z"]), {"long_name": "x forward, y left, z up"}),
+        "mass_name": (("mass_name",), np.array(names), {"long_name": "name of the mass"}),
+    }
+
+
 def _margins(springs: Springs, loads: list[Loads]) -> dict[str, Any]:
     """Return the multipliers of payload and of all loads at which a roller lifts and the carriage tips."""
     out: dict[str, list[float]] = {}
@@ -294,7 +312,8 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             hours[place], regime[place] = float(solved[LIFE][k]), int(solved["regime"][k])
             speed[place] = 0.06 * float(cases[place].velocity)  # km/h
     shares = ds["share"].values[:, None]
-    travel = 1 / np.sum(np.where(shares > 0, shares / (hours * speed), 0.0), axis=0)
+    with np.errstate(divide="ignore"):
+        travel = 1 / np.sum(np.where(shares > 0, shares / (hours * speed), 0.0), axis=0)
     own = [0.06 * float(roller.case.velocity) for roller in whole.rollers if roller.case is not None]
     pace = np.where(np.isnan(ds["speed"].values)[:, None], np.array(own), 3.6 * ds["speed"].values[:, None])
     lasts = travel * np.sum(shares / pace, axis=0)

@@ -26,7 +26,7 @@ COMPLETE = ("forces", "contact", "peak_stress", "life")
 WORKBOOK = "A name that ends in .xlsx writes a workbook."
 PRINTED = " --json prints the result as text, and --report writes a page."
 # the first bytes of a file, by the end of its name
-KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b""}
+KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b"", ".yaml": b"", ".yml": b""}
 SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 

@@ -189,6 +189,18 @@ def spectrum(
     """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
 
 
+@command("trackroller.cli.carriage", "run_carriage")
+def carriage(
+    file: Annotated[Path, typer.Argument(help="masses, rollers and load cases (YAML)", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc), or the file below")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
+    spectrum: Annotated[str | None, typer.Option("--spectrum", help="roller whose spectrum -o receives")] = None,
+    study: Annotated[bool, typer.Option("--study", help="-o receives a study of the worst loads")] = False,
+) -> None:
+    """Print loads and lives of the rollers of a carriage by load case, and the margins to lift-off and tipping."""
+
+
 @command("trackroller.cli.case", "run_wear")
 def wear(
     case: Annotated[Path | None, typer.Argument(help="case file (YAML); without it the paper's example")] = None,

@@ -13,11 +13,13 @@ from trackroller.damage import LIMITS
 from trackroller.damage.verdict import STATES
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lives_in_years
+from trackroller.report.pages.carriage import tables as carriage_tables
 from trackroller.report.pages.sheet import collect
 from trackroller.report.pages.spectrum import assumed, block_table, life_rows, limit_table, warnings
 from trackroller.report.tables.limits import BOTH
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.accuracy import flags_of
+from trackroller.report.words.carriage import sentences as carriage_sentences
 from trackroller.report.words.spectrum import sentences
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.duty import duty_of, years
@@ -85,6 +87,16 @@ def print_spectrum(ds: xr.Dataset) -> None:
         print_text(text, "warning")
     for text in assumed(ds):
         print_text(text)
+
+
+@lives_in_years
+def print_carriage(ds: xr.Dataset) -> None:
+    """Print loads and lives of the rollers of a carriage, its margins, and sentences on them."""
+    for part in carriage_tables(ds):
+        print_table(part.heads, part.rows, range(2, len(part.heads)), f"{ds.attrs['title']}: {part.title.lower()}")
+        print_text(part.note)
+    for sentence in carriage_sentences(ds):
+        print_text(sentence.text)
 
 
 _RECORDS = ("case", "materials", "friction", "doubts")  # attributes with keys of their own in JSON
