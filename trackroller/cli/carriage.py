@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from trackroller.cli.case import writable, writable_data, writable_page, write_result
+from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result
 from trackroller.errors import InputError
 from trackroller.files import write_text
 from trackroller.yaml_file import write_yaml
-
-YAML = (".yaml", ".yml")
 
 
 def run_carriage(
