@@ -313,7 +313,8 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             speed[place] = 0.06 * float(cases[place].velocity)  # km/h
     shares = ds["share"].values[:, None]
     with np.errstate(divide="ignore"):
-        travel = 1 / np.sum(np.where(shares > 0, shares / (hours * speed), 0.0), axis=0)
+        damage = np.where(shares > 0, shares / (hours * speed), 0.0)  # of a km of travel
+        travel = 1 / np.sum(damage, axis=0)
     own = [0.06 * float(roller.case.velocity) for roller in whole.rollers if roller.case is not None]
     pace = np.where(np.isnan(ds["speed"].values)[:, None], np.array(own), 3.6 * ds["speed"].values[:, None])
     lasts = travel * np.sum(shares / pace, axis=0)
@@ -321,6 +322,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
     variables: dict[str, Any] = {
         "case_life_hours": (_RC, hours, _attrs("h", "life to the first limit under the loads of a load case alone")),
+        "damage_per_km": (_RC, damage, _attrs("km-1", "damage of a load case by a km of travel with all load cases")),
         "roller_regime": (_RC, regime, meanings),
         "life_km": (_R, travel, _attrs("km", "travel of the carriage to the first limit of the roller or its rail")),
         "life_hours": (_R, lasts, _attrs("h", "hours of travel to the first limit of the roller or its rail")),

@@ -16,11 +16,11 @@ ROLLING = REGIMES.index("rolling")
 
 
 def worst_place(ds: xr.Dataset) -> tuple[str, str]:
-    """Return the worst roller and its worst load case; without lives those of the largest radial force."""
+    """Return the worst roller and the load case with most of its damage, or those of the largest radial force."""
     worst = ds.attrs.get("worst_roller")
     if worst:
-        lives = ds["case_life_hours"].sel(roller=worst)
-        return str(worst), str(ds["load_case"].values[int(np.nanargmin(lives.values))])
+        damage = ds["damage_per_km"].sel(roller=worst).values
+        return str(worst), str(ds["load_case"].values[int(np.argmax(damage))])
     i, j = np.unravel_index(int(np.argmin(ds["radial_force"].values)), ds["radial_force"].shape)
     return str(ds["roller"].values[j]), str(ds["load_case"].values[i])
 
