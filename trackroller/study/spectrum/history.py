@@ -27,8 +27,8 @@ from trackroller.study.file.user_table import UserTable, read_table
 COLUMNS = {"time": "s", "distance": "m", "radial_force": "N", "axial_force": "N", "velocity": "m/min", "speed": "m/s"}
 LOADS = ("radial_force", "axial_force")
 NO_RAINFLOW = (
-    "Blocks hold the travel at each level of load: each revolution is one overrolling, so that rainflow counting, which "
-    "pairs turning points between overrollings, does not apply."
+    "Blocks hold the travel at each level of load: each revolution is one overrolling. Rainflow counting pairs turning "
+    "points between overrollings and does not apply."
 )
 POWERS = (1.0, 3.0, 7.0)  # of the contact force to which damage may grow; an S-N curve of exponent 9 gives 3
 TOLERANCE = 0.007  # of the damage of each contact for each power; solved with `sliding` it stays below 1 %
