@@ -69,7 +69,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
 
     Notes
     -----
-    The statics takes about a second; the lives take as long as `trackroller.solve` for each roller and load case.
+    The margins take a second a load case, up to ten where many rollers lift. The lives take as long as
+    `trackroller.solve` for each roller and load case.
 
     Examples
     --------

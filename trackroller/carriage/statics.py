@@ -26,7 +26,7 @@ MOTIONS = (
     "pitches about the y axis",
     "yaws about the z axis",
 )
-MOST_PASSES = 60  # of the axial stiffness; a few are usual
+MOST_PASSES = 24  # of the axial stiffness; a few are usual
 LARGEST_MULTIPLIER = 1000.0  # a carriage that holds so many times its loads counts as one that never tips
 _INFEASIBLE = 1e-9  # of the wrench: what no force of the rollers balances
 
@@ -213,8 +213,8 @@ def _settled(
         approach = springs.offset + springs.radial @ place
         new, _ = springs.force(approach)
         new[new < 1e-12 * size] = 0.0
-        change, radial = np.abs(new - radial).max(), new if turn < 20 else (new + radial) / 2
-        if change <= 1e-10 * size or not (carries.any() and springs.contact.any()):
+        change, radial = np.abs(new - radial).max(), new if turn < 12 else (new + radial) / 2
+        if change <= 1e-9 * size or not (carries.any() and springs.contact.any()):
             break
     axial = stiffness * (springs.axial @ place)
     return Equilibrium(*_balanced(springs, carries, wrench, new, axial), approach, place)
@@ -241,7 +241,9 @@ def _minimum(
         step = np.linalg.solve(curve + damping * scale * np.eye(5), -slope)
         new = at(place + step)
         better = new[0] <= energy + 1e-4 * float(slope @ step)
-        flat = np.abs(new[1]).max() < np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(energy)
+        flat = np.abs(new[1]).max() < 0.5 * np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(energy)
+        if not flat and abs(float(slope @ step)) <= 1e-15 * abs(energy):
+            break
         if better or flat:  # close to the minimum, rounding hides the decrease of the energy
             place, (energy, slope, curve), damping = place + step, new, max(damping / 30, 1e-14)
         else:
