@@ -27,10 +27,11 @@ _WHERE = {
     "principal_stresses": "trackroller.halfspace.stress",
     "max_shear": "trackroller.halfspace.stress",
 }
-__all__ = ["__version__", "app", "report", *_WHERE]
+__all__ = ["__version__", "app", "carriage", "report", *_WHERE]
 
 if TYPE_CHECKING:
     from trackroller import app as app
+    from trackroller import carriage as carriage
     from trackroller import report as report
     from trackroller.errors import InputError as InputError
     from trackroller.halfspace.stress import max_shear as max_shear
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used."""
-    if name in ("app", "report"):
+    if name in ("app", "carriage", "report"):
         return importlib.import_module(f"trackroller.{name}")  # the module itself can be called
     if name in _WHERE:
         return getattr(importlib.import_module(_WHERE[name]), name)

@@ -11,6 +11,7 @@ import pytest
 
 import trackroller as tr
 from trackroller.app import frame
+from trackroller.carriage.solve import solve_carriage
 from trackroller.report import write
 
 PACKAGE = Path(tr.__file__).parent
@@ -32,6 +33,6 @@ def test_examples_print_what_they_show(module, tmp_path, monkeypatch):
 
 def test_every_public_function_has_an_example():
     """A name of the package has a docstring with an example."""
-    called = {"report": write, "app": frame}  # rooms that are functions, too
+    called = {"report": write, "app": frame, "carriage": solve_carriage}  # rooms that are functions, too
     public = [called.get(name) or getattr(tr, name) for name in tr.__all__ if not name.startswith("__")]
     assert [thing.__name__ for thing in public if ">>> " not in (inspect.getdoc(thing) or "")] == []

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, read_text, write_whole
+from trackroller.files import files_beside, read_text, write_text, write_whole
 from trackroller.materials import load_database
 from trackroller.parameters import REGIMES
 from trackroller.parameters.example import LASTING, with_unit
@@ -19,7 +19,7 @@ from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import Case
 from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.settings import checked_case, with_beside
-from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping
+from trackroller.yaml_file import errors_by_line, parse_mapping, parse_yaml, read_mapping, write_yaml
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -28,7 +28,8 @@ COMPLETE = ("forces", "contact", "peak_stress", "life")
 WORKBOOK = "A name that ends in .xlsx writes a workbook."
 PRINTED = " --json prints the result as text, and --report writes a page."
 # the first bytes of a file, by the end of its name
-KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b""}
+KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b"", ".yaml": b"", ".yml": b""}
+YAML = (".yaml", ".yml")
 SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
 
@@ -258,11 +259,17 @@ def _find_and_tell(
     return 0 if found.met else 1
 
 
-def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | None) -> None:
+def run_spectrum(file: Path | None, as_json: bool, out: Path | None, report: Path | None, log: Path | None) -> None:
     """Solve the blocks of a spectrum file, and write or print the result.
 
-    `out` receives netCDF, and `report` the page. `as_json` prints JSON; without it and `out`, tables are printed.
+    `out` receives netCDF, and `report` the page. `as_json` prints JSON; without it and `out`, tables are printed. With
+    `log`, `out` receives the spectrum of a log instead, and `file` is the case file of its roller.
     """
+    if log is not None:
+        _write_log(log, file, out, as_json or report is not None)
+        return
+    if file is None:
+        raise InputError("spectrum file", None, "the path of a file", "Write trackroller spectrum shift.yaml.")
     target = None if out is None else writable_data(out, PRINTED)
     page = None if report is None else writable_page(report)
     from trackroller.report.pages.sheet import as_json as json_of  # heavy: jinja2
@@ -281,6 +288,23 @@ def run_spectrum(file: Path, as_json: bool, out: Path | None, report: Path | Non
         print(json_of(dataset))
     elif target is None:
         print_spectrum(dataset)
+
+
+def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> None:
+    """Write the load spectrum of a log, and print what a user must know of the log."""
+    if more or out is None or out.suffix.lower() not in YAML:
+        allowed = "--from with -o and a file whose name ends in .yaml"
+        raise InputError("--from", str(log), allowed, "Add -o shift.yaml, and solve that file by trackroller spectrum.")
+    target = writable(out)
+    from trackroller.study.spectrum.history import spectrum_of_log  # heavy: numpy
+
+    given = {} if roller is None else read_mapping(roller, "case file")
+    if roller is not None:
+        case_of(roller, None)  # refuses wrong values before the log is read
+    spectrum, notes = spectrum_of_log(log, given)
+    write_text(target, write_yaml(spectrum))
+    for note in notes:
+        print(note)
 
 
 def run_wear(

@@ -182,12 +182,30 @@ def rerun(
 
 @command("trackroller.cli.case", "run_spectrum")
 def spectrum(
-    file: Annotated[Path, typer.Argument(help="loads and distances of a shift (YAML)", show_default=False)],
+    file: Annotated[Path | None, typer.Argument(help="loads and distances of a shift; with --from the roller")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc) instead")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc), with --from YAML")] = None,
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
+    log: Annotated[
+        Path | None, typer.Option("--from", help="log of loads over time or distance; -o receives it")
+    ] = None,
 ) -> None:
-    """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours."""
+    """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours.
+
+    With --from, write the load spectrum of a measured log instead.
+    """
+
+
+@command("trackroller.cli.carriage", "run_carriage")
+def carriage(
+    file: Annotated[Path, typer.Argument(help="masses, rollers and load cases (YAML)", show_default=False)],
+    as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc), or the file below")] = None,
+    report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
+    spectrum: Annotated[str | None, typer.Option("--spectrum", help="roller whose spectrum -o receives")] = None,
+    study: Annotated[bool, typer.Option("--study", help="-o receives a study of the worst loads")] = False,
+) -> None:
+    """Print loads and lives of the rollers of a carriage by load case, and the margins to lift-off and tipping."""
 
 
 @command("trackroller.cli.case", "run_wear")

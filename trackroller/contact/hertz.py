@@ -151,6 +151,32 @@ def exact_shape(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> HertzS
     return _laid(major, kappa * major, k_x <= k_y)
 
 
+def unit_approach(k_x: np.ndarray, k_y: np.ndarray, modulus: np.ndarray) -> np.ndarray:
+    """Return the approach of two bodies under a unit normal force; it scales with F_N^(2/3).
+
+    Parameters
+    ----------
+    k_x, k_y, modulus : numpy.ndarray, shape (n,)
+        See `exact_shape`.
+
+    Returns
+    -------
+    numpy.ndarray
+        Approach [mm N^(-2/3)], shape (n,): 3 K(e)/(2 pi a E*) with the semi-major axis a, Johnson (4.26c).
+
+    Examples
+    --------
+    >>> one = np.ones(1)
+    >>> sphere = unit_approach(0.1 * one, 0.1 * one, 115e3 * one)  # a^2/R
+    >>> bool(np.isclose(sphere[0], 0.1 * (0.75 / (115e3 * 0.1)) ** (2 / 3)))
+    True
+    """
+    shape = exact_shape(k_x, k_y, modulus)
+    major, minor = np.maximum(shape.lateral, shape.rolling), np.minimum(shape.lateral, shape.rolling)
+    b, d = _elliptic((minor / major) ** 2)
+    return np.asarray(1.5 * (b + d) / (np.pi * major * modulus))  # K = B + D
+
+
 def _laid(major: np.ndarray, minor: np.ndarray, wide: np.ndarray) -> HertzShape:
     """Return the shape with the major axis in the lateral direction where `wide`, else in the rolling direction."""
     pressure = 3.0 / (2.0 * np.pi * major * minor)

@@ -20,8 +20,8 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     Parameters
     ----------
     ds : xarray.Dataset
-        Result of `trackroller.solve` for one case or for the design of a study, result of `solve_spectrum` or of
-        `trackroller.wear`, or the data set in `study.nc`.
+        Result of `trackroller.solve` for one case or for the design of a study, result of `solve_spectrum`, of
+        `trackroller.carriage` or of `trackroller.wear`, or the data set in `study.nc`.
     path : Path or str
         The file to write, .html or .pdf. It stands alone and can be sent by mail. A browser prints the PDF: Chromium,
         Chrome or Edge.
@@ -43,12 +43,15 @@ def write(ds: xr.Dataset, path: Path | str) -> Path:
     >>> tr.report(ds, "sheet.html").name
     'sheet.html'
     """
+    from trackroller.report.pages.carriage import write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import write_sheet  # heavy: jinja2
     from trackroller.report.pages.spectrum import write_spectrum  # heavy: jinja2
     from trackroller.report.pages.wear import write_wear  # heavy: jinja2
 
     if "groove_depth" in ds:
         return write_wear(ds, path)
+    if "payload_to_lift_off" in ds:
+        return write_carriage(ds, path)
     if "damage_sum" in ds:
         return write_spectrum(ds, path)
     if "study" not in ds.attrs:

@@ -50,6 +50,7 @@ ROOMS = (  # a room imports from the rooms before it only
     "contact",
     "roller",
     "methods",
+    "carriage",
     "study",
     "results",
     "report",

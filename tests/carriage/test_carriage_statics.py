@@ -1,0 +1,258 @@
+"""Forces of the rollers of a carriage against arrangements that are solved by hand, and against the least energy."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from carts import SIDES, cart, rollers_below, rollers_between, shuttle
+from scipy.optimize import minimize
+
+from trackroller.carriage.file import load_carriage
+from trackroller.carriage.loads import GRAVITY, loads_of
+from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
+from trackroller.carriage.statics import equilibrium
+
+G = GRAVITY
+
+
+def solved(values):
+    return forces_of(load_carriage(values))
+
+
+def test_four_equal_springs():
+    """P = F/4 +- F/2 (b/c) +- F/2 (a/d): the makers' formula of a load beside the middle."""
+    ds = solved(cart(mass={"value": 100, "at": [30, 10, 50]}, rollers=rollers_below(stiffness=1e4)))
+    f, wheelbase, gauge = 100 * G, 300, 80
+    for name, (x, y) in SIDES.items():
+        expected = f / 4 + math.copysign(f / 2 * 30 / wheelbase, x) + math.copysign(f / 2 * 10 / gauge, y)
+        assert -float(ds.radial_force.sel(roller=name)[0]) == pytest.approx(expected, rel=1e-12)
+
+
+def test_four_equal_axial_springs():
+    """The same formula holds along the axes of rollers whose preload makes their contacts equally stiff."""
+    ds = solved(shuttle(cases=[{"name": "run"}]))
+    f, x = 100 * G, 48.0
+    for name, (at, _) in SIDES.items():
+        expected = -(f / 4 + math.copysign(f / 2 * x / 300, at))
+        assert float(ds.axial_force.sel(roller=name)[0]) == pytest.approx(expected, rel=1e-9)
+        assert float(ds.radial_force.sel(roller=name)[0]) == pytest.approx(-1000, rel=1e-9)
+
+
+def test_three_rollers_are_determinate():
+    """Two rollers in front and one behind: the lever rule, without any stiffness."""
+    down = {"pushes": [0, 0, -1], "x_R": [0, 1, 0]}
+    places = {"A": [200, 50, 0], "B": [200, -50, 0], "C": [-100, 0, 0]}
+    rollers = {
+        name: {"at": at, **down, "kind": "floating" if name == "B" else "locating"} for name, at in places.items()
+    }
+    ds = solved(cart(mass={"value": 60, "at": [50, 10, 70]}, rollers=rollers))
+    f = 60 * G
+    assert -float(ds.radial_force.sel(roller="C")[0]) == pytest.approx(f * 150 / 300, rel=1e-12)
+    front = f * 150 / 300
+    assert -float(ds.radial_force.sel(roller="A")[0]) == pytest.approx(front / 2 + f * 10 / 100, rel=1e-12)
+    assert -float(ds.radial_force.sel(roller="B")[0]) == pytest.approx(front / 2 - f * 10 / 100, rel=1e-12)
+
+
+def test_two_rollers_press_against_two_others_with_their_preload():
+    ds = solved(shuttle(mass={"value": 0, "at": [0, 0, 0]}, payloads=[], cases=[{"name": "none"}]))
+    assert np.allclose(ds.radial_force, -1000, rtol=1e-12)
+    assert np.all(ds.axial_force == 0)
+
+
+def sums(values):
+    """Return what is left of the forces and moments of each load case, over the largest force."""
+    whole, ds = load_carriage(values), solved(values)
+    left = []
+    for i, case in enumerate(whole.cases):
+        rest = loads_of(whole, case).all
+        for j, roller in enumerate(whole.rollers):
+            force = roller.pushes * float(ds.radial_force[i, j]) - roller.axis * float(ds.axial_force[i, j])
+            rest = rest + np.concatenate([force, np.cross(roller.at, force)])
+        left.append(np.abs(rest).max())
+    return np.array(left) / float(np.abs(ds.radial_force).max()) / 150
+
+
+HARD = [
+    {"name": "all", "share": 1, "acceleration": 1.5, "speed": 1, "curve_radius": "-3 m", "gradient": "4 %"}
+    | {"cant": "-2 deg", "forces": [{"force": [5, 20, -30], "at": [10, 200, 100]}]}
+]
+
+
+@pytest.mark.parametrize("values", [shuttle(), cart(cases=HARD), shuttle(cases=HARD)])
+def test_forces_and_moments_add_up_to_nothing(values):
+    assert sums(values).max() < 1e-12
+
+
+def test_hand_sums_of_a_curve():
+    """In a left curve the inertia v^2/R pushes to the right; the left rollers, outside their rail, hold it."""
+    ds = solved(shuttle(payloads=[], rollers=rollers_between(stiffness=1e4)))
+    lateral = 40 * 1.0**2 / 1.5
+    left, right = (float(ds.radial_force.sel(load_case="curve", roller=f"F{side}")) for side in "LR")
+    assert right - left == pytest.approx(lateral / 2, rel=1e-9)
+    assert left == pytest.approx(-1000 - lateral / 4, rel=1e-9)
+    assert float(ds.drive_force.sel(load_case="start")) == pytest.approx(80, rel=1e-12)
+
+
+def test_each_mass_has_its_own_radius():
+    beside = cart(mass={"value": 40, "at": [0, 30, 0]}, cases=[{"name": "c", "speed": 1, "curve_radius": "1.5 m"}])
+    lateral = -40 * 1.0 * (1.5 - 0.03) / 1.5**2
+    assert float(solved(beside).axial_force.sum()) == pytest.approx(lateral, rel=1e-12)
+
+
+def test_gradient_and_cant():
+    ds = solved(
+        cart(cases=[{"name": "up", "share": 0.5, "gradient": "10 %"}, {"name": "tilt", "share": 0.5, "cant": "3 deg"}])
+    )
+    assert float(ds.drive_force[0]) == pytest.approx(40 * G * math.sin(math.atan(0.1)), rel=1e-12)
+    assert float(ds.axial_force[1].sum()) == pytest.approx(40 * G * math.sin(math.radians(3)), rel=1e-12)
+    assert float(-ds.radial_force[0].sum()) == pytest.approx(40 * G * math.cos(math.atan(0.1)), rel=1e-12)
+
+
+def mirrored(values):
+    """Return a carriage seen in a mirror between left and right; the axes keep their own directions."""
+
+    def flip(vector):
+        return [vector[0], -vector[1], vector[2]]
+
+    out = values | {"mass": values["mass"] | {"at": flip(values["mass"]["at"])}}
+    out["payloads"] = [one | {"at": flip(one["at"])} for one in values.get("payloads", [])]
+    rollers = values["rollers"]
+    out["rollers"] = {n: r | {key: flip(r[key]) for key in ("at", "pushes", "x_R")} for n, r in rollers.items()}
+    out["cases"] = [
+        {key: f"-{v}" if key == "curve_radius" else v for key, v in case.items()} for case in values["cases"]
+    ]
+    return out
+
+
+def test_a_mirrored_vehicle_has_mirrored_loads():
+    values = shuttle(payloads=[{"value": 60, "at": [80, 15, 150]}])
+    here, there = solved(values), solved(mirrored(values))
+    assert np.allclose(here.radial_force, there.radial_force, rtol=1e-9)
+    assert np.allclose(here.axial_force, there.axial_force, rtol=1e-9)  # x_R is upright: no sign changes
+
+
+def test_twice_the_mass_is_twice_the_load():
+    one, two = (
+        solved(cart(mass={"value": m, "at": [20, 5, 60]}, rollers=rollers_below(stiffness=1e4))) for m in (40, 80)
+    )
+    assert np.allclose(2 * one.radial_force, two.radial_force, rtol=1e-12)
+
+
+def test_the_order_of_rollers_does_not_matter():
+    values = shuttle(payloads=[{"value": 60, "at": [80, 15, 150]}])
+    other = solved(values | {"rollers": dict(reversed(values["rollers"].items()))})
+    for name in ("radial_force", "axial_force"):
+        assert np.allclose(solved(values)[name], other[name].sel(roller=solved(values).roller), rtol=1e-9)
+
+
+def test_stiff_springs_give_the_determinate_forces():
+    """One of four rollers a million times softer than the others leaves three, which are determinate."""
+    rollers = rollers_below(stiffness=1e10)
+    rollers["RR"]["stiffness"] = 1e4
+    four = solved(cart(mass={"value": 40, "at": [0, 20, 60]}, rollers=rollers))
+    rollers.pop("RR")
+    three = solved(cart(mass={"value": 40, "at": [0, 20, 60]}, rollers=rollers))
+    assert np.allclose(four.radial_force.sel(roller=["FL", "FR", "RL"]), three.radial_force, rtol=1e-5)
+
+
+def test_contacts_in_series_with_soft_springs_share_like_the_springs():
+    soft = solved(cart(mass={"value": 40, "at": [20, 5, 60]}, rollers=rollers_below(structure=1.0)))
+    springs = solved(cart(mass={"value": 40, "at": [20, 5, 60]}, rollers=rollers_below(stiffness=1.0)))
+    assert np.allclose(soft.radial_force, springs.radial_force, rtol=1e-4)
+
+
+@pytest.mark.parametrize("lateral", [0.0, 30.0, 60.0])
+@pytest.mark.parametrize("more", [{}, {"stiffness": 2e4}, {"structure": 3e3}])
+def test_one_sided_contact_has_the_least_energy(lateral, more):
+    """A general minimiser finds the same forces of radial springs, in cases in which rollers lift too."""
+    rollers = rollers_below(**more) | {
+        f"S{i}": {
+            "at": [x, y, -20],
+            "pushes": [0, -1 if y > 0 else 1, 0],
+            "x_R": [0, 0, 1],
+            "kind": "floating",
+            "roller": {},
+        }
+        for i, (x, y) in enumerate(SIDES.values())
+    }
+    for name in SIDES:
+        rollers[name]["kind"] = "floating"
+    rollers["S0"]["kind"] = "locating"
+    rollers["S0"]["stiffness"] = {"radial": 1e4, "axial": 1e-9}  # its axial spring is there, and carries nothing
+    force = {"force": [0, lateral, 0], "at": [40, 0, 150]}
+    mass = {"value": 40, "at": [100, 0, 60]}
+    whole = load_carriage(cart(mass=mass, rollers=rollers, cases=[{"name": "push", "forces": [force]}]))
+    springs = springs_of(whole)
+    wrench = loads_of(whole, whole.cases[0]).all
+    reduced = np.concatenate([wrench[1:3], wrench[3:] / springs.length])
+    found = equilibrium(springs, reduced)
+
+    def energy(place):
+        approach = springs.offset + springs.radial @ place
+        force, _ = springs.force(approach)
+        return 1e3 * (springs.energy(approach, force) - reduced @ place), 1e3 * (springs.radial.T @ force - reduced)
+
+    best = minimize(energy, found.start * 0.5, jac=True, method="BFGS", options={"gtol": 1e-7, "maxiter": 5000})
+    force, _ = springs.force(springs.offset + springs.radial @ best.x)
+    assert np.allclose(force, found.radial, atol=1e-3 * force.max())
+    assert (lateral < 60) or (found.radial[:4] == 0).any()
+
+
+def test_margins_of_a_cart():
+    """A payload outside the wheelbase tips a cart where the moment about the front rollers vanishes."""
+    values = cart(payloads=[{"value": 10, "at": [250, 0, 50]}], rollers=rollers_below(stiffness=1e4))
+    ds = solve_carriage(values, lives=False)
+    assert float(ds.payload_to_tipping[0]) == pytest.approx(40 * 150 / (10 * 100), rel=1e-6)
+    assert float(ds.payload_to_lift_off[0]) == pytest.approx(6.0, rel=1e-6)
+    assert float(ds.loads_to_lift_off[0]) == math.inf
+
+
+def test_preload_lifts_off_at_its_own_multiplier():
+    """Linear pairs share a lateral force by half until one roller of each pair lifts, at twice the preload."""
+    push = {"name": "push", "forces": [{"force": [0, 500, 0], "at": [0, 0, 0]}]}
+    below = {
+        name.replace("F", "f").replace("R", "r"): one
+        for name, one in rollers_below(stiffness=1e4, kind="floating").items()
+    }
+    values = shuttle(payloads=[], rollers=rollers_between(stiffness=1e4) | below, cases=[push])
+    values["preload"] = [{"pair": [f"{end}L", f"{end}R"], "force": 400} for end in "FR"]
+    values["mass"]["at"] = [0, 0, 0]
+    ds = solve_carriage(values, lives=False)
+    assert float(ds.loads_to_lift_off[0]) == pytest.approx(2 * 2 * 400 / 500, rel=1e-3)
+
+
+def test_play_leaves_a_roller_without_load():
+    values = shuttle(
+        rollers=rollers_between(stiffness=1e4) | {"D" + n: r for n, r in rollers_below(stiffness=1e4).items()}
+    )
+    values["preload"] = [{"pair": ["FL", "FR"], "play": 0.5}, {"pair": ["RL", "RR"], "play": "500 um"}]
+    ds = solved(values)
+    assert np.all(ds.radial_force.sel(roller=["FL", "FR", "RL", "RR"]) == 0)
+    assert float(ds.approach.sel(load_case="run", roller="FL")) == pytest.approx(-0.25, abs=1e-3)
+
+
+def test_a_maker_s_example_of_the_load_factor():
+    """Axial 300 lb and radial 100 lb on one wheel: load factor 0.38, and 124.7 million inches."""
+    pound, inches = 4.4482216, 1e6 * 25.4e-6
+    roller = load_carriage(
+        cart(
+            rollers=rollers_below(
+                catalogue={"radial_force": 9700, "axial_force": 4000, "basic_life": 6.84 * inches}
+                | {"lubricated": True, "offset": 0}
+            )
+        )
+    ).rollers[0]
+    factor = float(roller.catalogue.load_factor(100 * pound, -300 * pound))
+    assert factor == pytest.approx(0.38, abs=0.005)
+    assert float(roller.catalogue.life(0.38)) / inches == pytest.approx(124.7, abs=0.1)
+
+
+@pytest.mark.parametrize(("lubricated", "power"), [(False, 2), (True, 3)])
+def test_catalogue_lives(lubricated, power):
+    catalogue = {"radial_force": "1 kN", "axial_force": "400 N", "basic_life": "100 km", "lubricated": lubricated}
+    ds = solved(cart(rollers=rollers_below(catalogue=catalogue)))
+    factor = 10 * G / 1000
+    assert np.allclose(ds.load_factor, factor)
+    assert np.allclose(ds.catalogue_life_km, 100 / (0.03 + 0.97 * factor) ** power)

@@ -1,0 +1,560 @@
+"""Read a carriage file: masses, drive, rollers, preload and load cases.
+
+mass: {value: 40 kg, at: [0, 0, 60]}          # mm: x forward, y left, z up
+payloads: [{value: 60 kg, at: [80, 0, 150]}]
+drive: {at: [0, 0, -20]}
+rollers:
+  FL: {at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], kind: locating, roller: roller.yaml}
+preload: [{pair: [FL, FR], force: 100 N}]
+cases:
+  - {name: curve, share: 1, speed: 1 m/s, curve_radius: 1.5 m}     # positive: to the left
+"""
+
+from __future__ import annotations
+
+import copy
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trackroller.errors import Collector, InputError, check_names, unknown_name
+from trackroller.files import files_beside, find_beside, read_text
+from trackroller.numerics.numbers import number_in, number_or_nan
+from trackroller.numerics.plain import mapping_of
+from trackroller.numerics.units import split_quantity
+from trackroller.roller.aliases import ALIASES
+from trackroller.roller.case import Case
+from trackroller.roller.duty import checked_duty
+from trackroller.roller.settings import checked_case
+from trackroller.yaml_file import errors_by_line, parse_mapping
+
+FILE_FIELDS = (
+    *("name", "description", "mass", "payloads", "drive", "rollers", "preload", "cases"),
+    *("distance", "duty"),
+)
+ROLLER_FIELDS = ("at", "pushes", "x_R", "kind", "roller", "stiffness", "bearing", "structure", "catalogue")
+CASE_FIELDS = (*("name", "share", "acceleration", "speed", "curve_radius", "gradient", "cant", "payload", "forces"),)
+CATALOGUE_FIELDS = ("radial_force", "axial_force", "basic_life", "lubricated", "offset")
+KINDS = ("locating", "floating")
+SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
+IN_LINE = 1e-3  # of the distance: rollers of a pair press against each other if they are off their line by less
+_POINT = "three numbers [x, y, z] in mm: x forward, y left, z up"
+_AT = "Write at: [0, 0, 60]."
+
+
+@dataclass(frozen=True)
+class PointMass:
+    """A mass [kg] at a point (3,) [mm]."""
+
+    value: float
+    at: np.ndarray
+
+
+@dataclass(frozen=True)
+class CatalogueRoller:
+    """What a maker's catalogue states of a roller.
+
+    Parameters
+    ----------
+    radial_force, axial_force : float
+        Permissible radial and axial force [N].
+    basic_life : float
+        Basic life BL [km].
+    lubricated : bool
+        Whether the life falls with the third power of the load factor, instead of the second.
+    offset : float
+        Load factor that counts without any load [1], 0.03 as a rule.
+    """
+
+    radial_force: float
+    axial_force: float
+    basic_life: float
+    lubricated: bool = False
+    offset: float = 0.03
+
+    def load_factor(self, radial: np.ndarray, axial: np.ndarray) -> np.ndarray:
+        """Return the sum of the ratios of both forces [N] to their permissible values [1]."""
+        return np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
+
+    def life(self, load_factor: np.ndarray) -> np.ndarray:
+        """Return the life at load factors [1], BL/(0.03 + 0.97 LF)^2, or ^3 if it is lubricated [km]."""
+        with np.errstate(divide="ignore"):
+            whole = self.offset + (1 - self.offset) * np.asarray(load_factor)
+            return np.asarray(self.basic_life / whole ** (3 if self.lubricated else 2))
+
+
+@dataclass(frozen=True)
+class MountedRoller:
+    """A roller on a carriage.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    at : numpy.ndarray, shape (3,)
+        Place of its centre [mm].
+    pushes, axis : numpy.ndarray, shape (3,)
+        Unit vectors: in which direction it presses on its rail, and its own axis x_R.
+    locating : bool
+        Whether it carries axial load.
+    case : Case, optional
+        The roller, whose loads are replaced.
+    options : mapping
+        Options of the solver in the roller's file.
+    given : mapping
+        The roller's file.
+    stiffness : tuple of float, optional
+        Radial and axial stiffness of the whole roller, in place of that of its contacts [N/mm].
+    compliance : tuple of float
+        Radial and axial compliance of bearing and structure [mm/N].
+    catalogue : CatalogueRoller, optional
+        What a maker's catalogue states.
+    """
+
+    name: str
+    at: np.ndarray
+    pushes: np.ndarray
+    axis: np.ndarray
+    locating: bool
+    case: Case | None = None
+    options: Mapping[str, Any] = field(default_factory=dict)
+    given: Mapping[str, Any] = field(default_factory=dict)
+    stiffness: tuple[float, float] | None = None
+    compliance: tuple[float, float] = (0.0, 0.0)
+    catalogue: CatalogueRoller | None = None
+
+
+@dataclass(frozen=True)
+class Preload:
+    """Preload of two rollers that press against each other: the force between them [N], or their play [mm]."""
+
+    pair: tuple[str, str]
+    force: float = 0.0
+    play: float = 0.0
+
+
+@dataclass(frozen=True)
+class LoadCase:
+    """How a carriage moves, and what acts on it.
+
+    Parameters
+    ----------
+    name : str
+        Its name.
+    share : float
+        Share of the travel [1].
+    acceleration : float
+        Acceleration along x [m/s2].
+    speed : float, optional
+        Speed [m/s].
+    curve_radius : float
+        Radius of the curve of the origin [mm]: > 0 to the left, inf on a straight.
+    gradient, cant : float
+        Slope of the track, > 0 uphill, and its lateral tilt, > 0 towards the left [rad].
+    payload : float
+        Share of the payloads that is on board [1].
+    forces : tuple
+        Process forces (3,) [N], each with its point (3,) [mm].
+    """
+
+    name: str
+    share: float = 1.0
+    acceleration: float = 0.0
+    speed: float | None = None
+    curve_radius: float = math.inf
+    gradient: float = 0.0
+    cant: float = 0.0
+    payload: float = 1.0
+    forces: tuple[tuple[np.ndarray, np.ndarray], ...] = ()
+
+
+@dataclass(frozen=True)
+class Carriage:
+    """A carriage on track rollers; `load_carriage` makes it.
+
+    Parameters
+    ----------
+    name, description : str
+        Name and description.
+    mass : PointMass
+        The carriage without payload.
+    payloads : tuple of PointMass
+        Its payloads.
+    drive : numpy.ndarray, optional
+        Point (3,) at which the force along the track acts [mm].
+    rollers : tuple of MountedRoller
+        Its rollers.
+    preloads : tuple of Preload
+        Preload and play of pairs.
+    cases : tuple of LoadCase
+        Its load cases, whose shares add up to 1.
+    distance : float
+        Travel per shift [m].
+    duty : mapping, optional
+        Hours a day and days a year of travel.
+    """
+
+    name: str
+    mass: PointMass
+    rollers: tuple[MountedRoller, ...]
+    cases: tuple[LoadCase, ...]
+    description: str = ""
+    payloads: tuple[PointMass, ...] = ()
+    drive: np.ndarray | None = None
+    preloads: tuple[Preload, ...] = ()
+    distance: float = 1000.0
+    duty: Mapping[str, float] | None = None
+
+
+def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
+    """Read and check a carriage.
+
+    Parameters
+    ----------
+    source : pathlib.Path, str or mapping
+        The YAML file, or a mapping with its keys, in which `roller` may be a mapping or a `Case`, too.
+
+    Raises
+    ------
+    InputError
+        If an entry is wrong; the error names the entry, its value, what is allowed and what to do.
+    """
+    values = mapping_of(source)
+    if isinstance(values, Mapping):
+        return carriage_of(values)
+    path = Path(source)  # type: ignore[arg-type]  # the path of a file
+    text = read_text(path, "carriage file")
+    values = parse_mapping(text, str(path))
+    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+        return carriage_of({"name": path.stem} | values)
+
+
+def carriage_of(values: Mapping[str, Any]) -> Carriage:
+    """Return the carriage of a mapping with the keys of a file; see `load_carriage`."""
+    wrong = Collector()
+    made: dict[str, Any] = {}
+    with wrong.part():
+        check_names("carriage: key", values, FILE_FIELDS)
+    for key, read in (
+        ("mass", lambda value: _mass(value, "mass")),
+        (
+            "payloads",
+            lambda value: tuple(_mass(one, f"payloads[{i + 1}]") for i, one in enumerate(_list(value, "payloads"))),
+        ),
+        ("drive", _drive),
+        ("rollers", _rollers),
+        ("cases", _cases),
+        ("distance", lambda value: _number(value, "distance", "m", "a distance > 0 per shift", lower=1e-9)),
+        ("duty", checked_duty),
+    ):
+        with wrong.part():
+            if values.get(key) is not None:
+                made[key] = read(values[key])
+            elif key in ("mass", "rollers", "cases"):
+                raise InputError(key, None, _NEEDED[key], f"Add {_EXAMPLES[key]}.")
+    wrong.check()
+    with wrong.part():
+        if values.get("preload") is not None:
+            made["preloads"] = _preloads(values["preload"], made["rollers"])
+    with wrong.part():
+        _check_curves(made["cases"], made["rollers"])
+    wrong.check()
+    return Carriage(str(values.get("name", "carriage")), description=str(values.get("description", "")), **made)
+
+
+_NEEDED = {"mass": "the carriage's own mass", "rollers": "the rollers by name", "cases": "a list of load cases"}
+_EXAMPLES = {
+    "mass": "mass: {value: 40 kg, at: [0, 0, 60]}",
+    "rollers": "rollers: {FL: {at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], kind: locating, roller: r.yaml}}",
+    "cases": "cases: [{name: run, share: 1, speed: 1 m/s}]",
+}
+
+
+def _entries(value: Any, where: str, names: Sequence[str], example: str) -> Mapping[str, Any]:
+    """Return a mapping whose keys are known."""
+    if not isinstance(value, Mapping):
+        raise InputError(where, value, f"a mapping with {', '.join(names)}", f"Write {example}.")
+    check_names(f"{where}: key", value, names)
+    return value
+
+
+def _list(value: Any, where: str) -> list[Any]:
+    if not isinstance(value, (list, tuple)):
+        raise InputError(where, value, "a list", "Begin each entry with '- ', or write [ ] around them.")
+    return list(value)
+
+
+def _number(value: Any, where: str, unit: str, allowed: str, lower: float = -1e12, upper: float = 1e12) -> float:
+    return number_in(value, where, f"{allowed} [{unit}]" if unit != "-" else allowed, lower, upper, unit)
+
+
+def _vector(value: Any, where: str, unit: str, allowed: str, remedy: str) -> np.ndarray:
+    values = value.tolist() if isinstance(value, np.ndarray) else value
+    if not isinstance(values, (list, tuple)) or len(values) != 3:
+        raise InputError(where, value, allowed, remedy)
+    return np.array([_number(one, where, unit, allowed) for one in values])
+
+
+def _direction(value: Any, where: str) -> np.ndarray:
+    allowed = "a direction [x, y, z]; its length does not count"
+    vector = _vector(value, where, "-", allowed, "Write [0, -1, 0].")
+    length = float(np.linalg.norm(vector))
+    if length == 0:
+        raise InputError(where, value, allowed, "Write [0, -1, 0].", "has no direction")
+    return vector / length
+
+
+def _mass(value: Any, where: str) -> PointMass:
+    entry = _entries(value, where, ("value", "at"), "{value: 40 kg, at: [0, 0, 60]}")
+    for key in ("value", "at"):
+        if entry.get(key) is None:
+            needs = {"value": "a mass in kg", "at": _POINT}[key]
+            raise InputError(f"{where}.{key}", None, needs, "Write {value: 40 kg, at: [0, 0, 60]}.")
+    parts = split_quantity(entry["value"])
+    if parts and parts[1] in ("N", "kN"):
+        newton = float(parts[0]) * (1000 if parts[1] == "kN" else 1)
+        remedy = f"Write {newton / 9.80665:.6g} kg if {entry['value']} is its weight."
+        raise InputError(f"{where}.value", entry["value"], "a mass in kg", remedy, "is a force")
+    mass = _number(entry["value"], f"{where}.value", "kg", "a mass >= 0", lower=0.0)
+    return PointMass(mass, _vector(entry["at"], f"{where}.at", "mm", _POINT, _AT))
+
+
+def _drive(value: Any) -> np.ndarray:
+    entry = _entries(value, "drive", ("at",), "drive: {at: [0, 0, -20]}")
+    return _vector(entry.get("at"), "drive.at", "mm", _POINT, "Write drive: {at: [0, 0, -20]}.")
+
+
+def _rollers(value: Any) -> tuple[MountedRoller, ...]:
+    if not isinstance(value, Mapping) or not value:
+        raise InputError("rollers", value, "rollers by name", f"Write {_EXAMPLES['rollers']}.")
+    wrong, made = Collector(), []
+    files: dict[str, Any] = {}
+    for name, entry in value.items():
+        with wrong.part("rollers", str(name)):
+            made.append(_roller(str(name), entry, files))
+    wrong.check()
+    if not any(roller.locating for roller in made):
+        remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
+        raise InputError(
+            "rollers", ", ".join(r.name for r in made), "at least one locating roller", remedy, "float all"
+        )
+    return tuple(made)
+
+
+def _roller(name: str, value: Any, files: dict[str, Any]) -> MountedRoller:
+    where = f"rollers.{name}"
+    entry = _entries(
+        value, where, ROLLER_FIELDS, "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}"
+    )
+    wrong = Collector()
+    made: dict[str, Any] = {}
+    for key in ("at", "pushes", "x_R"):
+        with wrong.part():
+            if entry.get(key) is None:
+                raise InputError(f"{where}.{key}", None, _POINT if key == "at" else "a direction [x, y, z]", "Add it.")
+            own = f"{where}.{key}"
+            made[key] = _vector(entry[key], own, "mm", _POINT, _AT) if key == "at" else _direction(entry[key], own)
+    with wrong.part():
+        if (kind := entry.get("kind", KINDS[0])) not in KINDS:
+            raise unknown_name(f"{where}.kind", str(kind), KINDS)
+    with wrong.part():
+        made["roller"] = _case(entry["roller"], f"{where}.roller", files) if entry.get("roller") is not None else {}
+    with wrong.part():
+        made["stiffness"] = _stiffness(entry["stiffness"], f"{where}.stiffness") if "stiffness" in entry else None
+        series = [_stiffness(entry[key], f"{where}.{key}") for key in ("bearing", "structure") if key in entry]
+        made["compliance"] = tuple(sum(1 / one[i] for one in series) for i in (0, 1))
+    with wrong.part():
+        made["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue") if "catalogue" in entry else None
+    wrong.check()
+    _check_directions(where, made["pushes"], made["x_R"])
+    locating = entry.get("kind", KINDS[0]) == KINDS[0]
+    more = {key: made[key] for key in ("stiffness", "compliance", "catalogue")} | made["roller"]
+    return MountedRoller(name, made["at"], made["pushes"], made["x_R"], locating, **more)
+
+
+def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
+    """Refuse directions between which a roller cannot roll along the track."""
+    angle = math.degrees(math.acos(min(1.0, abs(float(pushes @ axis)))))
+    if abs(pushes @ axis) > SQUARE:
+        allowed = "a direction perpendicular to x_R"
+        remedy = "A roller presses at right angles to its axis: change pushes or x_R."
+        raise InputError(f"{where}.pushes", pushes.tolist(), allowed, remedy, f"stands at {angle:.3g} deg to x_R")
+    for key, way in (("pushes", pushes), ("x_R", axis)):
+        if abs(way[0]) > SQUARE:
+            allowed = "a direction across the track, whose x is 0"
+            raise InputError(f"{where}.{key}", way.tolist(), allowed, "The carriage travels along x: write x as 0.")
+
+
+def _case(value: Any, where: str, files: dict[str, Any]) -> dict[str, Any]:
+    """Return case, options and given values of a roller: a file, a mapping or a `Case`."""
+    if isinstance(value, Case):
+        return {"case": value, "given": {n: v for n, v in value.as_dict().items() if n not in value.not_given}}
+    if isinstance(value, Mapping):
+        case, options, _ = checked_case(value)
+        return {"case": case, "options": options, "given": dict(value)}
+    if str(value) not in files:
+        path = find_beside(value, where)
+        text = read_text(path, "roller file")
+        given = parse_mapping(text, str(path))
+        with errors_by_line(text, file=str(path), aliases=ALIASES):
+            case, options, _ = checked_case(given)
+        files[str(value)] = {"case": case, "options": options, "given": given}
+    return dict(files[str(value)])
+
+
+def _stiffness(value: Any, where: str) -> tuple[float, float]:
+    """Return radial and axial stiffness; a single number is both."""
+    entry = value if isinstance(value, Mapping) else {"radial": value, "axial": value}
+    check_names(f"{where}: key", entry, ("radial", "axial"))
+    radial = entry.get("radial", entry.get("axial"))
+    both = (radial, entry.get("axial", radial))
+    return tuple(_number(one, where, "N/mm", "a stiffness > 0", lower=1e-9, upper=1e15) for one in both)  # type: ignore[return-value]
+
+
+def _catalogue(value: Any, where: str) -> CatalogueRoller:
+    entry = _entries(value, where, CATALOGUE_FIELDS, "{radial_force: 9700 N, axial_force: 4000 N, basic_life: 174 km}")
+    made: dict[str, Any] = {}
+    for key, unit in (("radial_force", "N"), ("axial_force", "N"), ("basic_life", "km")):
+        made[key] = _number(entry.get(key), f"{where}.{key}", unit, "a number > 0", lower=1e-9)
+    made["offset"] = _number(entry.get("offset", 0.03), f"{where}.offset", "-", "a number from 0 to 1", 0.0, 1.0)
+    if not isinstance(made.setdefault("lubricated", entry.get("lubricated", False)), bool):
+        raise InputError(f"{where}.lubricated", made["lubricated"], "true or false", "Write lubricated: true.")
+    return CatalogueRoller(**made)
+
+
+def _preloads(value: Any, rollers: Sequence[MountedRoller]) -> tuple[Preload, ...]:
+    known = {roller.name: roller for roller in rollers}
+    wrong, made = Collector(), []
+    seen: set[str] = set()
+    for i, entry in enumerate(_list(value, "preload")):
+        where = f"preload[{i + 1}]"
+        with wrong.part("preload", str(i)):
+            made.append(_preload(entry, where, known))
+            twice = seen & {*made[-1].pair}
+            if twice:
+                raise InputError(
+                    f"{where}.pair", sorted(twice)[0], "each roller in one pair", "Remove one of the pairs."
+                )
+            seen |= {*made[-1].pair}
+    wrong.check()
+    return tuple(made)
+
+
+def _preload(value: Any, where: str, known: Mapping[str, MountedRoller]) -> Preload:
+    entry = _entries(value, where, ("pair", "force", "play"), "{pair: [FL, FR], force: 100 N}")
+    pair = entry.get("pair")
+    if not isinstance(pair, (list, tuple)) or len(pair) != 2 or pair[0] == pair[1]:
+        raise InputError(f"{where}.pair", pair, "two rollers", "Write pair: [FL, FR].")
+    check_names(f"{where}.pair", map(str, pair), known)
+    if ("force" in entry) == ("play" in entry):
+        raise InputError(where, dict(entry), "either force or play", "Write force: 100 N, or play: 0.05 mm.")
+    left, right = (known[str(name)] for name in pair)
+    way = right.at - left.at
+    off = np.linalg.norm(way - (way @ left.pushes) * left.pushes)
+    if left.pushes @ right.pushes > -1 + SQUARE or off > IN_LINE * max(float(np.linalg.norm(way)), 1e-9):
+        allowed = "two rollers that press against each other on one line"
+        raise InputError(f"{where}.pair", list(pair), allowed, "Name the roller on the other side of the rails.")
+    if "force" in entry:
+        return Preload(
+            (left.name, right.name), _number(entry["force"], f"{where}.force", "N", "a force >= 0", lower=0.0)
+        )
+    play = _number(entry["play"], f"{where}.play", "mm", "a play >= 0", lower=0.0)
+    return Preload((left.name, right.name), play=play)
+
+
+def _cases(value: Any) -> tuple[LoadCase, ...]:
+    wrong, made = Collector(), []
+    given = _list(value, "cases")
+    for i, entry in enumerate(given):
+        with wrong.part("cases", str(i)):
+            made.append(_load_case(entry, i + 1))
+    wrong.check()
+    if not made:
+        raise InputError("cases", value, "a list of load cases that is not empty", f"Write {_EXAMPLES['cases']}.")
+    names = [case.name for case in made]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError("cases", name, "a name of its own for each load case", "Rename one of the cases.")
+    shares = [case.share for case in made]
+    if not any("share" in entry for entry in given):
+        return tuple(_with_share(case, 1 / len(made)) for case in made)
+    if abs(sum(shares) - 1) > 1e-6:
+        raise InputError(
+            "cases", f"{sum(shares):.6g}", "shares that add up to 1", "Change the shares.", "is the sum of the shares"
+        )
+    return tuple(made)
+
+
+def _with_share(case: LoadCase, share: float) -> LoadCase:
+    new = copy.copy(case)
+    object.__setattr__(new, "share", share)
+    return new
+
+
+def _load_case(value: Any, number: int) -> LoadCase:
+    entry = _entries(value, f"cases[{number}]", CASE_FIELDS, "{name: run, share: 1, speed: 1 m/s}")
+    name = str(entry.get("name", f"case {number}"))
+    where, wrong, made = f"case '{name}'", Collector(), {}
+    for key, read in _OF_CASE.items():
+        with wrong.part():
+            if entry.get(key) is not None:
+                made[key] = read(entry[key], f"{where}.{key}")
+    wrong.check()
+    if math.isfinite(made.get("curve_radius", math.inf)) and "speed" not in made:
+        raise InputError(f"{where}.speed", None, "the speed in the curve", "Add speed: 1 m/s.")
+    return LoadCase(name, **made)
+
+
+def _angle(value: Any, where: str) -> float:
+    """Return an angle that is given in per cent or degrees, in rad."""
+    parts = split_quantity(value)
+    if parts is None:
+        allowed = "a slope with its unit, in per cent or degrees"
+        if number_or_nan(value) == 0:
+            return 0.0
+        raise InputError(where, value, allowed, f"Write {value} % or {value} deg.", "has no unit")
+    if parts[1] == "%":
+        return math.atan(float(parts[0]) / 100.0)
+    return math.radians(_number(value, where, "deg", "a slope in % or degrees, from -90 to 90", -90.0, 90.0))
+
+
+def _radius(value: Any, where: str) -> float:
+    radius = number_or_nan(value, "mm", where)
+    if math.isnan(radius) or radius == 0:
+        raise InputError(where, value, "a radius, > 0 to the left and < 0 to the right", "Write curve_radius: 1.5 m.")
+    return radius
+
+
+def _forces(value: Any, where: str) -> tuple[tuple[np.ndarray, np.ndarray], ...]:
+    made = []
+    for one in _list(value, where):
+        entry = _entries(one, where, ("force", "at"), "{force: [0, 50 N, 0], at: [0, 0, 200]}")
+        force = _vector(entry.get("force"), f"{where}.force", "N", "three forces [x, y, z] in N", "Write [0, 50, 0].")
+        made.append((force, _vector(entry.get("at"), f"{where}.at", "mm", _POINT, _AT)))
+    return tuple(made)
+
+
+_OF_CASE: dict[str, Callable[[Any, str], Any]] = {
+    "share": lambda v, where: _number(v, where, "-", "a share from 0 to 1", 0.0, 1.0),
+    "acceleration": lambda v, where: _number(v, where, "m/s2", "an acceleration along the track"),
+    "speed": lambda v, where: _number(v, where, "m/s", "a speed > 0", lower=1e-9),
+    "curve_radius": _radius,
+    "gradient": _angle,
+    "cant": _angle,
+    "payload": lambda v, where: _number(v, where, "-", "a share of the payloads >= 0", lower=0.0),
+    "forces": _forces,
+}
+
+
+def _check_curves(cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]) -> None:
+    """Refuse a curve whose centre lies inside the carriage."""
+    reach = max(float(np.linalg.norm(roller.at[:2])) for roller in rollers)
+    for case in cases:
+        if abs(case.curve_radius) <= reach:
+            allowed = f"a radius larger than the reach of the rollers, {reach:.4g} mm"
+            remedy = f"Write curve_radius: {case.curve_radius:g} m if metres are meant."
+            raise InputError(f"case '{case.name}'.curve_radius", f"{case.curve_radius:g} mm", allowed, remedy)

@@ -1,0 +1,335 @@
+"""Solve a carriage: the loads of each roller in each load case, its margins, and the worst roller by its life."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.carriage.file import Carriage, MountedRoller, load_carriage
+from trackroller.carriage.loads import Loads, loads_of
+from trackroller.carriage.statics import (
+    MOTIONS,
+    Equilibrium,
+    Moves,
+    Springs,
+    equilibrium,
+    free_motion,
+    is_determinate,
+    multipliers,
+)
+from trackroller.contact.hertz import contact_modulus, unit_approach
+from trackroller.errors import InputError
+from trackroller.roller.case import Case, to_table
+from trackroller.roller.dataset import file_attributes
+from trackroller.roller.duty import with_duty, years
+from trackroller.roller.geometry import contact_geometry
+
+LIFE = "pair_life_to_first_limit_hours"
+CONVENTIONS = (
+    "radial_force < 0 presses the roller on its rail; axial_force acts on the roller along its own x_R",
+    "a rigid carriage and small displacements; the drive holds the carriage along the track, where it acts",
+    "lateral acceleration (v/R)^2 times each mass's own radius; v and R belong to the origin",
+    "preload is the force between the pair with no other load",
+    "a lifted roller carries no load; a locating roller carries axial load both ways while it carries radial load",
+    "contacts without friction give the stiffness: Hertz's approach at the load of each roller",
+    "shares are shares of the travel; lives add up linearly over the load cases (Palmgren-Miner)",
+)
+TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
+_RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
+
+
+def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: bool = True) -> xr.Dataset:
+    """Compute the loads of the rollers of a carriage, and their lives.
+
+    Parameters
+    ----------
+    source : pathlib.Path, str, mapping or Carriage
+        A carriage file, or a mapping with its keys; see "Carriage" in the how-to guides.
+    lives : bool
+        Whether each roller is solved under its loads, by `trackroller.solve`.
+
+    Returns
+    -------
+    xarray.Dataset
+        Dimensions `load_case` and `roller`. `radial_force` and `axial_force` [N] have the signs of `Case`; a lifted
+        roller has 0 N. `approach` [mm] is that of the roller to its rail. `payload_to_lift_off`,
+        `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. With `lives`,
+        `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
+        roller with the shortest one.
+
+    Raises
+    ------
+    InputError
+        If an entry is wrong, or if the rollers do not hold the carriage; the error names the load case.
+
+    Notes
+    -----
+    The margins take a second a load case, up to ten where many rollers lift. The lives take as long as
+    `trackroller.solve` for each roller and load case.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> down = {"pushes": [0, 0, -1], "x_R": [0, 1, 0]}
+    >>> places = {"FL": [100, 50, 0], "FR": [100, -50, 0], "RL": [-100, 50, 0], "RR": [-100, -50, 0]}
+    >>> cart = {"mass": {"value": "40 kg", "at": [0, 0, 0]}, "cases": [{"name": "stand"}]}
+    >>> rollers = {name: {"at": at, "stiffness": 1e4} | down for name, at in places.items()}
+    >>> ds = tr.carriage(cart | {"rollers": rollers})
+    >>> ds.radial_force.values.round(2)
+    array([[-98.07, -98.07, -98.07, -98.07]])
+    """
+    whole = source if isinstance(source, Carriage) else load_carriage(source)
+    ds = forces_of(whole)
+    ds = ds.assign(_margins(springs_of(whole), [loads_of(whole, case) for case in whole.cases]))
+    return with_lives(ds, whole) if lives and all(roller.case is not None for roller in whole.rollers) else ds
+
+
+def forces_of(whole: Carriage) -> xr.Dataset:
+    """Return the forces of the rollers in each load case, without margins and lives; see `solve_carriage`."""
+    springs = springs_of(whole)
+    loads = [loads_of(whole, case) for case in whole.cases]
+    found = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
+    variables = _forces(whole, found, loads)
+    variables |= _of_catalogue(whole, variables) | _places(whole)
+    coords = {
+        "load_case": ("load_case", [case.name for case in whole.cases], {"long_name": "load case"}),
+        "roller": ("roller", [roller.name for roller in whole.rollers], {"long_name": "roller of the carriage"}),
+    }
+    attrs = {
+        **file_attributes("Loads of the rollers of a carriage", "solved"),
+        "title": whole.name,
+        "description": whole.description,
+        "conventions": "; ".join(CONVENTIONS),
+    }
+    return with_duty(xr.Dataset(variables, coords, attrs), whole.duty)
+
+
+def springs_of(whole: Carriage) -> Springs:
+    """Return the springs of the rollers of a carriage.
+
+    Raises
+    ------
+    InputError
+        If the rollers leave the carriage free to move.
+    """
+    rollers = whole.rollers
+    length = max(float(np.abs([roller.at for roller in rollers]).max()), 1.0)
+
+    def rows(way: str) -> np.ndarray:
+        turning = [np.cross(roller.at, getattr(roller, way)) / length for roller in rollers]
+        return np.hstack([[getattr(roller, way) for roller in rollers], turning])[:, 1:]
+
+    contact, tangent, series = (np.array(column) for column in zip(*map(_compliance, rollers), strict=True))
+    springs = Springs(
+        radial=rows("pushes"),
+        axial=rows("axis"),
+        locating=np.array([roller.locating for roller in rollers]),
+        contact=contact,
+        tangent=tangent,
+        radial_compliance=series[:, 0],
+        axial_compliance=series[:, 1],
+        offset=np.zeros(len(rollers)),
+        length=length,
+    )
+    motion = free_motion(springs)
+    if motion is not None:
+        names = ", ".join(roller.name for roller in rollers)
+        wrong = f"leave the carriage free: it {motion} without any resistance"
+        remedy = "Add a roller, put the rollers further apart, or make one with kind: floating a locating one."
+        raise InputError(
+            "rollers", names, "rollers that hold the carriage in all directions across the track", remedy, wrong
+        )
+    return _preloaded(springs, whole)
+
+
+def _preloaded(springs: Springs, whole: Carriage) -> Springs:
+    """Return springs with the approach that preload or play gives each roller."""
+    places = {roller.name: i for i, roller in enumerate(whole.rollers)}
+    force, play = np.zeros((2, len(places)))
+    for preload in whole.preloads:
+        for name in preload.pair:
+            force[places[name]], play[places[name]] = preload.force, preload.play / 2
+    return replace(springs, offset=springs.approach(force) - play)
+
+
+def _compliance(roller: MountedRoller) -> tuple[float, float, tuple[float, float]]:
+    """Return Hertz's factor of the radial approach [mm N^(-2/3)], tan(alpha), and the compliances in series [mm/N]."""
+    if roller.stiffness is not None:
+        series = [own + 1 / one for own, one in zip(roller.compliance, roller.stiffness, strict=True)]
+        return 0.0, 1.0, (series[0], series[1])
+    if roller.case is None:
+        return 0.0, 1.0, (1.0, 1.0)  # the forces of a determinate arrangement depend on no stiffness
+    table = to_table([roller.case])
+    geometry = contact_geometry(vars(table))
+    bodies = ((body.youngs_modulus, body.poisson_ratio) for body in (table.roller, table.guide))
+    modulus = contact_modulus(*(value for body in bodies for value in body))
+    approach = float(unit_approach(geometry.curvature_lateral, geometry.curvature_rolling, modulus)[0])
+    cosine = float(np.cos(geometry.contact_angle[0]))
+    # F_rad = 2 F_N cos(alpha), and each contact approaches by the radial approach times cos(alpha)
+    return approach / (2 * cosine) ** (2 / 3) / cosine, float(np.tan(geometry.contact_angle[0])), roller.compliance
+
+
+def _reduced(wrench: np.ndarray, length: float) -> np.ndarray:
+    """Return the five components of a wrench that the rollers carry; moments over `length`."""
+    return np.concatenate([wrench[1:3], wrench[3:] / length])
+
+
+def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> Equilibrium:
+    """Return the forces of the rollers in a load case; an error names the case."""
+    try:
+        found = equilibrium(springs, _reduced(loads.all, springs.length))
+    except Moves as error:
+        allowed = "loads that rollers which only press can carry"
+        tips = "tips" if error.motion in TIPPING else "does not hold"
+        remedy = (
+            "Move the masses between the rollers, put the rollers further apart, or give pairs a preload: a roller "
+            "carries axial load only while it presses on its rail."
+        )
+        raise InputError("case", name, allowed, remedy, f"{tips} the carriage: it {error.motion}") from None
+    unknown = [r.name for r in whole.rollers if r.case is None and r.stiffness is None]
+    if unknown and not is_determinate(springs, found):
+        needs = f"the stiffness, because the statics alone does not decide the forces in case '{name}'"
+        raise InputError(f"rollers.{unknown[0]}.roller", None, needs, "Add roller: FILE, or stiffness: 5e4.")
+    return found
+
+
+def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
+    return {"units": units, "long_name": long_name, "symbol": symbol}
+
+
+def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
+    """Return the forces of rollers and drive, and what the file says of the load cases, as variables."""
+    radial = -np.array([one.radial for one in found])
+    speeds = [np.nan if case.speed is None else case.speed for case in whole.cases]
+    return {
+        "radial_force": (_RC, np.where(radial == 0, 0.0, radial), _attrs("N", "radial force", "F_rad")),
+        "axial_force": (_RC, np.array([one.axial for one in found]), _attrs("N", "axial force", "F_ax")),
+        "approach": (
+            _RC,
+            np.array([one.approach for one in found]),
+            _attrs("mm", "approach of the roller to its rail"),
+        ),
+        "drive_force": (_C, np.array([one.drive for one in loads]), _attrs("N", "force of the drive along the track")),
+        "share": (_C, np.array([case.share for case in whole.cases]), _attrs("1", "share of the travel")),
+        "speed": (_C, np.array(speeds), _attrs("m s-1", "speed")),
+    }
+
+
+def _places(whole: Carriage) -> dict[str, Any]:
+    """Return places and directions of rollers and masses, which the picture shows, as variables."""
+    masses = [whole.mass, *whole.payloads]
+    names = ["carriage", *(f"payload {i + 1}" for i in range(len(whole.payloads)))]
+    rd, md = ("roller", "direction"), ("mass_name", "direction")
+    at, pushes, axis = (np.array([getattr(r, key) for r in whole.rollers]) for key in ("at", "pushes", "axis"))
+    return {
+        "roller_at": (rd, at, _attrs("mm", "place of the roller")),
+        "roller_pushes": (rd, pushes, _attrs("1", "direction in which the roller presses on its rail")),
+        "roller_axis": (rd, axis, _attrs("1", "axis x_R of the roller")),
+        "locating": ("roller", np.array([r.locating for r in whole.rollers]), {"long_name": "carries axial load"}),
+        "mass": (("mass_name",), np.array([one.value for one in masses]), _attrs("kg", "mass")),
+        "mass_at": (md, np.array([one.at for one in masses]), _attrs("mm", "place of the mass")),
+        "direction": (("direction",), np.array(["x", "y", "z"]), {"long_name": "x forward, y left, z up"}),
+        "mass_name": (("mass_name",), np.array(names), {"long_name": "name of the mass"}),
+    }
+
+
+def _margins(springs: Springs, loads: list[Loads]) -> dict[str, Any]:
+    """Return the multipliers of payload and of all loads at which a roller lifts and the carriage tips."""
+    out: dict[str, list[float]] = {}
+    for one in loads:
+        payload, other = (_reduced(part, springs.length) for part in (one.payload, one.other))
+        for name, fixed, varying in (("payload", other, payload), ("loads", np.zeros(5), payload + other)):
+            for end, value in zip(("lift_off", "tipping"), multipliers(springs, fixed, varying), strict=True):
+                out.setdefault(f"{name}_to_{end}", []).append(value)
+    words = {"payload": "multiplier of the payload", "loads": "multiplier of all loads"}
+    ends = {"lift_off": "to the first lift-off", "tipping": "to tipping"}
+    names = {f"{name}_to_{end}": f"{words[name]} {ends[end]}" for name in words for end in ends}
+    return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
+
+
+def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, Any]:
+    """Return load factor and life by the catalogues of the rollers, {} without a catalogue."""
+    if not any(roller.catalogue for roller in whole.rollers):
+        return {}
+    radial, axial, shares = (variables[name][1] for name in ("radial_force", "axial_force", "share"))
+    factor, life = np.full(radial.shape, np.nan), np.full(radial.shape[1], np.nan)
+    for i, roller in enumerate(whole.rollers):
+        if roller.catalogue is not None:
+            factor[:, i] = roller.catalogue.load_factor(radial[:, i], axial[:, i])
+            life[i] = 1 / np.sum(shares / roller.catalogue.life(factor[:, i]))
+    return {
+        "load_factor": (_RC, factor, _attrs("1", "load factor of the maker's catalogue", "LF")),
+        "catalogue_life_km": (_R, life, _attrs("km", "life by the maker's catalogue")),
+    }
+
+
+def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
+    """Return the `Case` of each roller that carries load, by the numbers of load case and roller."""
+    made = {}
+    for i, j in np.argwhere(ds["radial_force"].values < 0).tolist():
+        speed, case = whole.cases[i].speed, whole.rollers[j].case
+        if case is not None:
+            loads = {name: float(ds[name][i, j]) for name in ("radial_force", "axial_force")}
+            made[i, j] = replace(case, **loads, **({} if speed is None else {"velocity": 60 * speed}))
+    return made
+
+
+def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:
+    """Return a solved carriage with the life of each roller, its regime, and the worst roller.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `forces_of`.
+    whole : Carriage
+        The carriage.
+    solve : callable, optional
+        Function with the signature of `trackroller.solve`, which is the default.
+    """
+    solve_cases: Callable[..., xr.Dataset]
+    if solve is None:
+        from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
+    else:
+        solve_cases = solve
+    hours, regime = np.full(ds["radial_force"].shape, np.inf), np.full(ds["radial_force"].shape, -1, dtype=np.int8)
+    speed = np.ones(hours.shape)
+    flags: Mapping[str, Any] = {}
+    cases = cases_of(whole, ds)
+    groups: dict[str, list[tuple[int, int]]] = {}
+    for place in cases:
+        groups.setdefault(repr(whole.rollers[place[1]].options), []).append(place)
+    for places in groups.values():
+        options = {key: value for key, value in whole.rollers[places[0][1]].options.items() if key != "outputs"}
+        solved = solve_cases(
+            [cases[place] for place in places], outputs=("forces", "peak_stress", "life", "limits"), **options
+        )
+        flags = solved["regime"].attrs
+        for k, place in enumerate(places):
+            hours[place], regime[place] = float(solved[LIFE][k]), int(solved["regime"][k])
+            speed[place] = 0.06 * float(cases[place].velocity)  # km/h
+    shares = ds["share"].values[:, None]
+    with np.errstate(divide="ignore"):
+        damage = np.where(shares > 0, shares / (hours * speed), 0.0)  # of a km of travel
+        travel = 1 / np.sum(damage, axis=0)
+    own = [0.06 * float(roller.case.velocity) for roller in whole.rollers if roller.case is not None]
+    pace = np.where(np.isnan(ds["speed"].values)[:, None], np.array(own), 3.6 * ds["speed"].values[:, None])
+    lasts = travel * np.sum(shares / pace, axis=0)
+    meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
+    meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
+    variables: dict[str, Any] = {
+        "case_life_hours": (_RC, hours, _attrs("h", "life to the first limit under the loads of a load case alone")),
+        "damage_per_km": (_RC, damage, _attrs("km-1", "damage of a load case by a km of travel with all load cases")),
+        "roller_regime": (_RC, regime, meanings),
+        "life_km": (_R, travel, _attrs("km", "travel of the carriage to the first limit of the roller or its rail")),
+        "life_hours": (_R, lasts, _attrs("h", "hours of travel to the first limit of the roller or its rail")),
+    }
+    if whole.duty is not None:
+        variables["life_years"] = (_R, years(lasts, whole.duty), _attrs("year", "years of the duty to the first limit"))
+    known = np.where(np.isnan(travel), np.inf, travel)
+    worst = ds["roller"].values[int(np.argmin(known))] if np.isfinite(known).any() else ""
+    return ds.assign(variables).assign_attrs(worst_roller=str(worst))

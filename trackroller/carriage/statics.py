@@ -1,0 +1,340 @@
+"""A rigid carriage on one-sided springs: the forces of its rollers, and the loads at which it lifts a roller or tips.
+
+The carriage has six freedoms. The drive holds it along the track, so that five remain: displacements along y and z and
+rotations about x, y and z. Each roller presses on its rail with a spring that takes no tension. A locating roller has a
+second spring along its axis, which acts as long as the roller presses on its rail.
+
+The radial springs have a potential energy that is convex, so that its minimum is the equilibrium and is found by a
+damped Newton method, which linearises each spring at its load. The axial stiffness follows from the radial load, and is
+computed again until the forces stay the same.
+
+ASSUME: displacements are small; a lifted locating roller carries no axial load.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.optimize import brentq, linprog, nnls
+
+MOTIONS = (
+    "moves sideways",
+    "moves up or down",
+    "rolls about the x axis",
+    "pitches about the y axis",
+    "yaws about the z axis",
+)
+MOST_PASSES = 24  # of the axial stiffness; a few are usual
+LARGEST_MULTIPLIER = 1000.0  # a carriage that holds so many times its loads counts as one that never tips
+_INFEASIBLE = 1e-9  # of the wrench: what no force of the rollers balances
+
+
+class Moves(Exception):
+    """The rollers do not hold the carriage.
+
+    Parameters
+    ----------
+    motion : str
+        How the carriage moves, one of `MOTIONS`.
+    """
+
+    def __init__(self, motion: str) -> None:
+        self.motion = motion
+        super().__init__(motion)
+
+
+@dataclass(frozen=True)
+class Springs:
+    """The springs of n rollers.
+
+    Parameters
+    ----------
+    radial, axial : numpy.ndarray, shape (n, 5)
+        Displacement of a roller into its rail and along its axis for a unit of each freedom; rotations count as
+        displacements at the distance `length`.
+    locating : numpy.ndarray of bool, shape (n,)
+        Whether the roller carries axial load.
+    contact : numpy.ndarray, shape (n,)
+        Radial approach of the two contacts over F^(2/3) [mm N^(-2/3)]; 0 for linear springs.
+    tangent : numpy.ndarray, shape (n,)
+        Tangent of the contact angle [1].
+    radial_compliance, axial_compliance : numpy.ndarray, shape (n,)
+        Compliance in series with the contacts [mm/N].
+    offset : numpy.ndarray, shape (n,)
+        Approach before any displacement [mm]: that of the preload, negative for play.
+    length : float
+        Length that turns rotations into displacements [mm].
+    """
+
+    radial: np.ndarray
+    axial: np.ndarray
+    locating: np.ndarray
+    contact: np.ndarray
+    tangent: np.ndarray
+    radial_compliance: np.ndarray
+    axial_compliance: np.ndarray
+    offset: np.ndarray
+    length: float
+
+    def approach(self, force: np.ndarray) -> np.ndarray:
+        """Return the approach of each roller to its rail under radial forces >= 0 (n,) [N], in mm."""
+        return self.contact * np.cbrt(force) ** 2 + self.radial_compliance * force
+
+    def force(self, approach: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return radial forces [N] and stiffness [N/mm] at approaches (n,) [mm]; both are 0 for a lifted roller."""
+        pressed = np.maximum(approach, 0.0)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            root = np.fmin(np.sqrt(pressed / self.contact), np.cbrt(pressed / self.radial_compliance))
+            for _ in range(60):  # from above: the approach is a convex function of the cube root of the force
+                over = self.contact * root**2 + self.radial_compliance * root**3 - pressed
+                slope = 2 * self.contact * root + 3 * self.radial_compliance * root**2
+                step = np.where(pressed > 0, over / slope, 0.0)
+                root = root - step
+                if not np.any(np.abs(step) > 1e-16 * root):
+                    break
+            stiffness = 1.0 / (2 / 3 * self.contact / root + self.radial_compliance)
+        root = np.where(pressed > 0, root, 0.0)
+        return root**3, np.where(approach >= 0, np.where(root > 0, stiffness, self._unloaded()), 0.0)
+
+    def _unloaded(self) -> np.ndarray:
+        """Return the stiffness of a roller that just touches: that of a linear spring, 0 for a Hertzian contact."""
+        with np.errstate(divide="ignore"):
+            return np.where(self.contact > 0, 0.0, 1.0 / self.radial_compliance)
+
+    def energy(self, approach: np.ndarray, force: np.ndarray) -> float:
+        """Return the energy of the radial springs [N mm]."""
+        complementary = 0.6 * self.contact * np.cbrt(force) ** 5 + 0.5 * self.radial_compliance * force**2
+        return float(np.sum(force * np.maximum(approach, 0.0) - complementary))
+
+    def axial_stiffness(self, force: np.ndarray) -> np.ndarray:
+        """Return the axial stiffness under radial forces > 0 (n,) [N], in N/mm.
+
+        Both contacts of a wedge approach by u_r cos(alpha) +- u_a sin(alpha), so that the axial stiffness of the
+        contacts is tan(alpha)^2 times the radial one.
+        """
+        of_contacts = self.contact / (1.5 * np.cbrt(force) * self.tangent**2)
+        return 1.0 / (of_contacts + self.axial_compliance)
+
+    def linear_at(self, force: float) -> Springs:
+        """Return linear springs with the compliance of these at one radial force; preload and play are kept."""
+        compliance = 2 / 3 * self.contact / np.cbrt(force) + self.radial_compliance
+        preload, _ = self.force(self.offset)
+        offset = np.where(self.offset > 0, preload * compliance, self.offset)
+        return replace(self, contact=np.zeros_like(compliance), radial_compliance=compliance, offset=offset)
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """Forces of n rollers: `radial` >= 0 presses on the rail, `axial` acts on the roller along its axis [N], (n,).
+
+    `approach` is that of each roller to its rail [mm], (n,); below 0 the roller has lifted by so much. `start` is the
+    displacement, from which a similar wrench is solved faster.
+    """
+
+    radial: np.ndarray
+    axial: np.ndarray
+    approach: np.ndarray
+    start: np.ndarray
+
+    @property
+    def loaded(self) -> np.ndarray:
+        """Return which rollers press on their rail, (n,)."""
+        return self.radial > 0
+
+
+def free_motion(springs: Springs) -> str | None:
+    """Return how the carriage can move although all rollers touch their rails, None if they hold it."""
+    rows = np.vstack([springs.radial, springs.axial[springs.locating]])
+    _, values, ways = np.linalg.svd(rows)
+    values = np.concatenate([values, np.zeros(5 - values.size)]) if values.size < 5 else values
+    if values[4] > 1e-9 * values[0]:
+        return None
+    return motion_of(ways[4])
+
+
+def motion_of(way: np.ndarray) -> str:
+    """Return the word for a motion (5,); one that turns the carriage and moves it counts as turning."""
+    size = np.abs(way) * np.array([0.5, 0.5, 1.0, 1.0, 1.0])
+    return MOTIONS[int(np.argmax(size))]
+
+
+def equilibrium(springs: Springs, wrench: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
+    """Return the forces of the rollers under a wrench.
+
+    Parameters
+    ----------
+    springs : Springs
+        The rollers.
+    wrench : numpy.ndarray, shape (5,)
+        Forces along y and z [N], and moments about x, y and z over `springs.length` [N].
+    start : numpy.ndarray, shape (5,), optional
+        Displacement of a similar equilibrium.
+
+    Raises
+    ------
+    Moves
+        If no forces of the rollers balance the wrench.
+    """
+    size = max(float(np.abs(wrench).max()), float(springs.force(springs.offset)[0].max()), 1e-9)
+    carries, seen = springs.locating.copy(), set()
+    radial = np.full(carries.shape, size / carries.size)
+    while True:
+        _check_balance(springs, carries, wrench)
+        found = _settled(springs, carries, wrench, size, radial, start)
+        now = springs.locating & found.loaded
+        if (now == carries).all() or tuple(now) in seen:
+            return found
+        seen.add(tuple(now))
+        carries, radial = now, np.maximum(found.radial, 1e-6 * size)
+
+
+def _check_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) -> None:
+    """Raise `Moves` if forces of the rollers that only press cannot balance a wrench."""
+    axial = springs.axial[carries]
+    columns = np.vstack([springs.radial, axial, -axial]).T
+    forces, rest = nnls(columns, wrench)
+    if rest > _INFEASIBLE * max(1e-30, float(np.abs(wrench).max())):
+        raise Moves(motion_of(wrench - columns @ forces))
+
+
+def _settled(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, radial: np.ndarray, start: np.ndarray | None
+) -> Equilibrium:
+    """Return the equilibrium with the axial stiffness that belongs to its radial forces."""
+    stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, 1e-6 * size)), 0.0)
+    if start is None:
+        start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(5), size)
+    place = start
+    for turn in range(MOST_PASSES):
+        stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, 1e-6 * size)), 0.0)
+        place = _minimum(springs, stiffness, wrench, place, size)
+        approach = springs.offset + springs.radial @ place
+        new, _ = springs.force(approach)
+        new[new < 1e-12 * size] = 0.0
+        change, radial = np.abs(new - radial).max(), new if turn < 12 else (new + radial) / 2
+        if change <= 1e-9 * size or not (carries.any() and springs.contact.any()):
+            break
+    axial = stiffness * (springs.axial @ place)
+    return Equilibrium(*_balanced(springs, carries, wrench, new, axial), approach, place)
+
+
+def _minimum(
+    springs: Springs, axial_stiffness: np.ndarray, wrench: np.ndarray, place: np.ndarray, size: float
+) -> np.ndarray:
+    """Return the displacement (5,) of least potential energy, by a damped Newton method."""
+    of_axial = (springs.axial.T * axial_stiffness) @ springs.axial
+
+    def at(place: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+        approach = springs.offset + springs.radial @ place
+        force, stiffness = springs.force(approach)
+        energy = springs.energy(approach, force) + 0.5 * place @ of_axial @ place - wrench @ place
+        slope = springs.radial.T @ force + of_axial @ place - wrench
+        return energy, slope, (springs.radial.T * stiffness) @ springs.radial + of_axial
+
+    (energy, slope, curve), damping = at(place), 1e-12
+    for _ in range(400):
+        if np.abs(slope).max() <= 1e-12 * size or damping > 1e4:
+            break
+        scale = max(float(np.trace(curve)), 1e-6 * size)
+        step = np.linalg.solve(curve + damping * scale * np.eye(5), -slope)
+        new = at(place + step)
+        better = new[0] <= energy + 1e-4 * float(slope @ step)
+        flat = np.abs(new[1]).max() < 0.5 * np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(energy)
+        if not flat and abs(float(slope @ step)) <= 1e-15 * abs(energy):
+            break
+        if better or flat:  # close to the minimum, rounding hides the decrease of the energy
+            place, (energy, slope, curve), damping = place + step, new, max(damping / 30, 1e-14)
+        else:
+            damping *= 10
+    return place
+
+
+def _balanced(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, radial: np.ndarray, axial: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return the forces after the least change that makes their sums exact; determinate forces become exact by it."""
+    loaded = radial > 0
+    rows = np.vstack([springs.radial[loaded], springs.axial[carries]])
+    for _ in range(2):
+        rest = wrench - springs.radial.T @ radial - springs.axial.T @ axial
+        change = np.linalg.lstsq(rows.T, rest, rcond=1e-12)[0] if rows.size else np.zeros(0)
+        radial, axial = radial.copy(), axial.copy()
+        radial[loaded] += change[: loaded.sum()]
+        axial[carries] += change[loaded.sum() :]
+    return np.maximum(radial, 0.0), axial
+
+
+def is_determinate(springs: Springs, found: Equilibrium) -> bool:
+    """Return whether the forces of an equilibrium follow from the sums of forces and moments alone."""
+    rows = np.vstack([springs.radial[found.loaded], springs.axial[springs.locating & found.loaded]])
+    return rows.size == 0 or np.linalg.matrix_rank(rows, tol=1e-9) == len(rows)
+
+
+def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tuple[float, float]:
+    """Return the multipliers of a part of the loads at which the first roller lifts, and at which the carriage tips.
+
+    Parameters
+    ----------
+    springs : Springs
+        The rollers.
+    fixed, varying : numpy.ndarray, shape (5,)
+        Wrench that stays, and wrench that is multiplied; see `equilibrium`.
+
+    Returns
+    -------
+    tuple of float
+        Multipliers [1]; inf if it does not happen up to `LARGEST_MULTIPLIER`. Rollers count that carry load at the
+        multiplier 1 or by their preload; one that has lifted at 1 gives a multiplier below 1.
+    """
+    given = equilibrium(springs, fixed + varying)
+    watched = given.loaded | (springs.offset > 0)
+
+    def lowest(multiplier: float) -> float:
+        """Return the smallest approach of the rollers that carry load; below 0 where the carriage is not held."""
+        try:
+            found = equilibrium(springs, fixed + multiplier * varying, given.start)
+        except Moves:
+            return -springs.length
+        return float(found.approach[watched].min())
+
+    tipping = _tipping(springs, fixed, varying, lambda multiplier: _holds(springs, fixed + multiplier * varying))
+    if not watched.any() or not np.any(varying):
+        return np.inf, tipping
+    if given.approach[watched].min() <= 0:
+        return (float(brentq(lowest, 0.0, 1.0, xtol=1e-9)) if lowest(0.0) > 0 else 0.0), tipping
+    last = min(tipping * (1 - 1e-9), LARGEST_MULTIPLIER)
+    if last <= 1 or lowest(last) > 0:
+        return tipping, tipping
+    return float(brentq(lowest, 1.0, last, xtol=1e-9)), tipping
+
+
+def _holds(springs: Springs, wrench: np.ndarray) -> bool:
+    try:
+        equilibrium(springs, wrench)
+    except Moves:
+        return False
+    return True
+
+
+def _tipping(springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Callable[[float], bool]) -> float:
+    """Return the largest multiplier with an equilibrium, inf beyond `LARGEST_MULTIPLIER`."""
+    axial = springs.axial[springs.locating]
+    n = len(springs.radial)
+    columns = np.vstack([springs.radial, axial]).T
+    size = max(float(np.abs(fixed).max()), float(np.abs(varying).max()), 1e-30)
+    most = linprog(
+        np.append(np.zeros(columns.shape[1]), -1.0),
+        A_eq=np.column_stack([columns, -varying / size]),
+        b_eq=fixed / size,
+        bounds=[(0, None)] * n + [(None, None)] * len(axial) + [(0, LARGEST_MULTIPLIER)],
+    )
+    bound = float(most.x[-1]) if most.success else 1.0
+    if holds(bound * (1 - 1e-7)):
+        return np.inf if bound >= LARGEST_MULTIPLIER * (1 - 1e-9) else bound
+    low, high = 1.0, max(bound, 1.0)
+    while high > low * (1 + 1e-6):
+        middle = np.sqrt(low * high)
+        low, high = (middle, high) if holds(middle) else (low, middle)
+    return low

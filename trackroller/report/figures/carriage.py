@@ -1,0 +1,77 @@
+"""The picture of a carriage from the side and from above, with the forces of its rollers."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.report.figures import style
+from trackroller.report.numbers import rounded
+from trackroller.report.words.carriage import worst_place
+
+LONGEST = 0.3  # of the size of the carriage: the arrow of the largest force
+APART = 0.45  # of the smallest distance between rollers, so that the arrows of a pair do not meet
+VIEWS = (("from the side", 0, 2), ("from above", 0, 1))  # axes of the picture
+
+
+def views(ds: xr.Dataset) -> style.Drawn:
+    """Draw a carriage from the side and from above in the worst load case.
+
+    Parameters
+    ----------
+    ds : result of `trackroller.carriage`
+
+    Returns
+    -------
+    The figure and its caption.
+    """
+    worst, case = worst_place(ds)
+    own = ds.sel(load_case=case)
+    at = ds["roller_at"].values
+    radial = -own["radial_force"].values[:, None] * ds["roller_pushes"].values
+    axial = own["axial_force"].values[:, None] * ds["roller_axis"].values
+    size = max(float(np.ptp(at, axis=0).max()), 1.0)
+    gaps = np.linalg.norm(at[:, None] - at[None], axis=2)
+    longest = min(LONGEST * size, APART * float(np.min(gaps[gaps > 0], initial=np.inf)))
+    scale = longest / max(float(np.abs(radial).max()), float(np.abs(axial).max()), 1e-9)
+    figure, panels = style.panels(f"{ds.attrs['title']}: forces of the rollers on their rails, {case}", 78, 2)
+    for axes, (words, across, up) in zip(panels, VIEWS, strict=True):
+        axes.plot(*at[:, [across, up]].T, "o", color="0.35", ms=9, mfc="white", label="roller")
+        masses = ds["mass_at"].values
+        axes.plot(*masses[:, [across, up]].T, "D", color="0.35", ms=4, label="mass")
+        for colour, forces, label in zip(style.PAIR, (radial, axial), ("radial", "axial"), strict=False):
+            _arrows(axes, at[:, [across, up]], scale * forces[:, [across, up]], colour, label)
+        _name(axes, own, at[:, [across, up]], worst)
+        axes.set(xlabel="x, forward [mm]", ylabel=f"{'z, up' if up == 2 else 'y, left'} [mm]", title=words)
+        axes.set_aspect("equal", adjustable="datalim")
+        axes.margins(0.25)
+    panels[0].legend(loc="best", fontsize=7)
+    caption = (
+        f"Carriage from the side and from above in the load case {case}, the worst one of roller {worst}. Arrows are "
+        "the forces of the rollers on their rails; radial and axial force (N) stand beside each; diamonds are masses."
+    )
+    return figure, style.FigureInfo("carriage", caption)
+
+
+def _arrows(axes: Any, at: np.ndarray, forces: np.ndarray, colour: str, label: str) -> None:
+    """Draw the forces that are seen in a view as arrows from their rollers."""
+    shown = np.linalg.norm(forces, axis=1) > 0
+    arrows = axes.quiver(
+        *at[shown].T, *forces[shown].T, angles="xy", scale_units="xy", scale=1, color=colour, width=0.008
+    )
+    arrows.set_label(label)
+    axes.update_datalim((at + forces)[shown])
+
+
+def _name(axes: Any, own: xr.Dataset, at: np.ndarray, worst: str) -> None:
+    """Write name and forces beside each roller; rollers that one view shows at one point share a label."""
+    labels: dict[tuple[float, float], list[str]] = {}
+    for j, name in enumerate(own["roller"].values):
+        radial, axial = (rounded(float(own[key][j])) for key in ("radial_force", "axial_force"))
+        forces = "lifted" if float(own["radial_force"][j]) == 0 else f"{radial}, {axial}"
+        text = f"{name} {forces}{' (worst)' if name == worst else ''}"
+        labels.setdefault((float(at[j, 0]), float(at[j, 1])), []).append(text)
+    for place, texts in labels.items():
+        axes.annotate("\n".join(texts), place, xytext=(6, 6), textcoords="offset points", fontsize=7)

@@ -1,0 +1,88 @@
+"""Sentences on a carriage: the worst roller and its life, lifted rollers, margins, and the catalogue beside them."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import numpy as np
+import xarray as xr
+
+from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.report.numbers import lasting
+from trackroller.report.words.sentence import Sentence, say
+
+MARGINS = (("payload", "The payload"), ("loads", "All loads"))
+ROLLING = REGIMES.index("rolling")
+
+
+def worst_place(ds: xr.Dataset) -> tuple[str, str]:
+    """Return the worst roller and the load case with most of its damage, or those of the largest radial force."""
+    worst = ds.attrs.get("worst_roller")
+    if worst:
+        damage = ds["damage_per_km"].sel(roller=worst).values
+        return str(worst), str(ds["load_case"].values[int(np.argmax(damage))])
+    i, j = np.unravel_index(int(np.argmin(ds["radial_force"].values)), ds["radial_force"].shape)
+    return str(ds["roller"].values[j]), str(ds["load_case"].values[i])
+
+
+def sentences(ds: xr.Dataset) -> list[Sentence]:
+    """Return what a user asks first: the worst roller and its life, what lifts, margins, and the catalogue.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.carriage`.
+    """
+    return [_worst(ds), *_lifted(ds), *_one_contact(ds), *_margins(ds), *_catalogue(ds)]
+
+
+def _worst(ds: xr.Dataset) -> Sentence:
+    roller, case = worst_place(ds)
+    if not ds.attrs.get("worst_roller"):
+        force = -float(ds["radial_force"].sel(roller=roller, load_case=case))
+        return say("carriage", "carriage_largest", roller=roller, case=case, force=force)
+    km, hours = (float(ds[name].sel(roller=roller)) for name in ("life_km", "life_hours"))
+    unknown = ds["roller"].values[np.isnan(ds["life_km"].values)].tolist()
+    return say("carriage", "carriage_worst", roller=roller, case=case, km=km, life=lasting(hours, "h"), unknown=unknown)
+
+
+def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
+    for roller in ds["roller"].values:
+        lifted = (ds["radial_force"].sel(roller=roller) == 0).values
+        gap = -float(ds["approach"].sel(roller=roller).max())
+        if lifted.all():
+            yield say("carriage", "carriage_unloaded", roller=str(roller), gap=max(gap, 0.0))
+        elif lifted.any():
+            share, names = float(ds["share"].values[lifted].sum()), ds["load_case"].values[lifted].tolist()
+            yield say("carriage", "carriage_lifted", roller=str(roller), cases=names, share=share)
+
+
+def _one_contact(ds: xr.Dataset) -> Iterator[Sentence]:
+    if "roller_regime" not in ds:
+        return
+    for roller in ds["roller"].values:
+        own = ds["roller_regime"].sel(roller=roller).values
+        for regime in sorted({*own.tolist()} - {-1, ROLLING}):
+            names = ds["load_case"].values[own == regime].tolist()
+            label = REGIME_LABELS[regime]
+            yield say("carriage", "carriage_one_contact", roller=str(roller), cases=names, regime=label)
+
+
+def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
+    for name, what in MARGINS:
+        first = ds[f"{name}_to_lift_off"].values
+        if np.isfinite(first).any():
+            i = int(np.argmin(first))
+            tipping = float(ds[f"{name}_to_tipping"].values[i])
+            case = str(ds["load_case"].values[i])
+            yield say("carriage", "carriage_margin", what=what, lift_off=float(first[i]), tipping=tipping, case=case)
+
+
+def _catalogue(ds: xr.Dataset) -> Iterator[Sentence]:
+    if "load_factor" not in ds:
+        return
+    factor, life = ds["load_factor"].values, ds["catalogue_life_km"].values
+    i, j = np.unravel_index(int(np.nanargmax(factor)), factor.shape)
+    names, k = ds["roller"].values, int(np.nanargmin(life))
+    more = {"shortest": str(names[k]), "km": float(life[k]), "case": str(ds["load_case"].values[i])}
+    yield say("carriage", "carriage_catalogue", roller=str(names[j]), factor=float(factor[i, j]), **more)
