@@ -38,6 +38,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "plan": "study.store.plan.Plan",
     "inventory": "study.store.inventory.Inventory",
     "spectrum": "study.spectrum.file.Spectrum",
+    "fit": "fit.fitted.Fit",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
     "verdict": "results.verdict.Verdict",

@@ -51,6 +51,7 @@ ROOMS = (  # a room imports from the rooms before it only
     "roller",
     "methods",
     "study",
+    "fit",
     "results",
     "report",
     "app",
