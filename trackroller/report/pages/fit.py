@@ -140,7 +140,7 @@ def write_fit(fit: Fit, path: Path | str) -> Path:
     Parameters
     ----------
     fit : Fit
-        Result of `trackroller.fit_sn`, `trackroller.fit_bench` or `trackroller.fit_wear`.
+        Result of `trackroller.fit_sn`, `trackroller.fit_bench` or `trackroller.fit.depths.fit_wear`.
     path : Path or str
         The file to write.
 
