@@ -93,7 +93,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     ...         "failed": [True] * 6}
     >>> fit = fit_sn(rows, load_type="axial", stress_ratio=-1)
     >>> round(fit.material["woehler_exponent"], 2)
-    8.41
+    8.42
     """
     tests = read_tests(table, NEEDED, COLUMNS, ("group", "test", "note"))
     if load_type is not None:

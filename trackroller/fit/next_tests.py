@@ -78,8 +78,9 @@ def next_tests(
     >>> import trackroller as tr
     >>> rows = {"amplitude": [520, 500, 480, 460], "cycles": [2e5, 4e5, 5e5, 9e5], "failed": [True] * 4}
     >>> fit = tr.fit_sn(rows, load_type="rolling contact", stress_ratio=-1)
-    >>> candidates = [{"radial_force": -100}, {"radial_force": -200}]
-    >>> plan = tr.next_tests(fit, candidates, {"radial_force": -80}, tests=1)
+    >>> free = {"motor_force": 0, "friction_coefficient": 0.1}
+    >>> candidates = [free | {"radial_force": force} for force in (-150, -250)]
+    >>> plan = tr.next_tests(fit, candidates, free | {"radial_force": -120}, tests=1)
     >>> bool(plan.deviation_after[0] < plan.deviation_now)
     True
     """

@@ -99,6 +99,8 @@ def measure(benches: int) -> dict[str, object]:
     """Return coverage by size, and the test of the ranks against a uniform distribution."""
     found = ranks(benches)
     return {
+        "stopped": round(float(stats.norm.sf(STOPPED / np.sqrt(2.0))), 2),
+        "nominal": {"held": 0.9, "below": 0.05},
         "coverage": [coverage(benches, n) for n in SIZES],
         "ranks": {
             "benches": benches,
