@@ -39,6 +39,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "design": "methods.method.Design",
     "ledger": "study.store.ledger.Ledger",
     "spectrum": "study.spectrum.file.Spectrum",
+    "fit": "fit.fitted.Fit",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
     "verdict": "results.verdict.Verdict",

@@ -15,6 +15,9 @@ _WHERE = {
     "Case": "trackroller.roller.case",
     "InputError": "trackroller.errors",
     "find": "trackroller.roller.find",
+    "fit_bench": "trackroller.fit.bench",
+    "fit_sn": "trackroller.fit.coupons",
+    "next_tests": "trackroller.fit.next_tests",
     "solve": "trackroller.roller.solver",
     "load_study": "trackroller.study.file.load",
     "open_study": "trackroller.results.stored_study",
@@ -34,6 +37,9 @@ if TYPE_CHECKING:
     from trackroller import carriage as carriage
     from trackroller import report as report
     from trackroller.errors import InputError as InputError
+    from trackroller.fit.bench import fit_bench as fit_bench
+    from trackroller.fit.coupons import fit_sn as fit_sn
+    from trackroller.fit.next_tests import next_tests as next_tests
     from trackroller.halfspace.stress import max_shear as max_shear
     from trackroller.halfspace.stress import principal_stresses as principal_stresses
     from trackroller.halfspace.stress import stress_from_tractions as stress_from_tractions

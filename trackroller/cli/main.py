@@ -24,6 +24,7 @@ import typer
 
 from trackroller import __version__
 from trackroller.cli import INTERRUPTED, STOPPED
+from trackroller.cli.fit import fit
 from trackroller.cli.materials import materials
 from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
@@ -40,6 +41,7 @@ app = typer.Typer(
     epilog="--allow-code with any command: load the limits of your own in config/limits/NAME.py, which are programs.",
 )
 app.add_typer(materials, name="materials")
+app.add_typer(fit, name="fit")
 
 CASE_HELP = "case file (YAML); without it and --set the first roller of the live page"
 SET_HELP = f"key=value, may be repeated; a parameter of the case or an option: {options_text()}"

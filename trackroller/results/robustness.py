@@ -127,7 +127,7 @@ def material_deviations(results: Results) -> dict[str, np.ndarray]:
     known = json.loads(ds.attrs.get("materials", "{}"))
     out = {}
     for field, body in zip(MATERIAL_FIELDS, BODIES, strict=True):
-        if wanted is not True:
+        if wanted not in (True, "fitted"):
             out[body] = np.full(
                 int(np.prod([ds.sizes[d] for d in dims])), math.log10(float(wanted)) / DEVIATES_10_TO_90
             )

@@ -16,6 +16,7 @@ from trackroller.errors import InputError
 from trackroller.methods import Design, Method, convergence
 from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.method import Estimated, Estimates
+from trackroller.results.by_tests import bands
 from trackroller.results.labels import (
     RELIABLE,
     correlated,
@@ -75,6 +76,8 @@ def analyse(results: Results) -> xr.Dataset:
         raise InputError("design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices.")
     own = material_deviations(results)
     aims = targets(ds, design, given.target, own, results.valid) if given.target else xr.Dataset()
+    if given.material_scatter == "fitted" and given.target:
+        aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:
         return robustness(results, own).merge(aims, combine_attrs="override")
     columns = outputs(ds, design.factors, given.outputs, given.keep, scale=given.scale, allowed=results.allowed)

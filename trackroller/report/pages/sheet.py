@@ -45,6 +45,7 @@ from trackroller.report.words.assumptions import (
     standards,
     strength_sentences,
 )
+from trackroller.report.words.by_tests import by_tests
 from trackroller.report.words.sentence import phrase
 from trackroller.report.words.wear import run_in
 from trackroller.results.columns import at_surface
@@ -158,7 +159,11 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
     below, above = inputs["axial_force"] - ranges.axial_force[0], ranges.axial_force[1] - inputs["axial_force"]
     reason = str(ds["reason"].item()) if "reason" in ds else ""
     summed = {"reserve": min(above, below), "toward": "more" if above <= below else "less", "axial": ranges.axial_force}
-    said = filter(None, [friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)])
+    tested = by_tests(ds)
+    said = filter(
+        None,
+        [*tested, friction_sentence(ds), *strength_sentences(materials), *material_warnings(stored, materials)],
+    )
     return SimpleNamespace(
         verdict=_verdict(regime, ds, lives, lifeless, own, reason=reason, **summed),
         reason=reason,

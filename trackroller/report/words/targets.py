@@ -16,6 +16,7 @@ from trackroller.report.numbers import (
     long_name,
     number,
     part_of,
+    percent,
     quantity,
     rounded,
     setting,
@@ -75,9 +76,19 @@ def target(table: xr.Dataset, number: int) -> Sentence:
         same=bool(np.ptp(share) < SAME),
         chances=[chance(share[i], low[i], high[i], INTERVAL) for i in order],
         points=[point_words(table, i) for i in order] if robust else [],
+        tests=_by_tests(table, number),
         changes=long_name(str(part["level_factor"][most[0]].item())) if most else "",
         ends=[f"{_cell(part, 'level', i)} at {_level_words(part, i)}" for i in most or ()],
     )
+
+
+def _by_tests(table: xr.Dataset, number: int) -> str:
+    """Return the band of a probability over all cases by the tests of fitted materials; '' without one."""
+    if "tests_low" not in table or np.isnan(float(table["tests_low"][number])):
+        return ""
+    low, high = (percent(float(table[f"tests_{end}"][number])).removesuffix(" %") for end in ("low", "high"))
+    words = table["tests_low"].attrs
+    return f"over all cases {low} to {high} % by the {words['tests']} tests of {words['materials']}"
 
 
 def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:

@@ -17,7 +17,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Annotated, Any
+from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
@@ -98,8 +98,10 @@ class Analysis(BaseModel):
     conditional_on: str | None = Field(
         None, description="factor with a list of values: indices of the others within each of its levels"
     )
-    material_scatter: bool | float = Field(
-        False, description="inner_outer: the material's own scatter in B10; true: from the database; or T_N"
+    material_scatter: bool | Literal["fitted"] | float = Field(
+        False,
+        description="inner_outer: the material's own scatter in B10; true: from the database; or T_N; fitted, with any "
+        "sample: the scatter and the band of targets by the tests of the material",
     )
 
     target: Annotated[dict[str, dict[str, float]], BeforeValidator(targets), WithJsonSchema(_TARGET)] = Field(
@@ -133,8 +135,8 @@ class Analysis(BaseModel):
     @classmethod
     def _material_scatter(cls, value: Any) -> Any:
         good = isinstance(value, bool) or (isinstance(value, (int, float)) and 1 <= value < float("inf"))
-        if not good:
-            allowed = "true, false, or the scatter range T_N = N_90/N_10 >= 1"
+        if not good and value != "fitted":
+            allowed = "true, false, fitted, or the scatter range T_N = N_90/N_10 >= 1"
             raise InputError("analysis.material_scatter", value, allowed)
         return value
 
@@ -182,6 +184,8 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
     wanted = config.analysis.material_scatter
     if wanted is False:
         return
+    if wanted == "fitted":
+        return  # the analysis finds the fits
     if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."
         raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)

@@ -37,7 +37,17 @@ from trackroller.roller.aliases import ALIASES
 from trackroller.study.file.csv import csv_lines
 from trackroller.study.file.xlsx import MAX_COLUMNS, sheet_lines
 
-UNITS = {name: parameter.unit for name, parameter in PARAMETERS.items()} | {"distance": "m", "guide_overrollings": "-"}
+# numbers of tables of tests, beside the parameters
+OF_TESTS = {
+    "amplitude": "MPa",
+    "cycles": "-",
+    "travel_from": "km",
+    "travel_to": "km",
+    "wear_depth": "mm",
+    "drive_force": "N",
+}
+UNITS = {name: parameter.unit for name, parameter in PARAMETERS.items()}
+UNITS |= {"distance": "m", "guide_overrollings": "-"} | OF_TESTS
 KNOWN = {*UNITS, *MATERIAL_FIELDS, *ALIASES, "material_pair", "name"}
 MOST_ERRORS = 1_000  # of a table; a message shows fewer
 ROUNDED = 0.01  # relative difference between a sum and what a line of totals states

@@ -52,6 +52,7 @@ ROOMS = (  # a room imports from the rooms before it only
     "methods",
     "carriage",
     "study",
+    "fit",
     "results",
     "report",
     "app",

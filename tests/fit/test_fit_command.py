@@ -1,0 +1,45 @@
+"""The commands `trackroller fit`."""
+
+from __future__ import annotations
+
+import pytest
+from typer.testing import CliRunner
+
+from trackroller.cli.main import app
+from trackroller.errors import InputError
+
+COUPONS = (
+    "amplitude [MPa],cycles,failed\n900,90000,yes\n900,130000,yes\n800,200000,yes\n800,350000,yes\n700,800000,yes\n"
+    "700,1000000,yes\n"
+)
+SN = ["fit", "sn", "coupons.csv", "--as", "hardened rail", "--load-type", "axial", "--stress-ratio", "-1"]
+
+
+@pytest.fixture
+def place(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "coupons.csv").write_text(COUPONS)
+    return tmp_path
+
+
+@pytest.mark.slow
+def test_coupons_become_a_material_and_a_page(place):
+    done = CliRunner().invoke(app, [*SN, "--like", "1.7225-normalised"])
+    assert done.exit_code == 0, done.output
+    assert "6 of 6 tests failed by fatigue: fatigue strength" in done.output
+    page = (place / "fit-hardened-rail.html").read_text()
+    assert "What the tests cannot tell" in page
+    assert "extrapolated" in page
+    assert "hardened rail" in (place / "config" / "materials.yaml").read_text()
+
+
+def test_load_type_and_stress_ratio_are_asked_for(place):
+    done = CliRunner().invoke(app, SN[:5])
+    assert done.exit_code == 2
+
+
+def test_a_wrong_row_is_told_by_file_and_line(place):
+    (place / "coupons.csv").write_text(COUPONS.replace("yes", "perhaps", 1))
+    done = CliRunner().invoke(app, SN)
+    assert isinstance(done.exception, InputError)
+    assert str(done.exception).startswith("coupons.csv, line 2: failed = 'perhaps'")

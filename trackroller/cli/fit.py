@@ -1,0 +1,144 @@
+"""Commands that fit values of materials to tests."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+if TYPE_CHECKING:
+    from trackroller.fit.fitted import Fit
+
+fit = typer.Typer(no_args_is_help=True, help="Values of materials from tests, and the next test.")
+
+Table = Annotated[Path, typer.Argument(help="tests (CSV or .xlsx)", show_default=False)]
+As = Annotated[str, typer.Option("--as", help="name of the material that is made", show_default=False)]
+Like = Annotated[str | None, typer.Option(help="material whose other values, such as E and R_m, the new one takes")]
+Priors = Annotated[list[str] | None, typer.Option("--prior", help="slope=8,2: mean and deviation; others are flat")]
+File = Annotated[Path, typer.Option("--file", help="your materials file")]
+Replace = Annotated[bool, typer.Option("--replace", help="change a material that the file has already")]
+Page = Annotated[Path | None, typer.Option("--report", help="page of the fit; fit-NAME.html if not given")]
+OWN = Path("config/materials.yaml")
+
+
+@fit.command("sn")
+def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
+    table: Table,
+    name: As,
+    load_type: Annotated[str, typer.Option(help="rotating bending, bending, axial, torsion or rolling contact")],
+    stress_ratio: Annotated[float, typer.Option(help="smallest over largest stress of a cycle, -1 for full reversal")],
+    group: Annotated[str | None, typer.Option(help="the group to fit, of several in the column `group`")] = None,
+    slope: Annotated[float | None, typer.Option(help="slope k that is held")] = None,
+    scatter: Annotated[float | None, typer.Option(help="scatter T_N that is held")] = None,
+    like: Like = None,
+    prior: Priors = None,
+    file: File = OWN,
+    replace: Replace = False,
+    report: Page = None,
+) -> None:
+    """Fit an S-N line to coupons (columns amplitude, cycles, failed), and write the material and a page."""
+    from trackroller.fit import coupons
+
+    made = coupons.fit_sn(
+        table, name=name, load_type=load_type, stress_ratio=stress_ratio, group=group, slope=slope,
+        scatter_in_cycles=scatter, like=like, prior=_priors(prior),
+    )  # fmt: skip
+    _finish(made, file, replace, report)
+
+
+def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
+    """Print what was fitted, and write material, posterior and page."""
+    from trackroller.cli.case import writable_page
+    from trackroller.report.pages.fit import sentences
+
+    target = writable_page(page or Path(f"fit-{re.sub(r'[^a-z0-9]+', '-', made.name.lower()).strip('-')}.html"))
+    for text in sentences(made):
+        print(text)
+    if set(made.material) - {"name", "like"} and not made.unidentified:
+        file.parent.mkdir(parents=True, exist_ok=True)
+        made.write(file, replace=replace)
+        print(f"material '{made.name}' is in {file}")
+    made.report(target)
+    print(f"page: {target}")
+
+
+def _priors(words: list[str] | None) -> dict[str, Any]:
+    from trackroller.fit.coupons import of_words
+
+    return of_words(words or (), "--prior")
+
+
+@fit.command("bench")
+def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
+    table: Table,
+    values: Annotated[str, typer.Option("--fit", help="what is fitted, separated by commas")] = (
+        "fatigue_strength,slope,scatter"
+    ),
+    name: Annotated[str, typer.Option("--as", help="name of the material that is made")] = "",
+    body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
+    like: Like = None,
+    prior: Priors = None,
+    file: File = OWN,
+    replace: Replace = False,
+    report: Page = None,
+) -> None:
+    """Fit values of a material to rollers on a bench, and write the material and a page.
+
+    The values are fatigue_strength, slope, scatter, wear_coefficient and friction_coefficient.
+    """
+    from trackroller.fit import bench
+
+    made = bench.fit_bench(table, values, name=name, body=body, like=like, prior=_priors(prior))
+    _finish(made, file, replace, report)
+
+
+@fit.command("wear")
+def fit_wear(
+    table: Table,
+    base: Annotated[Path | None, typer.Option(help="case file of the roller; without it the paper's example")] = None,
+    body: Annotated[str, typer.Option(help="the body that wears: roller or guide")] = "roller",
+    name: Annotated[str, typer.Option("--as", help="name of the material that is made")] = "",
+    like: Like = None,
+    file: File = OWN,
+    replace: Replace = False,
+    report: Page = None,
+) -> None:
+    """Fit a wear coefficient to depths of one groove over its travel, by the followed profile; takes minutes."""
+    from trackroller.fit.depths import fit_wear as fitted
+    from trackroller.yaml_file import read_mapping
+
+    values = {} if base is None else read_mapping(base, "case file")
+    _finish(fitted(table, values, body=body, name=name, like=like), file, replace, report)
+
+
+@fit.command("next")
+def fit_next(
+    table: Table,
+    candidates: Annotated[Path, typer.Option(help="study file whose rows could be tested")],
+    design: Annotated[Path, typer.Option("--for", help="case file of the design whose B10 matters")],
+    tests: Annotated[int, typer.Option(help="how many tests are planned")] = 3,
+    values: Annotated[str, typer.Option("--fit", help="what is fitted, separated by commas")] = (
+        "fatigue_strength,slope,scatter"
+    ),
+    within: Annotated[float, typer.Option(help="factor within which B10 is to be known")] = 2.0,
+    longest: Annotated[float | None, typer.Option(help="travel after which a test stops [km]")] = None,
+    body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
+) -> None:
+    """Say which tests narrow B10 of a design most, how long they take, and how many more are needed."""
+    import math
+
+    from trackroller.fit.bench import fit_bench as fitted
+    from trackroller.fit.next_tests import next_tests
+    from trackroller.report.pages.fit import next_rows, next_sentences
+    from trackroller.report.terminal import print_table
+    from trackroller.study.file.load import load_study
+    from trackroller.yaml_file import read_mapping
+
+    made, study = fitted(table, values, body=body), load_study(candidates)
+    found = next_tests(made, study.design(), read_mapping(design, "case file"), tests, longest=longest or math.inf)
+    heads, rows = next_rows(found)
+    print_table(heads, rows)
+    for text in next_sentences(found, within):
+        print(text)

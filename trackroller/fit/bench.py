@@ -1,0 +1,573 @@
+"""Fit values of a material to rollers on a bench: travel, and what ended each test.
+
+Each row is solved once. Its stresses do not depend on the values that are fitted, so a life follows from the S-N line
+for any of them, and a travel to a wear depth is inversely proportional to the wear coefficient.
+
+An end by another mode, or by the other body, is a suspension: the roller had lived that long.
+
+ASSUME: the scatter belongs to the body. Where the table does not say in which contact it failed, the contact with the
+shorter life counts, as everywhere in the program; where it says so, the other contact is a suspension.
+ASSUME: stresses are those of new profiles; friction, wear and fatigue are independent of each other.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from trackroller.damage.limit import roller_overrollings
+from trackroller.damage.wear import KM_PER_HOUR
+from trackroller.errors import Collector, InputError, check_names
+from trackroller.files import files_beside, find_beside
+from trackroller.fit.coupons import priors_of
+from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.line import Line, Tests
+from trackroller.fit.posterior import ln_range
+from trackroller.fit.table import LEAST, TestTable, read_tests
+from trackroller.materials import Material, load_database
+from trackroller.numerics.units import in_unit, split_quantity
+from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.roller.aliases import ALIASES, overridden
+from trackroller.roller.case import FIELDS, Case
+from trackroller.roller.geometry import rolling_radius
+from trackroller.roller.settings import checked_case
+from trackroller.roller.solver import solve
+from trackroller.yaml_file import read_mapping
+
+FITTED = ("fatigue_strength", "slope", "scatter", "wear_coefficient", "friction_coefficient")
+OWN = ("test", "base", "travel_from", "travel_to", "end", "contact", "drive_force", "note")
+COLUMNS = (*OWN, *PARAMETERS, *MATERIAL_FIELDS, *ALIASES)
+OPTIONS_OF_LIFE = ("contact_model", "life_criterion", "accuracy")
+MODES = ("fatigue", *(name for name in LIMITS if name != "fatigue"), "other")
+FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)  # at which a drive force is solved
+UNIT_WEAR = 1e-6  # wear coefficient with which travels to a depth are computed [mm3/(N m)]
+FARTHEST = 1e6  # km, how far a depth is followed
+
+
+@dataclass(frozen=True)
+class End:
+    """What ended a test: mode, body, and depth of wear [mm]; the mode "none" is a suspension."""
+
+    mode: str
+    body: str = ""
+    depth: float = math.nan
+
+
+@dataclass(frozen=True)
+class Solved:
+    """What the model says of rollers, arrays of shape (n, contact, body).
+
+    Attributes
+    ----------
+    stress : numpy.ndarray
+        Stress that enters the S-N line [MPa].
+    per_km : numpy.ndarray
+        Overrollings of a travel of 1 km [1/km].
+    per_hour : numpy.ndarray
+        Overrollings of an hour [1/h].
+    regime : list of str
+        Regime of each roller, (n,).
+    """
+
+    stress: np.ndarray
+    per_km: np.ndarray
+    per_hour: np.ndarray
+    regime: list[str]
+
+
+def fit_bench(
+    table: Any,
+    fit: Sequence[str] | str = ("fatigue_strength", "slope", "scatter"),
+    *,
+    name: str = "",
+    body: str | None = None,
+    like: str | None = None,
+    base: Mapping[str, Any] | None = None,
+    prior: Mapping[str, Sequence[float]] | None = None,
+) -> Fit:
+    """Fit values of a material to rollers that ran on a bench.
+
+    Parameters
+    ----------
+    table : path, data frame, list of mappings or mapping of columns
+        One roller a row. `travel_from` and `travel_to` [km] hold the travel between which it ended, `end` says how:
+        "fatigue roller", "wear roller 0.05 mm", another limit such as "bearing", or "none" for a roller that was
+        stopped whole at `travel_from`. `base` names a case file; parameters of a case are further columns. `contact`
+        (1 or 2) says which contact failed, and `drive_force` [N] the force that moved a roller without motor.
+    fit : sequence of str or str
+        What is fitted: "fatigue_strength", "slope", "scatter", "wear_coefficient", "friction_coefficient". Slope and
+        scatter that are not named are those of the material.
+    name : str
+        Name of the material that is made; by default that of the tested body with "fitted".
+    body : str, optional
+        Body whose values are fitted, "roller" or "guide"; by default the one that failed.
+    like : str, optional
+        Material whose other values the fitted one takes; by default the tested one.
+    base : mapping, optional
+        Fields of a case and options for all rows, in place of the column `base`.
+    prior : mapping, optional
+        Priors of the posterior, see `trackroller.fit_sn`.
+
+    Returns
+    -------
+    Fit
+        `.material`, `.data`, `.interval(...)` and `.report(path)`. The values hold for the contact model, the life
+        criterion and the accuracy of the fit.
+
+    Raises
+    ------
+    InputError
+        For a table that no value can be fitted to; the message names row and column.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> ends = ["fatigue roller"] * 4 + ["none"]
+    >>> bench = {"radial_force": [-200, -200, -160, -160, -130], "travel_from": [15, 22, 40, 60, 150], "end": ends}
+    >>> bench["travel_to"] = [15, 22, 40, 60, None]
+    >>> rig = {"motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding"}
+    >>> fit = tr.fit_bench(bench, "fatigue_strength, scatter", base=rig)
+    >>> low, high = fit.interval("fatigue_strength")
+    >>> low < fit.material["fatigue_limit"] < high
+    True
+    """
+    wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else list(fit)
+    check_names("fit", wanted, FITTED)
+    if body is not None:
+        check_names("body", [body], BODIES)
+    rows = read_tests(table, ("travel_from", "end"), COLUMNS, [n for n in COLUMNS if n not in ("travel_from", "end")])
+    _check_names_once(rows)
+    ends = [_end(rows, row) for row in rows]
+    travels = [_travel(rows, row, ends[row]) for row in rows]
+    cases, options = _cases(rows, base)
+    own = body or _body_of(rows, ends, wanted)
+    material = _material_of(rows, cases, own)
+    solved = _solved(rows, cases, options)
+    groups = []
+    if {"fatigue_strength", "slope", "scatter"} & set(wanted):
+        groups.append(_fatigue(rows, ends, travels, solved, own, material, wanted, prior))
+    if "wear_coefficient" in wanted:
+        groups.append(_wear(rows, ends, travels, cases, options, own))
+    if "friction_coefficient" in wanted:
+        groups.append(_friction(rows, cases, options))
+    given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items()} | {"body": own}
+    notes = ["The values hold for the contact model, the life criterion and the accuracy of the fit."]
+    if "wear_coefficient" in wanted:
+        notes.append(
+            "Travels to a depth are the mean of the two closed forms of the limit wear; `trackroller fit wear` follows "
+            "the profile of one groove instead."
+        )
+    if "friction_coefficient" in wanted and len(groups) > 1:
+        notes.append("The rows were solved with the friction that they state, not with the fitted one.")
+    return Fit("bench", name or f"{material.name} fitted", tuple(groups), rows, like or material.name, given, notes)
+
+
+DEFAULTS = {"contact_model": "kalker", "life_criterion": "von_mises_peak", "accuracy": "standard"}
+
+
+def check_same(given: Mapping[str, str], options: Mapping[str, Any], name: str) -> None:
+    """Refuse options under which values of a fit do not hold.
+
+    Parameters
+    ----------
+    given : mapping of str to str
+        Contact model, life criterion and accuracy of the fit; others do not count.
+    options : mapping
+        Options of the solution that would use the values.
+    name : str
+        Name of the fit, for the message.
+
+    Raises
+    ------
+    InputError
+        If one of them differs.
+    """
+    for key, default in DEFAULTS.items():
+        used = str(options.get(key, default))
+        if key in given and used != given[key]:
+            remedy = f"Set {key}: {given[key]}, or fit the tests anew with {used}."
+            wrong = f"differs from the {given[key]} of '{name}', whose values hold for it alone"
+            raise InputError(key, used, "", remedy, wrong)
+
+
+def _check_names_once(rows: TestTable) -> None:
+    """Refuse a test that stands twice, by its name, or by all of its cells."""
+    seen: dict[Any, int] = {}
+    for row in rows:
+        name = rows.text(row, "test")
+        key = name or json.dumps({k: str(v) for k, v in rows.rows[row].items()}, sort_keys=True)
+        fails = rows.text(row, "end").lower() not in ("none", "")
+        if key in seen and (name or fails):
+            remedy = "Remove one of the two; if both were tested, name them in the column test."
+            wrong = f"stands in row {rows.lines[seen[key]]} as well"
+            raise rows.error(row, "test" if name else "travel_from", "each test once", remedy, wrong)
+        seen[key] = row
+
+
+def _end(rows: TestTable, row: int) -> End:
+    """Return what ended a test, from words such as 'wear roller 0.05 mm'."""
+    words = rows.text(row, "end").lower().split()
+    if words in (["none"], ["run-out"], ["runout"], ["suspended"]):
+        return End("none")
+    allowed = f"none, or how it ended: {', '.join(MODES)}; then roller or guide, such as 'fatigue roller'"
+    if not words or words[0] not in MODES:
+        raise rows.error(row, "end", allowed, "Correct the cell.")
+    mode, rest = words[0], words[1:]
+    body = rest.pop(0) if rest and rest[0] in BODIES else ""
+    if mode in ("fatigue", "wear") and not body:
+        raise rows.error(row, "end", allowed, f"Write {mode} roller, or {mode} guide.")
+    if mode != "wear":
+        if rest:
+            raise rows.error(row, "end", allowed, "Remove the further words.")
+        return End(mode, body)
+    parts = split_quantity(" ".join(rest))
+    remedy = "Write the depth that was reached with its unit, such as wear roller 0.05 mm."
+    if parts is None:
+        raise rows.error(row, "end", "wear, body and depth", remedy)
+    try:
+        depth = in_unit(float(parts[0]), parts[1], "mm", "end")
+    except InputError:
+        raise rows.error(row, "end", "a depth as a length", remedy) from None
+    if not depth > 0:
+        raise rows.error(row, "end", "a depth above 0", remedy)
+    return End(mode, body, depth)
+
+
+def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
+    """Return the travels between which a test ended [km]; the second is inf for a suspension."""
+    low = rows.number(row, "travel_from", 0.0)
+    high = rows.number(row, "travel_to", LEAST)
+    if math.isnan(low):
+        raise rows.error(row, "travel_from", "a travel [km]; the cell is empty", "Fill the cell.")
+    if end.mode == "none":
+        if not math.isnan(high) and high != low:
+            remedy = "Leave travel_to empty, or say how the roller ended."
+            raise rows.error(row, "travel_to", "no travel, because the roller did not end", remedy)
+        if low == 0:
+            raise rows.error(row, "travel_from", "the travel at which the test was stopped, above 0")
+        return low, math.inf
+    if math.isnan(high):
+        remedy = "Write the travel of the end; it equals travel_from if the end was observed."
+        raise rows.error(row, "travel_to", "a travel [km], because the roller ended; the cell is empty", remedy)
+    if high < low:
+        raise rows.error(row, "travel_to", f"a travel of at least travel_from = {low:g} km", "Swap the two.")
+    return low, high
+
+
+def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case], dict[str, Any]]:
+    """Return the case of each row, and the options that all of them share."""
+    cases, options, wrong, read = [], [], Collector(), {}
+    folder = rows.path or Path("tests.csv")
+    for row in rows:
+        file = rows.text(row, "base")
+        own = {name: cell for name, cell in rows.rows[row].items() if name not in OWN and rows.text(row, name) != ""}
+        with wrong.part():
+            try:
+                with files_beside(folder):
+                    if file and file not in read:
+                        read[file] = dict(read_mapping(find_beside(file, "base"), "case file"))
+                    values = overridden(read.get(file, {}) | dict(base or {}), own)
+                    case, one, _ = checked_case({k: v for k, v in values.items() if k not in ("duty", "sheet")})
+            except InputError as error:
+                place = error.field if error.field in rows.rows[row] else "base" if file else "case"
+                raise (
+                    error.named(f"row {rows.lines[row]}, {place}") if rows.path is None else
+                    error.at(rows.path, rows.lines[row])
+                ) from None  # fmt: skip
+            cases.append(case)
+            options.append({key: value for key, value in one.items() if key != "outputs"})
+    wrong.check()
+    for row, one in enumerate(options):
+        if one != options[0]:
+            key = next(k for k in {**one, **options[0]} if one.get(k) != options[0].get(k))
+            remedy = "Give the same options in all case files."
+            raise rows.error(row, "base", f"the same {key} as in the first row", remedy)
+    rule = options[0].get("life_rule", "elementary")
+    if rule != "elementary":
+        remedy = "Fit the line with life_rule elementary; a case may take another rule afterwards."
+        raise InputError("life_rule", rule, "elementary, because the fitted line is straight", remedy)
+    return cases, options[0]
+
+
+def _body_of(rows: TestTable, ends: Sequence[End], wanted: Collection[str]) -> str:
+    """Return the body that failed in the tests; refuse a table in which both did."""
+    modes = {"wear"} if set(wanted) <= {"wear_coefficient"} else {"fatigue"}
+    failed = {end.body for end in ends if end.mode in modes and end.body}
+    if len(failed) > 1:
+        row = next(row for row, end in enumerate(ends) if end.mode in modes and end.body == "guide")
+        remedy = "Choose one with --body roller or --body guide; ends of the other one are suspensions."
+        raise rows.error(row, "end", "ends of one body; rollers and guides failed", remedy)
+    return failed.pop() if failed else "roller"
+
+
+def _material_of(rows: TestTable, cases: Sequence[Case], body: str) -> Material:
+    """Return the material of the tested body; refuse a table that mixes materials."""
+    field = f"{body}_material"
+    used = [getattr(case, field) for case in cases]
+    for row, one in enumerate(used):
+        if one != used[0]:
+            remedy = "Fit each material from a table of its own."
+            allowed = f"one material of the {body}; the table mixes it with that of row {rows.lines[0]}"
+            raise rows.error(row, field if field in rows.rows[row] else "base", allowed, remedy)
+    return load_database().material(used[0], field)
+
+
+def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
+    """Solve rollers, and return what a life by any S-N line needs.
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        The rollers.
+    options : mapping
+        Options of `trackroller.solve` beside the outputs.
+    """
+    groups = ["forces", "peak_stress", "life"]
+    if options.get("life_criterion", "von_mises_peak") != "von_mises_peak":
+        groups.append("multiaxial")
+    ds = solve(list(cases), **{**options, "outputs": groups})
+    regime = [REGIMES[int(i)] for i in np.atleast_1d(ds["regime"].values)]
+    stress = ds["fatigue_stress"] if "fatigue_stress" in ds else ds["peak_stress"]
+    radius = np.array([_rolling_radius(case) for case in cases])
+    velocity = np.array([case.velocity for case in cases])
+    guide = np.array([case.guide_overrollings_per_hour or math.nan for case in cases])
+    per_hour = np.stack([roller_overrollings(velocity, radius), guide], axis=1)[:, None, :]
+    per_km = per_hour / (KM_PER_HOUR * velocity)[:, None, None]
+    shape = (len(cases), 2, 2)
+    stresses = stress.transpose("case", "contact", "body").values
+    return Solved(stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime)
+
+
+def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[float, float]:
+    """Return the stress of a design that decides its life [MPa], and its overrollings per hour [1/h].
+
+    Parameters
+    ----------
+    design : Case or mapping
+        Fields of the case and options.
+    given : mapping of str to str
+        Under what a fit holds, see `check_same`.
+    name : str
+        Name of the fit, for messages.
+    """
+    values = {n: getattr(design, n) for n in FIELDS} if isinstance(design, Case) else dict(design)
+    case, options, _ = checked_case(values)
+    check_same(given, options, name)
+    solved = solved_rollers([case], {key: value for key, value in options.items() if key != "outputs"})
+    body = BODIES.index(given.get("body", "roller"))
+    if solved.regime[0] != "rolling":
+        raise InputError("design", solved.regime[0], "a roller that rolls", "Change its loads.")
+    if np.isnan(solved.per_hour[0, 0, body]):
+        raise InputError("guide_overrollings_per_hour", None, "a number, for the life of the guide in hours")
+    return float(solved.stress[0, :, body].max()), float(solved.per_hour[0, 0, body])
+
+
+def _rolling_radius(case: Case) -> float:
+    return float(rolling_radius(case.axis_distance, case.guide_profile_radius, np.radians(case.contact_angle)))
+
+
+def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
+    """Solve the rows, and refuse one that does not roll."""
+    solved = solved_rollers(cases, options)
+    words = {"lift_off": "lifts off", "full_slip": "slips fully", "failed": "has no solution"}
+    for row, regime in enumerate(solved.regime):
+        if regime != "rolling":
+            loads = [n for n in ("radial_force", "axial_force", "motor_force") if n in rows.rows[row]]
+            allowed = "loads under which both contacts roll"
+            remedy = "Correct the loads, or remove the row."
+            column = loads[0] if loads else "base"
+            wrong = f"belongs to a roller that {words.get(regime, regime)}"
+            raise rows.error(row, column, allowed, remedy, wrong)
+    return solved
+
+
+def _fatigue(
+    rows: TestTable,
+    ends: Sequence[End],
+    travels: Sequence[tuple[float, float]],
+    solved: Solved,
+    body: str,
+    material: Material,
+    wanted: Collection[str],
+    prior: Mapping[str, Sequence[float]] | None,
+) -> Group:
+    """Return the line of fatigue of a body."""
+    k, b = material.woehler_exponent, BODIES.index(body)
+    stress, low, high, origin = [], [], [], []
+    for row in rows:
+        ended = ends[row].mode == "fatigue" and ends[row].body == body
+        life = solved.stress[row, :, b] ** -k / solved.per_km[row, :, b]  # up to a factor [km]
+        if np.isnan(life).any():
+            remedy = "Give guide_overrollings_per_hour, or fit the roller."
+            raise rows.error(row, "base", f"a known number of overrollings of the {body}", remedy)
+        worse = int(np.argmin(life))
+        stated = rows.number(row, "contact", 1, 2)
+        contact = worse if math.isnan(stated) else int(stated) - 1
+        for c in {contact, 1 - contact} if ended and not math.isnan(stated) else {contact}:
+            here = ended and c == contact
+            start, stop = travels[row]
+            per_km = solved.per_km[row, c, b]
+            stress.append(math.log(solved.stress[row, c, b]))
+            low.append(math.log(start * per_km) if start > 0 else -math.inf)
+            high.append(math.log(stop * per_km) if here else math.inf)
+            origin.append(row)
+    known = np.isfinite(np.array(low)) | np.isfinite(np.array(high))
+    tests = Tests(np.array(stress)[known], np.array(low)[known], np.array(high)[known])
+    return _fatigue_group(rows, tests, tuple(np.array(origin)[known].tolist()), material, wanted, prior)
+
+
+def _fatigue_group(
+    rows: TestTable,
+    tests: Tests,
+    origin: tuple[int, ...],
+    material: Material,
+    wanted: Collection[str],
+    prior: Mapping[str, Sequence[float]] | None,
+) -> Group:
+    slope = None if "slope" in wanted else material.woehler_exponent
+    scatter = None if "scatter" in wanted else _scatter_of(material)
+    last = len(rows) - 1
+    if not tests.failed.any() and (slope is None or scatter is None):
+        remedy = "Fit fatigue_strength alone for a one-sided bound, or test until a roller fails."
+        raise rows.error(last, "end", "at least one end by fatigue of the body", remedy, "ends no test by fatigue")
+    if slope is None and np.ptp(tests.stress[tests.failed]) < 1e-3:
+        remedy = "Leave slope out of the fit, or test another load to failure."
+        column = "radial_force" if "radial_force" in rows.rows[last] else "base"
+        raise rows.error(last, column, "failures at two loads or more, from which the slope follows", remedy)
+    line = Line(tests, slope=slope, scatter=scatter)
+    if len(rows) <= len(line.free):
+        remedy = "Test more rollers, or fit fewer values."
+        raise InputError("tests", len(rows), f"more rows than the {len(line.free)} fitted values", remedy)
+    return Group("fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin)
+
+
+def _scatter_of(material: Material) -> float:
+    """Return the standard deviation of ln N of a material."""
+    t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
+    if t_n is None and t_s is None:
+        remedy = "Fit it as well, or give scatter_in_cycles with the material."
+        raise InputError(
+            f"material '{material.name}'.scatter_in_cycles", None, "the scatter T_N, which is held", remedy
+        )
+    cycles = t_n if t_n is not None else t_s**material.woehler_exponent  # type: ignore[operator]
+    return max(math.log(cycles) / math.log(ln_range(1.0)), 0.011)
+
+
+def _wear(
+    rows: TestTable,
+    ends: Sequence[End],
+    travels: Sequence[tuple[float, float]],
+    cases: Sequence[Case],
+    options: Mapping[str, Any],
+    body: str,
+) -> Group:
+    """Return the line of wear of a body: ln of the travel over that of the unit wear coefficient."""
+    depths = [
+        end.depth if end.mode == "wear" and end.body == body else float(case.permissible_wear_depth or math.nan)
+        for end, case in zip(ends, cases, strict=True)
+    ]
+    used = [row for row in rows if not math.isnan(depths[row]) and depths[row] > 0]
+    if not any(ends[row].mode == "wear" and ends[row].body == body for row in used):
+        remedy = f"Leave wear_coefficient out of the fit, or write ends such as wear {body} 0.05 mm."
+        raise rows.error(len(rows) - 1, "end", f"at least one end by wear of the {body}", remedy)
+    unit = travels_to_depths([cases[row] for row in used], options, body, [depths[row] for row in used])
+    low, high = [], []
+    for row, km in zip(used, unit, strict=True):
+        ended = ends[row].mode == "wear" and ends[row].body == body
+        start, stop = travels[row]
+        low.append(math.log(start / km) if start > 0 else -math.inf)
+        high.append(math.log(stop / km) if ended else math.inf)
+    return wear_group(np.array(low), np.array(high), tuple(used))
+
+
+def wear_group(low: np.ndarray, high: np.ndarray, rows: tuple[int, ...]) -> Group:
+    """Return the line of wear from ln of travels over those of the unit coefficient, each of shape (n,)."""
+    known = np.isfinite(low) | np.isfinite(high)
+    tests = Tests(np.zeros(int(known.sum())), low[known], high[known])
+    few = int(tests.failed.sum()) < 2  # one depth tells the coefficient, but no scatter
+    line = Line(tests, scatter=HELD_SCATTER if few else None, sloped=False)
+    return Group("wear", line, scale=UNIT_WEAR, rows=tuple(np.array(rows)[known].tolist()))
+
+
+HELD_SCATTER = 0.4  # of ln travel to a depth, where one depth alone was measured
+
+
+def travels_to_depths(
+    cases: Sequence[Case], options: Mapping[str, Any], body: str, depths: Sequence[float]
+) -> np.ndarray:
+    """Return the travels at which new grooves reach depths with the unit wear coefficient [km], (n,).
+
+    Parameters
+    ----------
+    cases : sequence of Case
+        The rollers.
+    options : mapping
+        Options of the solution.
+    body : str
+        The body that wears.
+    depths : sequence of float
+        A depth for each roller [mm].
+
+    Notes
+    -----
+    The value of the limit `wear`, the mean of its two closed forms. The travel to a depth is inversely proportional to
+    the wear coefficient, because forces and profiles do not depend on it.
+    """
+    rollers = [
+        worn_alone(case, body) | {"permissible_wear_depth": depth} for case, depth in zip(cases, depths, strict=True)
+    ]
+    ds = solve(rollers, **{**options, "outputs": ("forces", "wear")})
+    hours = ds["wear_life_hours"].sel(body=body).min("contact").values
+    return np.asarray(hours * KM_PER_HOUR * np.array([case.velocity for case in cases]))
+
+
+def worn_alone(case: Case, body: str) -> dict[str, Any]:
+    """Return the fields of a case whose body wears with the unit coefficient, and whose other body hardly wears."""
+    values, database = {name: getattr(case, name) for name in FIELDS}, load_database()
+    for own in BODIES:
+        field = f"{own}_material"
+        wears = {"wear_coefficient": UNIT_WEAR if own == body else 1e-6 * UNIT_WEAR}
+        values[field] = database.material(getattr(case, field), field).as_dict() | wears
+    return values
+
+
+def _friction(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) -> Group:
+    """Return the line of friction: ln of the coefficient by which each roller needs its measured drive force."""
+    found, used = [], []
+    for row in rows:
+        force = rows.number(row, "drive_force", LEAST)
+        if math.isnan(force):
+            continue
+        if cases[row].motor_force != 0:
+            remedy = "Set motor_force to 0 in this row, or leave drive_force empty."
+            raise rows.error(row, "drive_force", "a force that moves a roller without motor", remedy)
+        found.append(_friction_of(rows, row, cases[row], options, force))
+        used.append(row)
+    if len(found) < 2:
+        remedy = "Measure it on two rollers or more, or leave friction_coefficient out of the fit."
+        raise rows.error(len(rows) - 1, "drive_force", "a force in two rows or more", remedy)
+    values = np.array(found)
+    line = Line(Tests(np.zeros(len(values)), values, values), sloped=False)
+    return Group("friction", line, rows=tuple(used))
+
+
+def _friction_of(rows: TestTable, row: int, case: Case, options: Mapping[str, Any], force: float) -> float:
+    """Return ln of the friction coefficient at which a roller needs a drive force."""
+    values = {name: getattr(case, name) for name in FIELDS}
+    ds = solve([values | {"friction_coefficient": mu} for mu in FRICTIONS], **{**options, "outputs": ("forces",)})
+    needed = np.abs(ds["transmitted_force"].values)
+    rolls = np.isfinite(needed) & (ds["regime"].values == REGIMES.index("rolling"))
+    needed, coefficient = needed[rolls], np.array(FRICTIONS)[rolls]
+    rising = np.concatenate([[True], np.diff(np.maximum.accumulate(needed)) > 0])
+    needed, coefficient = needed[rising], coefficient[rising]
+    if not needed.size or not needed[0] <= force <= needed[-1]:
+        allowed = f"a force from {needed.min():.3g} to {needed.max():.3g} N" if needed.size else "a roller that rolls"
+        remedy = f"The model needs it for frictions from {FRICTIONS[0]} to {FRICTIONS[-1]}; check force and loads."
+        raise rows.error(row, "drive_force", allowed, remedy)
+    return float(np.interp(math.log(force), np.log(needed), np.log(coefficient)))

@@ -1,0 +1,462 @@
+"""The result of a fit: values of a material, their intervals and posterior, and what the tests cannot tell."""
+
+from __future__ import annotations
+
+import importlib
+import math
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.special import ndtri
+
+from trackroller.errors import InputError, check_names, listing
+from trackroller.files import write_whole
+from trackroller.fit.line import Interval, Line
+from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
+from trackroller.fit.table import TestTable
+from trackroller.materials import Material, add_material
+from trackroller.numerics.numbers import number_or_nan
+
+CONFIDENCE = 0.9
+FOLDER = "fits"  # beside the user's materials file: posteriors of its fitted materials
+# name in `.data` and in an entry of the database, by the value of a line of each kind
+WORDS = {
+    "fatigue_limit": ("MPa", "fatigue strength at the knee, failure probability 50 %"),
+    "woehler_exponent": ("1", "slope k of the S-N line"),
+    "scatter_in_cycles": ("1", "scatter of the life T_N"),
+    "scatter_in_stress": ("1", "scatter of the fatigue limit T_S"),
+    "wear_coefficient": ("mm3/(N m)", "wear coefficient"),
+    "wear_scatter": ("1", "scatter of the travel to a depth, 90 over 10 %"),
+    "friction_coefficient": ("1", "friction coefficient"),
+    "friction_scatter": ("1", "scatter of the friction coefficient, 90 over 10 %"),
+}
+SPOKEN = {"slope": "woehler_exponent", "scatter": "scatter_in_cycles", "fatigue_strength": "fatigue_limit"}
+OF_GROUP = {
+    "fatigue": {"slope": "woehler_exponent", "log_scatter": "scatter_in_cycles", "log_limit": "fatigue_limit",
+                "log_limit_scatter": "scatter_in_stress"},
+    "wear": {"level": "wear_coefficient", "log_scatter": "wear_scatter"},
+    "friction": {"level": "friction_coefficient", "log_scatter": "friction_scatter"},
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Group:
+    """The line of one kind of end, with its tests, priors and posterior.
+
+    Parameters
+    ----------
+    kind : str
+        "fatigue", "wear" or "friction".
+    line : Line
+        The line. That of wear is ln of the travel over the travel that the unit coefficient `scale` gives, and that of
+        friction ln of the coefficient.
+    priors : mapping of str to Normal
+        Priors of its values.
+    at : float
+        Cycles at which a line without fatigue limit states its strength [1].
+    scale : float
+        Wear coefficient with which the travels of the model were computed [mm3/(N m)].
+    rows : tuple of int
+        Row of the table of each test of the line; empty for all rows in their order.
+    """
+
+    kind: str
+    line: Line
+    priors: Mapping[str, Normal] = field(default_factory=dict)
+    at: float = math.nan
+    scale: float = math.nan
+    rows: tuple[int, ...] = ()
+
+    @cached_property
+    def posterior(self) -> Posterior:
+        """Return the posterior of the values of the line."""
+        return posterior(self.line, self.priors, self.at)
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Return the names of the values that the tests were to tell."""
+        own = OF_GROUP[self.kind]
+        found = [own[name] for name in self.line.free if name in own]
+        if self.kind == "fatigue" and not self.line.knee:
+            found.insert(0, "fatigue_limit")
+        return tuple(found)
+
+    @property
+    def unidentified(self) -> tuple[str, ...]:
+        """Return the names of values whose estimate lies at a bound, or that no failure bounds."""
+        own = OF_GROUP[self.kind]
+        if not self.line.tests.failed.any():
+            return self.names
+        found = {own[name] for name in self.line.at_bound if name in own}
+        if "woehler_exponent" in found and not self.line.knee:
+            found.add("fatigue_limit")  # it lies on the line far from the tests
+        return tuple(name for name in self.names if name in found)
+
+    def estimate(self, name: str) -> float:
+        """Return the value of the largest likelihood, NaN where the tests do not identify it."""
+        return math.nan if name in self.unidentified else float(self._of(name, self.line.best))
+
+    def values_of(self, name: str) -> np.ndarray:
+        """Return a value by its name at the points of the posterior, in its unit."""
+        return self._of(name, self.posterior.values)
+
+    def _of(self, name: str, values: Any) -> np.ndarray:
+        """Return a value by its name, in its unit, from the values of the line."""
+        if name == "fatigue_limit":
+            return np.exp(log_strength(self.line, values, self.at))
+        if name == "woehler_exponent":
+            return np.asarray(values.slope)
+        if name.endswith("_coefficient"):
+            return self.scale * np.exp(-values.level) if self.kind == "wear" else np.exp(values.level)
+        deviation = values.log_limit_scatter if name == "scatter_in_stress" else values.log_scatter
+        return np.exp(math.log(ln_range(1.0)) * np.exp(deviation))
+
+    def interval(self, name: str, confidence: float = CONFIDENCE) -> Interval:
+        """Return the profile interval of a value by its name, in its unit; an open end is inf or 0."""
+        if name == "fatigue_limit" and not self.line.knee:
+            return Interval(*np.exp(self.line.interval_of_strength(math.log(self.at), 0.5, confidence)).tolist())
+        place = next(key for key, own in OF_GROUP[self.kind].items() if own == name)
+        found = self.line.interval(place, confidence)
+        low, high = (
+            math.inf if end >= self.line.bounds[place][1] else 0.0 if end <= self.line.bounds[place][0] else
+            float(self._of(name, self.line.best._replace(**{place: end}))) for end in found
+        )  # fmt: skip
+        if self.kind == "wear" and place == "level":  # a longer travel is a smaller coefficient
+            ends = [0.0 if math.isinf(end) and end > 0 else math.inf if math.isinf(end) else
+                    self.scale * math.exp(-end) for end in found]  # fmt: skip
+            low, high = ends[1], ends[0]
+        return Interval(low, high)
+
+    def band(self, name: str, confidence: float = CONFIDENCE) -> tuple[float, float, float]:
+        """Return low end, median and high end of a value by the posterior."""
+        own = np.broadcast_to(self.values_of(name), self.posterior.weight.shape)
+        ends = 0.5 - 0.5 * confidence, 0.5, 0.5 + 0.5 * confidence
+        return tuple(float(end) for end in self.posterior.quantile(own, np.array(ends)))  # type: ignore[return-value]
+
+    @property
+    def tested(self) -> tuple[float, float, float]:
+        """Return the least and the largest stress tested [MPa], and the cycles of the longest test [1]."""
+        tests = self.line.tests
+        low = float(np.exp(tests.stress.min())), float(np.exp(tests.stress.max()))
+        return (*low, float(np.exp(np.max(tests.middle))))
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Values of a material from tests; `trackroller.fit_sn` and `trackroller.fit_bench` make it.
+
+    Parameters
+    ----------
+    kind : str
+        "sn" for coupons, "bench" for rollers, "wear" for depths of one groove.
+    name : str
+        Name of the material.
+    groups : tuple of Group
+        Fatigue, wear and friction, as far as they were fitted.
+    tests : TestTable
+        The tests as given.
+    like : str or None
+        Material whose other values the fitted one takes.
+    given : mapping of str to str
+        Under what the values hold, such as the contact model of the fit.
+    notes : list of str
+        Sentences on how the values enter a life.
+    """
+
+    kind: str
+    name: str
+    groups: tuple[Group, ...]
+    tests: TestTable
+    like: str | None = None
+    given: Mapping[str, str] = field(default_factory=dict)
+    notes: list[str] = field(default_factory=list)
+
+    def group(self, kind: str) -> Group:
+        """Return the group of a kind of end.
+
+        Raises
+        ------
+        InputError
+            If the fit has no such group.
+        """
+        for own in self.groups:
+            if own.kind == kind:
+                return own
+        raise InputError("fit", kind, f"one of {listing([own.kind for own in self.groups], 'or')}", "Fit it as well.")
+
+    @property
+    def unidentified(self) -> tuple[str, ...]:
+        """Return the names of the values that the tests do not identify."""
+        return tuple(name for own in self.groups for name in own.unidentified)
+
+    @cached_property
+    def material(self) -> dict[str, Any]:
+        """Return the values as an entry of a material, without those that the tests do not identify.
+
+        With `like`, a case takes the entry as a material: `Case(roller_material=fit.material)`.
+        """
+        entry: dict[str, Any] = {"name": self.name} | ({"like": self.like} if self.like else {})
+        for own in self.groups:
+            entry |= {n: own.estimate(n) for n in own.names if n in ENTRY and n not in own.unidentified}
+            if own.kind == "fatigue" and "fatigue_limit" in entry:
+                entry["cycles_at_fatigue_limit"] = self.knee
+                held = own.line.best
+                if "slope" not in own.line.free:
+                    entry["woehler_exponent"] = float(held.slope)
+                if "log_scatter" not in own.line.free:
+                    entry["scatter_in_cycles"] = float(ln_range(math.exp(held.log_scatter)))
+        return entry
+
+    @property
+    def knee(self) -> float:
+        """Return N_k: where the line meets the fatigue limit, or the cycles at which its strength is stated [1]."""
+        own = self.group("fatigue")
+        best = own.line.best
+        if not own.line.knee:
+            return own.at
+        return float(math.exp(best.level - best.slope * (best.log_limit - own.line.reference)))
+
+    @cached_property
+    def data(self) -> xr.Dataset:
+        """Return estimates, intervals and posterior as a labelled data set.
+
+        `estimate`, `low` and `high` (of 90 %) stand along `value`, `posterior_low` and so on beside them; the points of
+        each posterior stand along `fatigue_point`, `wear_point` or `friction_point`.
+        """
+        rows = [(own, name) for own in self.groups for name in own.names]
+        columns: dict[str, list[float]] = {"estimate": [own.estimate(name) for own, name in rows]}
+        ends = [own.interval(name) for own, name in rows]
+        columns |= {"low": [end.low for end in ends], "high": [end.high for end in ends]}
+        failed = {own.kind: bool(own.line.tests.failed.any()) for own in self.groups}
+        bands = [own.band(name) if failed[own.kind] else (math.nan,) * 3 for own, name in rows]
+        for i, name in enumerate(("posterior_low", "posterior_median", "posterior_high")):
+            columns[name] = [band[i] for band in bands]
+        words = {
+            "estimate": "value of the largest likelihood, missing where the tests do not identify it",
+            "low": "low end of the 90 % profile interval",
+            "high": "high end of the 90 % profile interval",
+            "posterior_low": "5 % quantile of the posterior",
+            "posterior_median": "median of the posterior",
+            "posterior_high": "95 % quantile of the posterior",
+        }
+        ds = xr.Dataset({n: ("value", np.array(v, float), {"long_name": words[n]}) for n, v in columns.items()})
+        ds = ds.assign_coords(value=[name for _, name in rows], unit=("value", [WORDS[name][0] for _, name in rows]))
+        for own in (own for own in self.groups if failed[own.kind]):
+            points = own.posterior.to_dataset().rename(point=f"{own.kind}_point")
+            ds = ds.merge(points.rename({n: f"{own.kind}_{n}" for n in points}))
+            tests = {"stress": own.line.tests.stress, "low": own.line.tests.low, "high": own.line.tests.high}
+            ds = ds.assign({f"{own.kind}_test_{n}": (f"{own.kind}_test", value) for n, value in tests.items()})
+        ds.attrs = self._attributes()
+        return ds
+
+    def _attributes(self) -> dict[str, Any]:
+        attributes: dict[str, Any] = {
+            "title": f"Values of {self.name} from tests",
+            "kind": self.kind,
+            "tests": self.tests.name,
+            "sha256": self.tests.digest,
+            "rows": len(self.tests),
+            "confidence": CONFIDENCE,
+        }
+        attributes |= {f"holds_for_{key.replace(' ', '_')}": value for key, value in self.given.items()}
+        for own in self.groups:
+            attributes |= {
+                f"{own.kind}_tests": own.line.size,
+                f"{own.kind}_failures": int(own.line.tests.failed.sum()),
+                f"{own.kind}_reference": own.line.reference,
+                f"{own.kind}_knee": int(own.line.knee),
+            }
+            held = {"slope": own.line.slope, "scatter": own.line.scatter}
+            attributes |= {f"{own.kind}_held_{key}": value for key, value in held.items() if value is not None}
+            if own.kind == "fatigue":
+                low, high, cycles = own.tested
+                attributes |= {"tested_stress": [low, high], "tested_cycles": cycles}
+                if "fatigue_limit" in self.material:
+                    attributes |= {
+                        name: float(self.material[name])
+                        for name in ("fatigue_limit", "woehler_exponent", "cycles_at_fatigue_limit")
+                        if name in self.material
+                    }
+        return attributes
+
+    def interval(
+        self,
+        quantity: str,
+        *,
+        amplitude: Any = None,
+        cycles: Any = None,
+        failure_probability: float = 0.5,
+        confidence: float = CONFIDENCE,
+    ) -> Interval:
+        """Return an interval that holds the true value in 90 % of fits.
+
+        Parameters
+        ----------
+        quantity : str
+            "cycles" to failure under an `amplitude`, "amplitude" at so many `cycles`, or a fitted value: "slope",
+            "scatter", "fatigue_strength" or a name of `.data`.
+        amplitude : float or str, optional
+            Stress amplitude [MPa], as the material takes it.
+        cycles : float, optional
+            Number of cycles [1].
+        failure_probability : float
+            Share of specimens that have failed, between 0 and 1.
+        confidence : float
+            Share of intervals that hold the true value.
+
+        Returns
+        -------
+        Interval
+            `low` and `high` in the unit of the quantity; an end that the tests do not bound is 0 or inf.
+
+        Raises
+        ------
+        InputError
+            For an unknown quantity, or one that was not fitted.
+        """
+        for field_name, value in (("failure_probability", failure_probability), ("confidence", confidence)):
+            if not 0.0 < number_or_nan(value) < 1.0:
+                raise InputError(field_name, value, "a number between 0 and 1", "Give 0.1 for 10 %.")
+        if quantity in ("cycles", "amplitude"):
+            line = self.group("fatigue").line
+            given, name = (amplitude, "amplitude") if quantity == "cycles" else (cycles, "cycles")
+            number = (
+                number_or_nan(given, "MPa" if name == "amplitude" else "-", name) if given is not None else math.nan
+            )
+            if not number > 0:
+                raise InputError(name, given, f"a number above 0, for the interval of {quantity}")
+            call = line.interval_of_life if quantity == "cycles" else line.interval_of_strength
+            found = call(math.log(number), failure_probability, confidence)
+            return Interval(*(float(np.exp(end)) for end in found))
+        name = SPOKEN.get(quantity, quantity)
+        known = {n: own for own in self.groups for n in own.names}
+        check_names("quantity", [name], (*known, "cycles", "amplitude"))
+        return known[name].interval(name, confidence)
+
+    def life_hours(self, design: Any, *, failure_probability: float = 0.5, confidence: float = CONFIDENCE) -> Interval:
+        """Return the interval of the life by fatigue of a design [h], for the body that was tested.
+
+        Parameters
+        ----------
+        design : Case or mapping
+            Fields of the case, and options of `trackroller.solve`.
+        failure_probability : float
+            Share of bodies that have failed, 0.1 for B10.
+        confidence : float
+            Share of intervals that hold the true value.
+
+        Returns
+        -------
+        Interval
+            `low` and `high`; of coupons the roller counts.
+
+        Raises
+        ------
+        InputError
+            If the design does not roll, or has another contact model, life criterion or accuracy than the fit.
+        """
+        rollers: Any = importlib.import_module("trackroller.fit.bench")
+        stress, per_hour = rollers.worst_stress(design, self.given, self.name)
+        found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
+        return Interval(*(float(np.exp(end)) / per_hour for end in found))
+
+    def estimate(self, quantity: str, *, amplitude: float = math.nan, failure_probability: float = 0.5) -> float:
+        """Return the most likely value of a quantity, as `interval` names them."""
+        if quantity == "cycles":
+            line = self.group("fatigue").line
+            return float(np.exp(line.log_life(line.best, math.log(amplitude), failure_probability)))
+        name = SPOKEN.get(quantity, quantity)
+        known = {n: own for own in self.groups for n in own.names}
+        check_names("quantity", [name], known)
+        return known[name].estimate(name)
+
+    def write(self, file: Path | str = Path("config/materials.yaml"), *, replace: bool = False) -> Material:
+        """Write the material into the user's file, and its posterior into the folder `fits` beside it.
+
+        Parameters
+        ----------
+        file : path
+            The user's materials file.
+        replace : bool
+            Allow to change a material that the file already contains.
+
+        Returns
+        -------
+        Material
+            The material as the file now defines it.
+
+        Raises
+        ------
+        InputError
+            If the tests do not identify a value that a material needs, or the file cannot be written.
+        """
+        entry = {key: value for key, value in self.material.items() if key != "name"}
+        lacking = [name for name in ("fatigue_limit", "woehler_exponent") if self.has("fatigue") and name not in entry]
+        if lacking:
+            remedy = "Hold the slope, or test more specimens at other stresses."
+            raise InputError(f"material '{self.name}'", None, "", remedy, f"lacks {listing(lacking)}: not identified")
+        digest = f", sha256 {self.tests.digest[:16]}" if self.tests.digest else ""
+        under = "; ".join(f"{key} {value}" for key, value in self.given.items())
+        source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
+        material = add_material(file, self.name, replace=replace, source=source, note=under, **entry)
+        place = posterior_path(file, self.name)
+        place.parent.mkdir(exist_ok=True)
+        write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
+        return material
+
+    def has(self, kind: str) -> bool:
+        """Return whether the fit has a group of this kind."""
+        return any(own.kind == kind for own in self.groups)
+
+    def report(self, path: Path | str) -> Path:
+        """Write the page of the fit as one HTML file that stands alone, or as PDF by the name of the file.
+
+        Parameters
+        ----------
+        path : Path or str
+            The file to write.
+
+        Returns
+        -------
+        Path
+            The file.
+        """
+        page: Any = importlib.import_module("trackroller.report.pages.fit")
+        return page.write_fit(self, path)
+
+
+ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")
+
+
+def posterior_path(file: Path | str, name: str) -> Path:
+    """Return the file of the posterior of a fitted material, beside the user's materials file."""
+    slug = re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-")
+    return Path(file).expanduser().resolve().parent / FOLDER / f"{slug or 'material'}.nc"
+
+
+def log_life_of(ds: xr.Dataset, log_stress: np.ndarray, probability: float) -> np.ndarray:
+    """Return ln N at each point of the posterior of a stored fit without a fatigue limit.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        What `Fit.data` holds.
+    log_stress : numpy.ndarray
+        ln S, (n,) [ln MPa].
+    probability : float
+        Failure probability [1].
+
+    Returns
+    -------
+    numpy.ndarray
+        ln N, (n, points).
+    """
+    level, slope, scatter = (ds[f"fatigue_{name}"].values for name in ("level", "slope", "log_scatter"))
+    away = log_stress[:, None] - float(ds.attrs["fatigue_reference"])
+    return np.asarray(level - slope * away + float(ndtri(probability)) * np.exp(scatter))

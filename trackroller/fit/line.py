@@ -1,0 +1,471 @@
+"""Likelihood of a Basquin line with log-normal scatter, its estimate, and profile intervals.
+
+A specimen under the stress S lives N cycles, with a standard normal number z::
+
+    ln N = level - slope (ln S - ln S_0) + scatter z
+
+S_0 is the geometric mean of the tested stresses. With a knee, a specimen fails only if S exceeds its own fatigue limit,
+whose logarithm is normal, too: the limit scatters from specimen to specimen (a random knee). A test that ended without
+a failure is a suspension; a failure that was found at an inspection lies in an interval.
+
+The interval of a value holds each number whose profile likelihood lies within t^2(n - p)/2 of the maximum: n counts
+the tests, p the fitted values, and t is Student's quantile. On small samples this cut-off covers what it states, and
+that of chi^2 does not. Where n - p is 1 or 2, the smaller n/2 ln(1 + t^2/(n - p)) is taken, which is exact for the mean
+of complete data.
+
+ASSUME: specimens are independent of each other, and the scatter of ln N is the same at all stresses.
+
+References
+----------
+Meeker, W. Q., Escobar, L. A. (1998). Statistical Methods for Reliability Data. Wiley.
+Pascual, F. G., Meeker, W. Q. (1999). Estimating fatigue curves with the random fatigue-limit model. Technometrics 41.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import NamedTuple
+
+import numpy as np
+from scipy import optimize, stats
+from scipy.special import log_ndtr, ndtr, ndtri
+
+# bounds of the values; an estimate at a bound says that the tests do not identify the value
+BOUNDS = {
+    "level": (-200.0, 200.0),
+    "slope": (1.0, 60.0),
+    "log_scatter": (math.log(0.01), math.log(6.0)),
+    "log_limit": (0.0, 20.0),
+    "log_limit_scatter": (math.log(0.003), math.log(0.7)),
+}
+NAMES = tuple(BOUNDS)
+AT_BOUND = 1e-3  # share of the range of a value within which an estimate counts as lying at its end
+FARTHEST = 60.0  # in ln N, how far an end of an interval is sought
+LEAST = 1e-300  # keeps a quotient finite
+LARGE = 1e10  # -ln L of values that the tests exclude
+STEP = 1e-4  # of central differences of ln L
+TOLERANCE = 1e-9  # fall of ln L by a step below which a maximum counts as found
+MOST_STEPS = 60
+AT_ONCE = 2_000_000  # elements of an array of points and tests, which bounds the memory
+Solved = Callable[[float, np.ndarray], np.ndarray]
+
+
+class Values(NamedTuple):
+    """Values of a line: ln N at S_0, slope, ln of the scatter of ln N, and median and ln scatter of the ln limit."""
+
+    level: np.ndarray | float
+    slope: np.ndarray | float
+    log_scatter: np.ndarray | float
+    log_limit: np.ndarray | float
+    log_limit_scatter: np.ndarray | float
+
+
+class Interval(NamedTuple):
+    """Ends of an interval; an end that the tests do not bound is infinite, or a bound of the value."""
+
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Tests:
+    """What was tested, in logarithms, arrays of shape (n,).
+
+    Attributes
+    ----------
+    stress : numpy.ndarray
+        ln S [ln MPa].
+    low, high : numpy.ndarray
+        ln N between which the specimen failed: equal for a life that was observed, `high` inf for a suspension, and
+        `low` -inf for a failure before the first inspection.
+    """
+
+    stress: np.ndarray
+    low: np.ndarray
+    high: np.ndarray
+
+    __test__ = False  # pytest takes the name for that of a test
+
+    @property
+    def failed(self) -> np.ndarray:
+        """Return which specimens failed, (n,) bool."""
+        return np.isfinite(self.high)
+
+    @property
+    def middle(self) -> np.ndarray:
+        """Return ln N of each test: the life, the middle of its interval, or the end of a suspension, (n,)."""
+        low = np.where(np.isfinite(self.low), self.low, self.high - math.log(2.0))
+        return np.where(self.failed, 0.5 * (low + np.where(self.failed, self.high, 0.0)), low)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A Basquin line with its tests.
+
+    Parameters
+    ----------
+    tests : Tests
+        What was tested.
+    slope, scatter : float, optional
+        Values that are held, the scatter as the standard deviation of ln N [1]; None fits them.
+    knee : bool
+        Whether a fatigue limit with its own scatter is fitted as well.
+    sloped : bool
+        False for lives that do not depend on a stress, such as a travel over the travel that a model gives.
+    """
+
+    tests: Tests
+    slope: float | None = None
+    scatter: float | None = None
+    knee: bool = False
+    sloped: bool = True
+
+    @cached_property
+    def free(self) -> tuple[str, ...]:
+        """Return the names of the values that are fitted."""
+        held = {"slope"} if self.slope is not None or not self.sloped else set()
+        held |= {"log_scatter"} if self.scatter is not None else set()
+        held |= set() if self.knee else {"log_limit", "log_limit_scatter"}
+        return tuple(name for name in NAMES if name not in held)
+
+    @cached_property
+    def bounds(self) -> dict[str, tuple[float, float]]:
+        """Return the bounds of each value; a fatigue limit lies within a factor of two of the tested stresses."""
+        own = self.tests.stress
+        return BOUNDS | {"log_limit": (float(own.min()) - math.log(2.0), float(own.max()) + math.log(2.0))}
+
+    @property
+    def size(self) -> int:
+        """Return the number of tests."""
+        return len(self.tests.stress)
+
+    @cached_property
+    def reference(self) -> float:
+        """Return ln S_0: the mean of ln S over the failures, over all tests if none failed."""
+        own = self.tests.stress[self.tests.failed] if self.tests.failed.any() else self.tests.stress
+        return float(own.mean())
+
+    @cached_property
+    def _held(self) -> np.ndarray:
+        """Return the values that are held, NaN for free ones, as `Values` orders them."""
+        slope = 0.0 if not self.sloped else math.nan if self.slope is None else self.slope
+        return np.array([math.nan, slope, math.nan if self.scatter is None else math.log(self.scatter), 0.0, 0.0])
+
+    @cached_property
+    def _places(self) -> list[int]:
+        return [NAMES.index(name) for name in self.free]
+
+    @cached_property
+    def limits(self) -> np.ndarray:
+        """Return the bounds of the free values, (p, 2)."""
+        return np.array([self.bounds[name] for name in self.free])
+
+    def values(self, points: np.ndarray) -> Values:
+        """Return the values at points (..., p) of the free ones, each of shape (...)."""
+        every = np.broadcast_to(self._held, (*np.shape(points)[:-1], len(NAMES))).copy()
+        every[..., self._places] = points
+        return Values(*np.moveaxis(every, -1, 0))
+
+    def log_likelihood(self, points: np.ndarray) -> np.ndarray:
+        """Return the logarithm of the likelihood at points of the free values.
+
+        Parameters
+        ----------
+        points : numpy.ndarray
+            Values by `free`, (..., p).
+
+        Returns
+        -------
+        numpy.ndarray
+            ln L, (...).
+        """
+        points = np.asarray(points, float)
+        flat = points.reshape(-1, points.shape[-1])
+        rows = max(AT_ONCE // max(self.size, 1), 1)
+        parts = [self._of_points(flat[i : i + rows]) for i in range(0, len(flat), rows)]
+        return np.concatenate(parts).reshape(points.shape[:-1])
+
+    def _of_points(self, points: np.ndarray) -> np.ndarray:
+        """Return ln L at a list of points, (m,)."""
+        v = Values(*(np.asarray(value)[:, None] for value in self.values(points)))
+        total, scatter = np.zeros(len(points)), np.exp(v.log_scatter)
+        for kind, (x, low, high, times) in self._distinct.items():
+            mean = v.level - v.slope * (x - self.reference)
+            above = (low - mean) / scatter
+            if kind == "observed":
+                part = -0.5 * above**2 - v.log_scatter
+            else:
+                part = log_ndtr(-above) if kind == "suspended" else _between(above, (high - mean) / scatter)
+            if self.knee:
+                excess = (x - v.log_limit) / np.exp(v.log_limit_scatter)
+                part = part + log_ndtr(excess)
+                part = np.logaddexp(log_ndtr(-excess), part) if kind == "suspended" else part
+            total += part @ times
+        return total
+
+    @cached_property
+    def _distinct(self) -> dict[str, tuple[np.ndarray, ...]]:
+        """Return stress, ends and number of equal tests, by the kind of their end."""
+        rows = np.stack([self.tests.stress, self.tests.low, self.tests.high], axis=1)
+        found, times = np.unique(rows, axis=0, return_counts=True)
+        kinds = {
+            "observed": found[:, 1] == found[:, 2],
+            "inspected": (found[:, 1] < found[:, 2]) & np.isfinite(found[:, 2]),
+            "suspended": np.isposinf(found[:, 2]),
+        }
+        return {kind: (*found[own].T, times[own]) for kind, own in kinds.items() if own.any()}
+
+    @cached_property
+    def estimate(self) -> np.ndarray:
+        """Return the values of the largest likelihood, (p,)."""
+        found = [least(lambda points: -self.log_likelihood(points), start, self.limits) for start in self._starts()]
+        return min(found, key=lambda one: one[1])[0]
+
+    @cached_property
+    def largest(self) -> float:
+        """Return the largest ln L."""
+        return float(self.log_likelihood(self.estimate))
+
+    @property
+    def at_bound(self) -> tuple[str, ...]:
+        """Return the names of values whose estimate lies at a bound, so that the tests do not identify them."""
+        reach = AT_BOUND * np.ptp(self.limits, axis=1)
+        ends = np.abs(self.estimate[:, None] - self.limits).min(axis=1) < reach
+        return tuple(name for name, end in zip(self.free, ends, strict=True) if end)
+
+    @property
+    def best(self) -> Values:
+        """Return all values at the estimate, the held ones included."""
+        return Values(*map(float, self.values(self.estimate)))
+
+    def _starts(self) -> list[np.ndarray]:
+        """Return places to start from: the regression of the failures, with steeper slopes beside it."""
+        x, y, failed = self.tests.stress - self.reference, self.tests.middle, self.tests.failed
+        own = failed if failed.any() else np.ones_like(failed)
+        spread = float(((x[own] - x[own].mean()) ** 2).sum())
+        fitted = -float((x[own] * (y[own] - y[own].mean())).sum()) / spread if spread > 1e-12 else 8.0
+        lowest, found = self.tests.stress.min(), []
+        for slope in [self.slope] if self.slope is not None else [0.0] if not self.sloped else [fitted, 5.0, 12.0]:
+            slope = float(np.clip(slope, *BOUNDS["slope"])) if self.sloped else 0.0
+            level = float((y[own] + slope * x[own]).mean())
+            rest = float(np.std(y[own] + slope * x[own]))
+            limit = float(np.median(self.tests.stress[~failed])) if (~failed).any() else lowest - 0.05
+            start = Values(level, slope, math.log(max(rest, 0.1)), limit, math.log(0.05))
+            found.append(np.array([start[place] for place in self._places]))
+        return found
+
+    def cut_off(self, confidence: float) -> float:
+        """Return how far ln L may lie below its maximum within an interval, t^2(n - p)/2.
+
+        Parameters
+        ----------
+        confidence : float
+            Share of intervals that hold the true value, such as 0.9.
+        """
+        left = max(self.size - len(self.free), 1)
+        square = float(stats.t.ppf(0.5 + 0.5 * confidence, left)) ** 2
+        # with one or two tests more than values, t^2/2 would be far too wide: the mean of complete data has this form
+        return min(0.5 * square, 0.5 * self.size * math.log1p(square / left))
+
+    def log_life(self, values: Values, log_stress: float, probability: float) -> np.ndarray:
+        """Return ln N at which a share of specimens has failed; inf below a fatigue limit that more survive.
+
+        Parameters
+        ----------
+        values : Values
+            Values of the line.
+        log_stress : float
+            ln S [ln MPa].
+        probability : float
+            The share.
+        """
+        deviate = np.asarray(self._deviate(values, log_stress, probability))
+        straight = values.level - values.slope * (log_stress - self.reference)
+        return np.asarray(straight + np.exp(values.log_scatter) * deviate)
+
+    def _deviate(self, values: Values, log_stress: float, probability: float) -> np.ndarray | float:
+        if not self.knee:
+            return float(ndtri(probability))
+        fails = ndtr((log_stress - values.log_limit) / np.exp(values.log_limit_scatter))
+        with np.errstate(divide="ignore"):
+            return np.where(fails > probability, ndtri(np.minimum(probability / np.maximum(fails, LEAST), 1.0)), np.inf)
+
+    def interval_of_life(self, log_stress: float, probability: float, confidence: float = 0.9) -> Interval:
+        """Return the interval of ln N at which a share of specimens has failed under a stress.
+
+        Parameters
+        ----------
+        log_stress : float
+            ln S [ln MPa].
+        probability : float
+            The share.
+        confidence : float
+            Share of intervals that hold the true value.
+        """
+
+        def level(value: float, others: np.ndarray) -> np.ndarray:
+            """Return the levels that give the life `value`, with the other values as they are."""
+            own = self.values(np.concatenate([np.zeros((*others.shape[:-1], 1)), others], axis=-1))
+            return value - self.log_life(own, log_stress, probability)
+
+        best = float(self.log_life(self.best, log_stress, probability))
+        if not math.isfinite(best):
+            best = float(self.best.level - self.best.slope * (log_stress - self.reference))
+        return self._ends(best, 0, level, confidence)
+
+    def interval_of_strength(self, log_cycles: float, probability: float, confidence: float = 0.9) -> Interval:
+        """Return the interval of ln S at which a share of specimens has failed after so many cycles.
+
+        Parameters
+        ----------
+        log_cycles : float
+            ln N.
+        probability : float
+            The share.
+        confidence : float
+            Share of intervals that hold the true value.
+        """
+
+        def level(value: float, others: np.ndarray) -> np.ndarray:
+            own = self.values(np.concatenate([np.zeros((*others.shape[:-1], 1)), others], axis=-1))
+            return log_cycles - self.log_life(own, value, probability)
+
+        best = self.best
+        deviate = math.exp(float(best.log_scatter)) * float(ndtri(probability))
+        middle = self.reference + (float(best.level) + deviate - log_cycles) / float(best.slope)
+        return self._ends(middle, 0, level, confidence)
+
+    def interval(self, name: str, confidence: float = 0.9) -> Interval:
+        """Return the profile interval of one of the free values, by its name."""
+        place = self.free.index(name)
+        low, high = self.bounds[name]
+        found = self._ends(float(self.estimate[place]), place, _itself, confidence)
+        open_low, open_high = found.low <= low, found.high >= high
+        return Interval(low if open_low else found.low, high if open_high else found.high)
+
+    def _ends(self, best: float, place: int, solved: Solved, confidence: float) -> Interval:
+        """Return where the profile of a value falls to the cut-off on both sides of its estimate.
+
+        `solved` returns the free value at `place` from the value in question and the other free values.
+        """
+        if not self.tests.failed.any():
+            return self._without_failures(place, solved, confidence)
+        goal = self.largest - self.cut_off(confidence)
+        others = np.delete(self.estimate, place)
+        limits = np.delete(self.limits, place, axis=0)
+
+        def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
+            def loss(rest: np.ndarray) -> np.ndarray:
+                own = solved(value, rest)
+                points = np.insert(rest, place, np.where(np.isfinite(own), own, 0.0), axis=-1)
+                return np.where(np.isfinite(own), -self.log_likelihood(points), LARGE)
+
+            if not len(start):
+                return -float(loss(start)), start
+            place_of_least, value_there = least(loss, start, limits)
+            return -value_there, place_of_least
+
+        bounds = self.limits[place] if place else (-math.inf, math.inf)
+        return Interval(*(_end(profile, best, others, goal, side, bounds) for side in (-1.0, 1.0)))
+
+    def _without_failures(self, place: int, solved: Solved, confidence: float) -> Interval:
+        """Return the one-sided bound of a level that no failure has bounded from above."""
+        if len(self.free) > 1 or place:
+            return Interval(-math.inf, math.inf)
+        goal, none = math.log(0.5 - 0.5 * confidence), np.empty(0)
+
+        def excess(value: float) -> float:
+            return float(self.log_likelihood(np.atleast_1d(solved(value, none)))) - goal
+
+        return Interval(float(optimize.brentq(excess, -FARTHEST, 2.0 * FARTHEST)), math.inf)
+
+
+def least(loss: Callable[[np.ndarray], np.ndarray], start: np.ndarray, limits: np.ndarray) -> tuple[np.ndarray, float]:
+    """Return where a function of points (..., p) is least within limits (p, 2), and its value there.
+
+    Newton's method from a start (p,), damped where a step does not lower the value.
+    """
+
+    point = np.clip(start, *limits.T)
+    value, gradient, curvature = expanded(loss, point)
+    damping = 0.0
+    for _ in range(MOST_STEPS):
+        # values at a bound that the loss pushes outward stay there
+        stuck = ((point <= limits[:, 0]) & (gradient > 0)) | ((point >= limits[:, 1]) & (gradient < 0))
+        step = np.zeros(len(point))
+        if not stuck.all():
+            own = np.ix_(~stuck, ~stuck)
+            roots, axes = np.linalg.eigh(curvature[own])
+            roots = np.maximum(np.abs(roots), 1e-6) + damping
+            step[~stuck] = -axes @ ((axes.T @ gradient[~stuck]) / roots)
+        new = np.clip(point + step, *limits.T)
+        if -(new - point) @ gradient < TOLERANCE:
+            break
+        found = expanded(loss, new)
+        if found[0] < value:
+            point, (value, gradient, curvature), damping = new, found, 0.1 * damping
+        else:
+            damping = max(10.0 * damping, 1e-2 * float(np.abs(np.diag(curvature)).max()), 1e-3)
+    return point, value
+
+
+def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Return value, gradient and second derivatives of a function at a point, by central differences."""
+    n, unit = len(point), STEP * np.eye(len(point))
+    first, second = np.triu_indices(n, 1)
+    both, apart = unit[first] + unit[second], unit[first] - unit[second]
+    places = np.concatenate([np.zeros((1, n)), unit, -unit, both, -both, apart, -apart])
+    values = np.nan_to_num(loss(point + places), nan=LARGE, posinf=LARGE)
+    m = len(first)
+    up, down, crossed = values[1 : n + 1], values[n + 1 : 2 * n + 1], values[2 * n + 1 :]
+    curvature = np.diag((up + down - 2.0 * values[0]) / STEP**2)
+    mixed = (crossed[:m] + crossed[m : 2 * m] - crossed[2 * m : 3 * m] - crossed[3 * m :]) / (4.0 * STEP**2)
+    curvature[first, second] = curvature[second, first] = mixed
+    return float(values[0]), (up - down) / (2.0 * STEP), curvature
+
+
+def _itself(value: float, others: np.ndarray) -> np.ndarray:
+    """Return the value for each point of the others."""
+    return np.full(others.shape[:-1], value)
+
+
+def _between(low: np.ndarray, high: np.ndarray) -> np.ndarray:
+    """Return ln(Phi(high) - Phi(low)), accurate in both tails."""
+    flip = low > 0
+    low, high = np.where(flip, -high, low), np.where(flip, -low, high)
+    upper, lower = log_ndtr(high), log_ndtr(low)
+    return np.asarray(upper + np.log1p(-np.minimum(np.exp(lower - upper), 1.0 - 1e-15)))
+
+
+def _end(
+    profile: Callable[[float, np.ndarray], tuple[float, np.ndarray]],
+    best: float,
+    others: np.ndarray,
+    goal: float,
+    side: float,
+    bounds: tuple[float, float] | np.ndarray,
+) -> float:
+    """Return one end of an interval: step outward until the profile lies below its goal, then close in."""
+    step, inner, start = 0.1, best, others
+    while True:
+        outer = inner + side * step
+        if not bounds[0] < outer < bounds[1]:
+            outer = float(bounds[0] if side < 0 else bounds[1])
+            if profile(outer, start)[0] >= goal:
+                return outer
+        value, found = profile(outer, start)
+        if value < goal:
+            break
+        inner, start, step = outer, found, 2.0 * step
+        if abs(inner - best) > FARTHEST:
+            return side * math.inf
+    for _ in range(40):
+        middle = 0.5 * (inner + outer)
+        if abs(outer - inner) < 1e-4 * max(1.0, abs(inner - best)):
+            break
+        value, found = profile(middle, start)
+        inner, outer, start = (middle, outer, found) if value >= goal else (inner, middle, start)
+    return 0.5 * (inner + outer)

@@ -1,0 +1,266 @@
+"""Rank candidate tests by how much they narrow the life of a design.
+
+A test that has not run yet can end in many ways. For each candidate, lives are drawn from the posterior, the end of
+each is weighed by its likelihood, and the variance of ln B10 of the design that would remain is averaged over the ends
+(a preposterior analysis). Tests are added one by one, each the one that lowers the variance most.
+
+ASSUME: a test runs until its roller fails, or until the longest travel that is allowed.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from scipy.special import log_ndtr
+
+from trackroller.errors import InputError
+from trackroller.fit.bench import check_same, solved_rollers
+from trackroller.fit.fitted import Fit
+from trackroller.fit.line import Line
+from trackroller.fit.posterior import Posterior
+from trackroller.numerics.numbers import number_or_nan
+from trackroller.parameters import BODIES, PARAMETERS
+from trackroller.roller.case import Case, to_table
+from trackroller.roller.settings import checked_case
+
+OUTCOMES = 200  # ends drawn for each candidate
+POINTS = 3000  # points of the posterior that are kept, drawn by their weight
+MOST_CANDIDATES = 500
+
+
+def next_tests(
+    fit: Fit,
+    candidates: Any,
+    design: Any,
+    tests: int = 3,
+    *,
+    failure_probability: float = 0.1,
+    longest: float = math.inf,
+    seed: int = 1,
+) -> xr.Dataset:
+    """Rank candidate tests by how much they narrow ln B10 of a design.
+
+    Parameters
+    ----------
+    fit : Fit
+        Result of `trackroller.fit_bench` or `trackroller.fit_sn` so far.
+    candidates : list of cases, or xarray.Dataset along `case`
+        Rollers that could be tested, such as `load_study(file).design()`.
+    design : Case or mapping
+        The design whose life matters.
+    tests : int
+        How many tests are planned.
+    failure_probability : float
+        Failure probability of the life that matters, 0.1 for B10.
+    longest : float
+        Travel after which a test stops without failure [km].
+    seed : int
+        Of the draws.
+
+    Returns
+    -------
+    xarray.Dataset
+        Along `candidate`: `deviation`, the standard deviation of ln B10 that remains on average after one test, `hours`
+        of that test in the median and `travel`. Along `test`: `chosen` candidates in their order and
+        `deviation_after`; `deviation_now` and `deviation_random`, what as many random candidates would leave.
+
+    Raises
+    ------
+    InputError
+        If the fit has no line of fatigue, or a design or candidate does not roll.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> rows = {"amplitude": [520, 500, 480, 460], "cycles": [2e5, 4e5, 5e5, 9e5], "failed": [True] * 4}
+    >>> fit = tr.fit_sn(rows, load_type="rolling contact", stress_ratio=-1)
+    >>> free = {"motor_force": 0, "friction_coefficient": 0.1}
+    >>> candidates = [free | {"radial_force": force} for force in (-150, -250)]
+    >>> plan = tr.next_tests(fit, candidates, free | {"radial_force": -120}, tests=1)
+    >>> bool(plan.deviation_after[0] < plan.deviation_now)
+    True
+    """
+    if not (isinstance(tests, (int, np.integer)) and 1 <= tests <= 20):
+        raise InputError("tests", tests, "a whole number from 1 to 20")
+    own, body = fit.group("fatigue"), str(fit.given.get("body", "roller"))
+    line, draws = own.line, _drawn(own.posterior, seed)
+    cases = _cases(candidates)
+    chosen_design, options, _ = checked_case(_fields(design))
+    check_same(fit.given, options, fit.name)
+    stresses = _stresses([*cases, chosen_design], options, body)
+    goal = np.asarray(line.log_life(draws.values, stresses[0][-1], failure_probability))
+    if not np.isfinite(goal).all():
+        remedy = "Give a design that is loaded above the fatigue limit."
+        raise InputError("design", "B10", "a finite life under all values that the tests allow", remedy)
+    limits = np.log(longest * stresses[1][:-1])
+    rng = np.random.default_rng(seed)
+    ends = [_Candidate(line, draws, x, limit) for x, limit in zip(stresses[0][:-1], limits, strict=True)]
+    return _ranked(ends, goal, cases, stresses, tests, rng)
+
+
+class _Candidate:
+    """A test that could run: its end under drawn values, and the likelihood of each end under all values."""
+
+    def __init__(self, line: Line, draws: Posterior, stress: float, limit: float) -> None:
+        values, scatter = draws.values, np.exp(draws.values.log_scatter)
+        mean = np.asarray(line.log_life(values, stress, 0.5))
+        self.median = float(np.exp(np.median(np.minimum(mean, limit))))
+        self.mean, self.scatter, self.limit = mean, scatter, limit
+
+    def log_likelihood(self, outcome: np.ndarray) -> np.ndarray:
+        """Return ln L of ends (m,) under all values, (m, points); an end at the limit is a suspension."""
+        z = (outcome[:, None] - self.mean) / self.scatter
+        observed = -0.5 * z**2 - np.log(self.scatter)
+        return np.where((outcome >= self.limit)[:, None], log_ndtr(-z), observed)
+
+    def drawn(self, points: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """Return the end under the values of some points, with standard normal numbers, both (m,)."""
+        return np.minimum(self.mean[points] + self.scatter[points] * normal, self.limit)
+
+
+def _drawn(posterior: Posterior, seed: int) -> Posterior:
+    """Return a posterior with fewer points of equal weight."""
+    rng = np.random.default_rng(seed)
+    rows = rng.choice(len(posterior.weight), POINTS, p=posterior.weight)
+    values = [np.broadcast_to(value, posterior.weight.shape)[rows] for value in posterior.values]
+    return Posterior(type(posterior.values)(*values), np.full(POINTS, 1.0 / POINTS))
+
+
+def _cases(candidates: Any) -> list[Case]:
+    """Return the candidates as cases."""
+    if hasattr(candidates, "data_vars"):
+        table = to_table(candidates)
+        if len(table) > MOST_CANDIDATES:
+            raise InputError("candidates", len(table), f"at most {MOST_CANDIDATES} candidates", "Give fewer levels.")
+        names = [name for name in (*PARAMETERS, "roller_material", "guide_material") if name in candidates]
+        columns = {name: np.broadcast_to(candidates[name].values, len(table)) for name in names}
+        given = [{n: _plain(column[i]) for n, column in columns.items()} for i in range(len(table))]
+    else:
+        given = [_fields(one) for one in candidates]
+    if not given:
+        raise InputError("candidates", None, "at least one candidate")
+    return [Case.from_dict({n: v for n, v in one.items() if v is not None}) for one in given]
+
+
+def _plain(value: Any) -> Any:
+    value = value.item() if isinstance(value, np.generic) else value
+    return None if isinstance(value, float) and math.isnan(value) else value
+
+
+def _fields(design: Any) -> dict[str, Any]:
+    """Return the fields of a case or mapping."""
+    if isinstance(design, Case):
+        return {name: value for name, value in vars(design).items() if name in Case.__dataclass_fields__}
+    return dict(design)
+
+
+def _stresses(
+    cases: Sequence[Case], options: Mapping[str, Any], body: str
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Return ln S in the contact that fails first, overrollings of a km, and overrollings of an hour, (n,) each."""
+    solved = solved_rollers(cases, options)
+    for i, regime in enumerate(solved.regime):
+        if regime != "rolling":
+            what = "design" if i == len(cases) - 1 else f"candidate {i + 1}"
+            raise InputError(what, regime, "a roller that rolls", "Change its loads, or leave it out.")
+    b = BODIES.index(body)
+    worse = np.argmax(solved.stress[:, :, b], axis=1)
+    rows = np.arange(len(cases))
+    stress, per_km, per_hour = (array[rows, worse, b] for array in (solved.stress, solved.per_km, solved.per_hour))
+    if np.isnan(per_km).any():
+        raise InputError("guide_overrollings_per_hour", None, "a number in design and candidates")
+    return np.log(stress), per_km, per_hour
+
+
+def _remaining(tests: Sequence[_Candidate], goal: np.ndarray, points: np.ndarray, normal: np.ndarray) -> float:
+    """Return the mean variance of ln B10 after tests whose ends are drawn."""
+    log_weight = np.zeros((len(points), len(goal)))
+    for i, test in enumerate(tests):
+        log_weight += test.log_likelihood(test.drawn(points, normal[:, i]))
+    weight = np.exp(log_weight - log_weight.max(axis=1, keepdims=True))
+    weight /= weight.sum(axis=1, keepdims=True)
+    mean = weight @ goal
+    return float(np.mean(weight @ goal**2 - mean**2))
+
+
+def _ranked(
+    candidates: Sequence[_Candidate],
+    goal: np.ndarray,
+    cases: Sequence[Case],
+    stresses: tuple[np.ndarray, np.ndarray, np.ndarray],
+    tests: int,
+    rng: np.random.Generator,
+) -> xr.Dataset:
+    """Return the ranking of the candidates, and a plan of several tests beside random ones."""
+    points = rng.integers(0, len(goal), OUTCOMES)  # the same ends for all candidates: differences are no chance
+    normal = rng.normal(size=(OUTCOMES, tests))
+    centred = goal - goal.mean()
+    alone = np.array([_remaining([one], centred, points, normal) for one in candidates])
+    chosen, after = [int(np.argmin(alone))], [float(alone.min())]
+    while len(chosen) < tests:
+        before = [candidates[i] for i in chosen]
+        left = np.array([_remaining([*before, one], centred, points, normal) for one in candidates])
+        chosen.append(int(np.argmin(left)))
+        after.append(float(left.min()))
+    random = [
+        _remaining([candidates[i] for i in rng.integers(0, len(candidates), tests)], centred, points, normal)
+        for _ in range(12)
+    ]
+    cycles = np.array([one.median for one in candidates])
+    words = {"units": "1", "long_name": "standard deviation of ln B10 of the design"}
+    ds = xr.Dataset(
+        {
+            "deviation": ("candidate", np.sqrt(alone), words),
+            "hours": (
+                "candidate",
+                cycles / stresses[2][:-1],
+                {"units": "h", "long_name": "median of the test's hours"},
+            ),
+            "travel": (
+                "candidate",
+                cycles / stresses[1][:-1],
+                {"units": "km", "long_name": "median travel of the test"},
+            ),
+            "stress": ("candidate", np.exp(stresses[0][:-1]), {"units": "MPa", "long_name": "stress of the test"}),
+            "chosen": ("test", np.array(chosen), {"long_name": "candidates in the order of the plan"}),
+            "deviation_after": ("test", np.sqrt(after), words),
+            "deviation_now": ((), float(np.std(goal)), words),
+            "deviation_random": ((), float(np.sqrt(np.mean(random))), words),
+        }
+    )
+    differ = [n for n in PARAMETERS if len({str(getattr(case, n)) for case in cases}) > 1]
+    ds.attrs["varied"] = differ
+    for name in differ:
+        ds[name] = ("candidate", np.array([getattr(case, name) for case in cases]), {"units": PARAMETERS[name].unit})
+    return ds
+
+
+def tests_needed(ds: xr.Dataset, factor: float) -> float:
+    """Return about how many more tests narrow B10 to within a factor on both sides (90 %), by the plan.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        What `next_tests` returned.
+    factor : float
+        Ratio of B10 to the low end of its interval [1].
+
+    Returns
+    -------
+    float
+        Number of tests; 0 if none is needed, inf if the candidates do not narrow B10.
+
+    Notes
+    -----
+    The inverse variance grows by about the same with each further test; the plan tells by how much.
+    """
+    if not number_or_nan(factor) > 1.0:
+        raise InputError("factor", factor, "a number above 1", "Give 2 for an interval from half to twice the value.")
+    goal = (math.log(factor) / 1.645) ** -2
+    now, after = float(ds["deviation_now"]) ** -2, float(ds["deviation_after"][-1]) ** -2
+    gain = (after - now) / ds.sizes["test"]
+    return 0.0 if goal <= now else math.inf if gain <= 0 else math.ceil((goal - now) / gain)

@@ -1,0 +1,116 @@
+"""Fits that stand beside the user's materials file: lives with the interval by their tests."""
+
+from __future__ import annotations
+
+import functools
+import math
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import InputError
+from trackroller.fit.fitted import posterior_path
+from trackroller.fit.line import Interval, Line, Tests
+from trackroller.fit.posterior import Posterior
+from trackroller.materials.file import find_user_file
+
+SAME = 1e-6  # relative difference of values of a material and of its fit that rounding may cause
+
+HOLDS = "holds_for_"
+
+
+@dataclass(frozen=True)
+class StoredFit:
+    """The line of fatigue of a material that `trackroller fit` wrote.
+
+    Attributes
+    ----------
+    name : str
+        Name of the material.
+    line : Line
+        The line with its tests.
+    posterior : Posterior
+        Posterior of its values.
+    given : dict of str to str
+        For what the values hold, such as `contact_model`.
+    tested : tuple of float
+        Least and largest stress tested [MPa], and cycles of the longest test [1].
+    rows : int
+        Number of tests.
+    """
+
+    name: str
+    line: Line
+    posterior: Posterior
+    given: dict[str, str]
+    tested: tuple[float, float, float]
+    rows: int
+
+    def cycles(self, stress: float, probability: float) -> Interval:
+        """Return the 90 % interval of the cycles under a stress [MPa] at a failure probability."""
+        found = self.line.interval_of_life(math.log(stress), probability)
+        return Interval(*(float(np.exp(end)) for end in found))
+
+    def extrapolates(self, stress: float, cycles: float) -> bool:
+        """Return whether a stress [MPa] or a life lies beyond the tests."""
+        low, high, longest = self.tested
+        return not low * (1 - 1e-9) <= stress <= high * (1 + 1e-9) or cycles > longest
+
+
+def stored_fit(name: str, values: Mapping[str, Any]) -> StoredFit | None:
+    """Return the fit of a material of the user's file; None for a material without one.
+
+    Parameters
+    ----------
+    name : str
+        Name of the material.
+    values : mapping
+        Its values, of which the strength must be that of the fit: a material changed by hand has no fit any more.
+
+    Raises
+    ------
+    InputError
+        If the file of the fit cannot be read.
+    """
+    user = find_user_file()
+    path = None if user is None else posterior_path(user, name)
+    if path is None or not path.is_file():
+        return None
+    found = _read(path, name, path.stat().st_mtime_ns)
+    if found is None:
+        return None
+    fit, strength = found
+    ratio = values.get("fatigue_strength_ratio")
+    own = values.get("fatigue_limit", math.nan if ratio is None else ratio * values["tensile_strength"])
+    knee = values.get("cycles_at_fatigue_limit", math.nan)
+    agrees = all(abs(a - b) <= SAME * abs(b) for a, b in zip((own, knee), strength, strict=True))
+    return fit if agrees else None
+
+
+@functools.lru_cache(maxsize=16)
+def _read(path: Path, name: str, changed: int) -> tuple[StoredFit, tuple[float, float]] | None:
+    """Return the fit of a file, with strength and knee of its material; None for a fit without fatigue."""
+    del changed  # a file that was written again is read again
+    try:
+        with xr.open_dataset(path) as opened:
+            ds = opened.load()
+    except (OSError, ValueError) as exc:
+        remedy = "Fit the tests again."
+        raise InputError(
+            "fit", str(path), "a file that `trackroller fit` wrote", remedy, f"is not read ({exc})"
+        ) from None
+    if "fatigue_level" not in ds or "fatigue_limit" not in ds.attrs:
+        return None
+    held = {key: ds.attrs.get(f"fatigue_held_{key}") for key in ("slope", "scatter")}
+    tests = Tests(*(ds[f"fatigue_test_{part}"].values for part in ("stress", "low", "high")))
+    line = Line(tests, slope=held["slope"], scatter=held["scatter"], knee=bool(ds.attrs["fatigue_knee"]))
+    names = {n: n.removeprefix("fatigue_") for n in map(str, ds.data_vars) if n.startswith("fatigue_")}
+    own = Posterior.from_dataset(ds[list(names)].rename(names))
+    given = {key.removeprefix(HOLDS): str(value) for key, value in ds.attrs.items() if key.startswith(HOLDS)}
+    tested = (*map(float, ds.attrs["tested_stress"]), float(ds.attrs["tested_cycles"]))
+    fit = StoredFit(name, line, own, given, tested, int(ds.attrs["rows"]))  # type: ignore[arg-type]
+    return fit, (float(ds.attrs["fatigue_limit"]), float(ds.attrs["cycles_at_fatigue_limit"]))

@@ -1,0 +1,217 @@
+"""The page of a fit: values with their intervals, figures, what the tests cannot tell, and the tests themselves."""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from trackroller.errors import listing
+from trackroller.fit.fitted import WORDS, Fit, Group
+from trackroller.fit.next_tests import tests_needed
+from trackroller.report import html
+from trackroller.report.numbers import capital, rounded, with_unit
+from trackroller.report.pages.sheet import pictures, versions_text
+from trackroller.report.tables.table import Table, cell, heading
+
+SYMBOLS = {
+    "fatigue_limit": "Fatigue strength sigma_D",
+    "woehler_exponent": "Slope k",
+    "scatter_in_cycles": "Scatter of the life T_N",
+    "scatter_in_stress": "Scatter of the fatigue limit T_S",
+    "wear_coefficient": "Wear coefficient",
+    "wear_scatter": "Scatter of the travel to a depth",
+    "friction_coefficient": "Friction coefficient",
+    "friction_scatter": "Scatter of the friction coefficient",
+}
+WIDE = 5.0  # times that an interval of a life spans, above which the page says so
+SYNTHETIC = "synthetic"  # in the name of a table of tests
+
+
+def value_table(fit: Fit) -> Table:
+    """List the fitted values: estimate, 90 % interval, posterior, prior."""
+    rows = []
+    for own in fit.groups:
+        for name in own.names:
+            unit = WORDS[name][0]
+            low, high = own.interval(name)
+            estimate = "not identified" if name in own.unidentified else cell(own.estimate(name))
+            if own.line.tests.failed.any():
+                band = own.band(name)
+                after = f"{cell(band[1])} ({cell(band[0])} to {cell(band[2])})"
+            else:
+                after = "–"
+            rows.append([with_unit(SYMBOLS[name], unit), estimate, _ends(low, high), after, _prior(own, name)])
+    heads = ["Value", "Most likely", "90 % interval", "Posterior: median (5 to 95 %)", "Prior"]
+    return Table("fit_values", "Fitted values", heads, rows)
+
+
+def _prior(own: Group, name: str) -> str:
+    key = {"woehler_exponent": "slope", "scatter_in_cycles": "log_scatter", "fatigue_limit": "log_strength"}.get(name)
+    if key is None or key not in own.priors:
+        return "flat" if name in ("woehler_exponent",) else "flat in its logarithm"
+    prior = own.priors[key]
+    if key == "slope":
+        return f"{cell(prior.mean)} ± {cell(prior.deviation)}"
+    middle = math.exp(prior.mean) if key == "log_strength" else math.exp(2.563 * math.exp(prior.mean))
+    return f"median {cell(middle)}, ± {cell(prior.deviation)} in ln"
+
+
+def _ends(low: float, high: float) -> str:
+    if math.isinf(high) and low <= 0:
+        return "any value"
+    if math.isinf(high):
+        return f"at least {cell(low)}"
+    return f"at most {cell(high)}" if low <= 0 or math.isinf(low) else f"{cell(low)} to {cell(high)}"
+
+
+def sentences(fit: Fit) -> list[str]:
+    """Return the statements at the head of the page: what was fitted, and what is not identified."""
+    said = []
+    for own in fit.groups:
+        failed, size = int(own.line.tests.failed.sum()), own.line.size
+        ends = {"fatigue": "failed by fatigue", "wear": "reached a depth", "friction": "gave a drive force"}[own.kind]
+        values = []
+        for name in own.names:
+            unit = "" if WORDS[name][0] == "1" else f" {WORDS[name][0]}"
+            low, high = own.interval(name)
+            if name in own.unidentified:
+                values.append(f"{_short(name)} not identified ({_ends(low, high)}{unit})")
+            else:
+                values.append(f"{_short(name)} {cell(own.estimate(name))}{unit} ({_ends(low, high)})")
+        said.append(f"{failed} of {size} tests {ends}: {', '.join(values)}; 90 % intervals in brackets.")
+    return said
+
+
+def _short(name: str) -> str:
+    return {
+        "fatigue_limit": "fatigue strength", "woehler_exponent": "slope", "scatter_in_cycles": "T_N",
+        "scatter_in_stress": "T_S",
+    }.get(name, name.replace("_", " "))  # fmt: skip
+
+
+def cannot_tell(fit: Fit) -> list[str]:
+    """Return sentences on what the tests do not tell."""
+    said = []
+    for name in fit.unidentified:
+        said.append(f"The tests do not identify the {_short(name)}: its estimate lies at a bound, and is no number.")
+    if fit.has("fatigue"):
+        said += _of_fatigue(fit.group("fatigue"), fit.knee if "fatigue_limit" in fit.material else math.nan)
+    return [*said, *fit.notes]
+
+
+def _of_fatigue(own: Group, knee: float) -> list[str]:
+    """Return sentences on the range of a line, and on how wide its lives are."""
+    low, high, longest = own.tested
+    said = [
+        f"Stresses of {rounded(low)} to {rounded(high)} MPa and up to {rounded(longest)} cycles were tested. A life at "
+        "another stress, or a longer one, is an extrapolation of the line."
+    ]
+    if not own.line.knee and knee > 1.05 * longest:
+        said.append(f"The strength is stated at {rounded(knee)} cycles, beyond the longest test: it is extrapolated.")
+    if own.line.tests.failed.any():
+        ends = own.line.interval_of_life(math.log(low), 0.1)
+        width = math.exp(min(ends.high - ends.low, 50.0))
+        if width > WIDE:
+            said.append(
+                f"B10 at {rounded(low)} MPa is known within a factor of {rounded(width, 2)}. "
+                "`trackroller fit next` says which test narrows it most."
+            )
+    said.append(
+        "B10 lies below its interval in up to some 8 % of the fits where 5 % are nominal (page 'Intervals of fitted "
+        "S-N lines')."
+    )
+    return said
+
+
+def table_of_tests(fit: Fit) -> Table:
+    """List the tests as they were given."""
+    names = list(dict.fromkeys(name for row in fit.tests.rows for name in row))
+    rows = [[str(fit.tests.lines[i]), *(fit.tests.text(i, name) for name in names)] for i in fit.tests]
+    return Table("fit_tests", "Tests", ["Row", *names], rows)
+
+
+def write_fit(fit: Fit, path: Path | str) -> Path:
+    """Write the page of a fit as one HTML file that stands alone, or as PDF by the name of the file.
+
+    Parameters
+    ----------
+    fit : Fit
+        Result of `trackroller.fit_sn`, `trackroller.fit_bench` or `trackroller.fit.depths.fit_wear`.
+    path : Path or str
+        The file to write.
+
+    Returns
+    -------
+    Path
+        The file.
+    """
+    from trackroller.report.figures import fit as figures  # heavy: matplotlib
+
+    drawn = pictures(partial(figures.sn_line, fit), partial(figures.predicted, fit), partial(figures.pairs, fit))
+    under = [f"{capital(key.replace('_', ' '))}: {value}" for key, value in fit.given.items()]
+    digest = f", sha256 {fit.tests.digest[:16]}" if fit.tests.digest else ""
+    content = {
+        "name": fit.name,
+        "synthetic": SYNTHETIC in fit.tests.name.lower(),
+        "said": sentences(fit),
+        "figures": list(drawn.values()),
+        "values": value_table(fit),
+        "cannot": cannot_tell(fit),
+        "under": under,
+        "tests": table_of_tests(fit),
+        "source": f"{len(fit.tests)} tests of {fit.tests.name}{digest}",
+        "versions": versions_text(),
+    }
+    return html.write_page(Path(path), html.render("fit.html.j2", content))
+
+
+def next_rows(ds: xr.Dataset, most: int = 8) -> tuple[list[str], list[list[str]]]:
+    """Return heads and cells of the best candidates of `trackroller.next_tests`, the best first."""
+    varied = [str(name) for name in ds.attrs["varied"]]
+    heads = [
+        "Candidate",
+        *(heading(name) for name in varied),
+        "Stress [MPa]",
+        "Hours",
+        "Travel [km]",
+        "B10 known within",
+    ]
+    rows = []
+    for i in np.argsort(ds["deviation"].values, kind="stable")[:most]:
+        own = ds.isel(candidate=int(i))
+        rows.append(
+            [
+                str(int(i) + 1),
+                *(cell(float(own[name])) for name in varied),
+                *(cell(float(own[name])) for name in ("stress", "hours", "travel")),
+                f"a factor of {cell(_factor(float(own['deviation'])))}",
+            ]
+        )
+    return heads, rows
+
+
+def _factor(deviation: float) -> float:
+    """Return the ratio of B10 to the end of its 90 % interval, from the deviation of its logarithm."""
+    return math.exp(1.645 * deviation)
+
+
+def next_sentences(ds: xr.Dataset, within: float) -> list[str]:
+    """Return sentences on the plan of `trackroller.next_tests`, and on how many more tests are needed."""
+    chosen = [str(int(i) + 1) for i in ds["chosen"].values]
+    now, after = float(ds["deviation_now"]), float(ds["deviation_after"][-1])
+    hours = float(ds["hours"].values[ds["chosen"].values].sum())
+    needed, random = tests_needed(ds, within), float(ds["deviation_random"])
+    said = [
+        f"B10 of the design is known within a factor of {cell(_factor(now))} (90 %).",
+        f"Test {listing([f'candidate {i}' for i in chosen])}, about {cell(hours)} h in all: then B10 is known within a "
+        f"factor of {cell(_factor(after))}. As many random candidates give {cell(_factor(random))}.",
+    ]
+    if needed == 0:
+        return [*said, f"No further test is needed for a factor of {cell(within)}."]
+    if math.isinf(needed):
+        return [*said, f"These candidates do not narrow B10 to a factor of {cell(within)}."]
+    return [*said, f"For a factor of {cell(within)}, about {cell(int(needed))} such tests are needed."]

@@ -1,0 +1,1 @@
+"""How well the intervals of fitted S-N lines cover, and whether the posterior is calibrated."""
