@@ -50,16 +50,20 @@ def test_exact_lives_return_the_line_that_made_them(tmp_path):
     assert made.slope == pytest.approx(9.0, rel=1e-3)
 
 
-def test_a_known_line_lies_in_the_intervals(tmp_path):
+@pytest.mark.slow
+def test_intervals_of_ninety_per_cent_hold_a_known_line_that_often(tmp_path):
+    """Of 20 benches 18 are expected to hold a value; fewer than 14 have a probability of 0.2 %."""
     loads = [-120, -150, -180, -210] * 6
-    km = lives(loads, scatter=0.5, seed=6)
-    rows = "".join(
-        f"T{i},{f},{t!r},{t!r},fatigue roller\n" for i, (f, t) in enumerate(zip(loads, km.tolist(), strict=True))
-    )
-    found = fit(tmp_path, rows)
-    for name, truth in (("fatigue_strength", 360.0), ("slope", 9.0), ("scatter", math.exp(2.563 * 0.5))):
-        low, high = found.interval(name)
-        assert low < truth < high, name
+    truths = {"fatigue_strength": 360.0, "slope": 9.0, "scatter": math.exp(2.563 * 0.5)}
+    held = dict.fromkeys(truths, 0)
+    for seed in range(20):
+        km = lives(loads, scatter=0.5, seed=seed).tolist()
+        rows = "".join(f"T{i},{f},{t!r},{t!r},fatigue roller\n" for i, (f, t) in enumerate(zip(loads, km, strict=True)))
+        found = fit(tmp_path, rows)
+        for name, truth in truths.items():
+            low, high = found.interval(name)
+            held[name] += low < truth < high
+    assert min(held.values()) >= 14, held
 
 
 def test_twice_the_travel_is_twice_the_life(tmp_path):

@@ -146,10 +146,21 @@ def test_stop_before_stresses_by_pressure_or_regime():
     assert found.stopped.values.tolist() == [0, 1, 1]
 
 
+def test_a_condition_may_name_a_contact_or_a_body():
+    """Contact 1 is pressed harder than contact 2, and a roller of PA6 is weaker than its guide."""
+    pressure = float(solve_sliding(tr.Case()).max_pressure.mean())
+    for contact, stopped in ((1, 1), (2, 0)):
+        assert solve_sliding(tr.Case(), stop_if=f"max_pressure_{contact} > {pressure}").stopped == stopped
+    weak = {"roller_material": "PA6", "radial_force": -800.0}
+    for name, stopped in (("peak_stress", 1), ("peak_stress_roller", 1), ("peak_stress_guide", 0)):
+        assert solve_sliding(weak, stop_if=f"{name} > R_m").stopped == stopped
+
+
 @pytest.mark.parametrize(
     "text, told",
     [
         ("peak_stress < R_m", "lower bound"),
+        ("peak_stress_guide_2 < R_m", "lower bound"),
         ("peak > R_m", "peak_stress"),
         ("peak_stress > R_n", "R_m"),
         ("1 > 2", "1"),

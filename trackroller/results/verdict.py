@@ -26,6 +26,7 @@ from trackroller.results.limit_notes import Placeholder, placeholders_of
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.roller.record import names_not_given
 from trackroller.study.outputs import flat
 
@@ -216,7 +217,7 @@ class Verdict:
     @property
     def goal_rises(self) -> bool:
         """Return whether more of the goal is better."""
-        return "life" in self.goal[0]
+        return is_life(self.goal[0])
 
 
 def verdict_of(results: Results) -> Verdict | None:

@@ -1,7 +1,8 @@
 """Conditions on which a case needs no further work, such as `peak_stress > R_m or max_pressure > 1500`.
 
-A condition is one comparison, or several comparisons joined by `or`. The left side is a result. The right side is
-an expression over parameters and strengths. The condition holds for a case if it holds in any contact and body.
+A condition is one comparison, or several comparisons joined by `or`. The left side is a result, or the part of one in a
+body or contact, such as `peak_stress_roller`. The right side is an expression over parameters and strengths. The
+condition holds for a case if it holds in any contact and body that the name leaves open.
 Comparisons of results that are known before the stresses are evaluated first. For `peak_stress > ...` a lower bound of
 the peak is compared, so that no peak has to be searched for. This saves most of the work in wide studies,
 where many designs are overloaded and their exact life is of no interest.
@@ -17,9 +18,10 @@ import numpy as np
 
 from trackroller.errors import InputError, check_names
 from trackroller.numerics.units import without_units
-from trackroller.parameters import PARAMETERS, REGIMES
+from trackroller.parameters import BODIES, PARAMETERS, REGIMES
 from trackroller.parameters.expressions import Comparison, comparisons, condition, names
 from trackroller.roller.dataset import VARIABLES
+from trackroller.roller.output_names import CONTACTS, PARTS, unit_of
 
 STRENGTHS = {"R_m": "tensile_strength", "tensile_strength": "tensile_strength", "fatigue_limit": "fatigue_limit"}
 # the share of adhesion is left out, because it needs the tractions
@@ -28,10 +30,18 @@ BEFORE_STRESSES = (
     *(v.name for v in VARIABLES.values() if v.group in ("forces", "contact") and v.name != "stick_area_fraction"),
 )
 PEAK = "peak_stress"
+_RESULTS = (*BEFORE_STRESSES, PEAK)
+LEFT = (*_RESULTS, *(name for name, part in PARTS.items() if part.variable.name in _RESULTS and name not in _RESULTS))
 
 
-def _unit_of(name: str) -> str | None:
-    return VARIABLES[name].units if name in VARIABLES else None
+def compared(comparison: Comparison) -> str:
+    """Return the variable on the left side of a comparison."""
+    return PARTS[comparison.name].variable.name if comparison.name in PARTS else comparison.name
+
+
+def stops_at(text: str | None) -> set[str]:
+    """Return the variables that a condition compares; none without a condition."""
+    return set() if text is None else {compared(part) for part in parse_condition(text)}
 
 
 @lru_cache(maxsize=64)
@@ -58,10 +68,10 @@ def parse_condition(text: str) -> tuple[Comparison, ...]:
     >>> [part.name for part in parse_condition("peak_stress > R_m or slip > 0.1")]
     ['peak_stress', 'slip']
     """
-    parts = comparisons(without_units(text, _unit_of, "stop_if"), "stop_if")
+    parts = comparisons(without_units(text, unit_of, "stop_if"), "stop_if")
     for part in parts:
-        check_names("stop_if: left side", [part.name], (*BEFORE_STRESSES, PEAK))
-        if part.name == PEAK and part.symbol not in (">", ">="):
+        check_names("stop_if: left side", [part.name], LEFT)
+        if compared(part) == PEAK and part.symbol not in (">", ">="):
             allowed = "peak_stress > or >= a limit, because a lower bound of the peak decides"
             raise InputError("stop_if", text, allowed, "For example: peak_stress > R_m.")
         known = (*REGIMES,) if part.name == "regime" else (*PARAMETERS, *STRENGTHS)
@@ -96,5 +106,8 @@ def holds(comparison: Comparison, value: np.ndarray, table: Any) -> np.ndarray:
             known[name] = np.stack([getattr(table.roller, field), getattr(table.guide, field)], axis=1)[:, None, :]
     full = value.reshape(n, *value.shape[1:], *(1,) * (3 - value.ndim)).astype(float)
     full = np.where(np.isfinite(full), full, np.nan)
-    met = condition(comparison.text, {**known, comparison.name: full}, "stop_if").reshape(n, -1)
-    return np.logical_or.reduce(met, axis=1)
+    met = np.broadcast_to(condition(comparison.text, {**known, comparison.name: full}, "stop_if"), (n, 2, 2))
+    at = PARTS[comparison.name].at if comparison.name in PARTS else {}
+    contact = CONTACTS.index(at["contact"]) if "contact" in at else slice(None)
+    body = BODIES.index(at["body"]) if "body" in at else slice(None)
+    return np.logical_or.reduce(met[:, contact, body].reshape(n, -1), axis=1)

@@ -13,6 +13,7 @@ from trackroller.report.words.designs import BEST, compared
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.file.search import judged_by
 
 SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
@@ -81,7 +82,7 @@ def _unreached(results: Results, search: dict[str, Any]) -> Sentence | None:
     low = []
     for goal in (goal for goal, way in search["goals"].items() if way == "max"):
         values, _, words = goal_column(results, goal)
-        rises = "life" in goal or judged_by(goal)[0] == "probability"  # other goals may be negative
+        rises = is_life(goal) or judged_by(goal)[0] == "probability"  # other goals may be negative
         if np.isnan(values).all() or (rises and not np.nanmax(values) > 0):
             low.append(words)
     return say("optimum", "unreached", goals=low) if low else None
@@ -124,7 +125,7 @@ def optima_table(results: Results) -> Table | None:
         head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
         for key, mark in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
             numbers = [float(one[key][i]) for one in shown]
-            if "life" in goal and units == "h":
+            if is_life(goal) and units == "h":
                 marked = beyond_data(results, goal)
                 numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
             rows.append([f"{head}{mark}", *numbers])

@@ -18,7 +18,7 @@ from trackroller.report.words.targets import samples_of_points, target_words
 from trackroller.results.looks import looks_of
 from trackroller.results.ranking import best_points, estimate
 from trackroller.results.results import Results
-from trackroller.roller.output_names import PARTS
+from trackroller.roller.output_names import PARTS, is_life
 from trackroller.study.file.goals import statistic
 
 HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
@@ -65,7 +65,7 @@ def samples(sens: xr.Dataset, asked: int, about: str = "") -> Sentence | None:
 def _of_points(sens: xr.Dataset, asked: int, about: str) -> Sentence | None:
     """Judge B10 of each life at its best design point, and the probability of each target at all design points."""
     widths = []
-    for output in (str(n) for n in sens["output"].values if "life" in str(n) and about in ("", str(n))):
+    for output in (str(n) for n in sens["output"].values if is_life(str(n)) and about in ("", str(n))):
         part = sens.sel(output=output)
         part = part.isel(point=best_points(part)[0])
         if not 0 < float(part["b10"]) < np.inf or not np.isfinite(float(part["b10_high"])):

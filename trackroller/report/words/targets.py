@@ -27,6 +27,7 @@ from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.ranking import best_points, estimate, main_lives, method_of
 from trackroller.results.results import Results
 from trackroller.results.targets import most_apart
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import in_words
 
@@ -194,7 +195,7 @@ OTHERS = dict(zip(REGIMES[1:], REGIME_LABELS[1:], strict=True))  # names of the 
 def robust_tables(table: xr.Dataset, error: Sentence | None) -> list[Table | None]:
     """List every analysed output of an inner/outer design by design point: lives first, the best point on top."""
     lives = main_lives(table)
-    others = [n for n in map(str, table["output"].values) if "life" not in n]
+    others = [n for n in map(str, table["output"].values) if not is_life(n)]
     others = others if table.attrs.get("outputs_named") or not lives else []
     first = np.arange(min(table.sizes["point"], MAX_POINTS))
     tables = [part for n in lives for part in _life_tables(table, n)]
@@ -236,7 +237,7 @@ def _point_table(table: xr.Dataset, output: str, error: Sentence | None, points:
     rows = []
     for p in map(int, points):
         values = {head: float(column[p]) for head, column in columns.items()}
-        lives = {head: life_at(part, p, value) for head, value in values.items()} if "life" in output else values
+        lives = {head: life_at(part, p, value) for head, value in values.items()} if is_life(output) else values
         rows.append({"Design point": capital(point_words(table, p)), **lives})
     name, unit = capital(str(part["output_name"].item())), head_unit(str(part["output_units"].item()))
     note = "Rolling cases; scatter of the study's factors alone, without that of the material."

@@ -25,6 +25,7 @@ from trackroller.roller.options import Options
 from trackroller.roller.requirements import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.roller.stages.models import bodies, model_of
 from trackroller.roller.stages.scene import Results, Scene, surface_tractions
+from trackroller.roller.stop import stops_at
 
 SIGN_CONVENTIONS = (
     "contact frame: x lateral, y in the rolling direction, z into the body; friction forces act on the roller; "
@@ -156,7 +157,7 @@ def contact(results: Results, options: Options) -> None:
     v["max_shear"] = results.by_contact(results.friction * patch.max_pressure)
     if model.full_sliding or results.scene.frictionless:
         v["stick_area_fraction"] = results.by_contact(np.where(results.good, 0.0, np.nan))
-    elif "contact" in options.outputs or "max_shear" in (options.stop_if or ""):
+    elif "contact" in options.outputs or "max_shear" in stops_at(options.stop_if):
         if model.knows_tractions:
             v["max_shear"] = results.full(_largest_shear(results))
         v["stick_area_fraction"] = _stick_share(results)

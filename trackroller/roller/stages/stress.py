@@ -10,7 +10,7 @@ from trackroller.roller.stages.ellipse_stresses import EllipseStresses
 from trackroller.roller.stages.grid_stresses import GridStresses
 from trackroller.roller.stages.patch_stresses import PatchStresses
 from trackroller.roller.stages.scene import Results
-from trackroller.roller.stop import PEAK, holds, parse_condition
+from trackroller.roller.stop import PEAK, compared, holds, parse_condition
 
 SECTION_SIDES, SECTION_DEPTH = 1.5, 2.0  # extent of the sections over the semi-axis and over the smaller semi-axis
 
@@ -24,11 +24,12 @@ def stop(results: Results, options: Options) -> None:
     """Mark the cases for which the condition of `stop_if` already holds; the following stages leave them out."""
     if options.stop_if is None:
         return
-    for comparison in sorted(parse_condition(options.stop_if), key=lambda part: part.name == PEAK):
-        if comparison.name == PEAK:  # the last ones, because its bound takes longest
+    for comparison in sorted(parse_condition(options.stop_if), key=lambda part: compared(part) == PEAK):
+        name = compared(comparison)
+        if name == PEAK:  # the last ones, because its bound takes longest
             value = peak_bound(results, options)
         else:
-            value = results.regime.astype(float) if comparison.name == "regime" else results.in_mm(comparison.name)
+            value = results.regime.astype(float) if name == "regime" else results.in_mm(name)
         results.stopped |= holds(comparison, value, results.scene.table)
 
 
