@@ -147,9 +147,9 @@ def test_stop_before_stresses_by_pressure_or_regime():
 
 
 def test_a_condition_may_name_a_contact_or_a_body():
-    """Contact 1 is pressed harder than contact 2, and a roller of PA6 is weaker than its guide."""
+    """Contact 2 is pressed harder than contact 1, and a roller of PA6 is weaker than its guide."""
     pressure = float(solve_sliding(tr.Case()).max_pressure.mean())
-    for contact, stopped in ((1, 1), (2, 0)):
+    for contact, stopped in ((1, 0), (2, 1)):
         assert solve_sliding(tr.Case(), stop_if=f"max_pressure_{contact} > {pressure}").stopped == stopped
     weak = {"roller_material": "PA6", "radial_force": -800.0}
     for name, stopped in (("peak_stress", 1), ("peak_stress_roller", 1), ("peak_stress_guide", 0)):
