@@ -10,7 +10,7 @@ import math
 import numpy as np
 import pytest
 from reference_cases import solve_sliding
-from trackroller.roller.stages.case import solved_of
+from trackroller.roller.stages.outcome import solved_of
 
 import trackroller as tr
 from trackroller.damage.sn_curve import SNCurve, segments

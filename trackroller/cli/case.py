@@ -61,13 +61,17 @@ def case_of(path: Path | None, words: list[str] | None) -> tuple[Case, dict[str,
         remedy = f"Write --set {path}: each key has a --set of its own."
         raise InputError("case file", str(path), "the path of a file", remedy, "does not exist")
     text, given = "" if path is None else read_text(path, "case file"), settings_of(words)
-    if path is None and not given:
-        first = ", ".join(with_unit(name, value) for name, value in LASTING.items())
-        print_line(f"No case was given. This is the roller with which the live page begins: {first}.")
     values = parse_mapping(text, "case file") if path is not None else {} if given else dict(LASTING)
     named = {*given, *(ALIASES.get(name, name) for name in given)}
     with errors_by_line(text, named, aliases=ALIASES), files_beside(path):
         return checked_case(overridden(values, given))
+
+
+def tell_start(path: Path | None, words: list[str] | None) -> None:
+    """Print on stderr which roller is solved where neither a case file nor --set words were given."""
+    if path is None and not words:
+        first = ", ".join(with_unit(name, value) for name, value in LASTING.items())
+        print_line(f"No case was given. This is the roller with which the live page begins: {first}.")
 
 
 def tell_doubts(case: Case) -> None:
@@ -222,6 +226,7 @@ def solve_and_tell(  # noqa: PLR0913 - one argument for each option of the comma
     plain = as_json or (target is not None and not book) or "outputs" in options
     more: dict[str, Any] = {"shortcuts": False} if no_shortcuts else {}
     more |= _options(given, options, limits, page is not None, plain)
+    tell_start(case, settings)
     dataset = solve_case(given, options, beside, **more)
     if target is not None:
         _write_roller(dataset, target, book)
@@ -251,6 +256,7 @@ def _find_and_tell(
         lacking, example = ("--find", "axial_force") if name is None else ("--for", "'max_pressure < 900'")
         raise InputError(lacking, "", "both --find and --for", f"For example {lacking} {example}.", "is missing")
     case, options, _ = case_of(path, settings)
+    tell_start(path, settings)
     tell_doubts(case)
     from trackroller.roller.find import find  # heavy: xarray and dask
 
@@ -314,6 +320,7 @@ def run_wear(
     target = None if out is None else writable_data(out)
     page = None if report is None else writable_page(report)
     new, options, beside = case_of(case, settings)
+    tell_start(case, settings)
     tell_doubts(new)
 
     from trackroller.report.numbers import on_duty

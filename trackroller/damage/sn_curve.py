@@ -241,11 +241,11 @@ class SNCurve:
         The scatter is log-normal (DIN 50100:2016). With the standard normal deviate u of the probability, lg N shifts
         by u lg(T_N)/2.563 and lg sigma_D by u lg(T_S)/2.563.
         """
-        from scipy.special import ndtri  # heavy, and planning reads only the declarations of the limits
-
         _, limit, _, knee = self._points
         if not np.any(np.asarray(self.failure_probability) != 0.5):
             return limit, knee
+        from scipy.special import ndtri  # heavy, and most curves hold for a failure probability of 50 %
+
         t_n, t_s = self.scatter_ranges
         deviate = ndtri(np.asarray(self.failure_probability, dtype=float)) / DEVIATES_10_TO_90
         fall = t_s**deviate

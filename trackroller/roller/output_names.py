@@ -12,15 +12,17 @@ import re
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from types import MappingProxyType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
-import xarray as xr
 
 from trackroller.damage.limit import Limit
 from trackroller.numerics.variable import BODIES, Variable
 from trackroller.parameters import LIMITS, PARAMETERS
 from trackroller.roller.dataset import VARIABLES
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 CONTACTS = ("1", "2")
 PLACES = ("body", "contact", "limit")  # dimensions of a variable that a name can give, in the order of a name
