@@ -10,7 +10,6 @@ import math
 import numpy as np
 import pytest
 from reference_cases import solve_sliding
-from trackroller.roller.stages.outcome import solved_of
 
 import trackroller as tr
 from trackroller.damage.sn_curve import SNCurve, segments
@@ -18,6 +17,7 @@ from trackroller.errors import InputError
 from trackroller.materials import add_material, builtin_database, load_database
 from trackroller.materials.tables import material_details
 from trackroller.roller.case import to_table
+from trackroller.roller.stages.outcome import solved_of
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 

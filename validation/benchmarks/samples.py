@@ -47,7 +47,7 @@ def geometry_study(n: int, seed: int = 2) -> list[tr.Case]:
 
 
 def random_designs(n: int, seed: int) -> list[tr.Case]:
-    """Return n random rollers: all shapes, tracks, frictions and pairs of the paper's materials that rollers come in."""
+    """Return n random rollers of all shapes, tracks and frictions, and of all pairs of the paper's materials."""
     rng = np.random.default_rng(seed)
     names = PUBLISHED  # a material that is added changes no design
     found = []
