@@ -8,11 +8,13 @@ import numpy as np
 import xarray as xr
 
 from trackroller.report.figures import style
+from trackroller.report.figures.panels import legend
 from trackroller.report.numbers import rounded
 from trackroller.report.words.carriage import worst_place
 
 LONGEST = 0.3  # of the size of the carriage: the arrow of the largest force
 APART = 0.45  # of the smallest distance between rollers, so that the arrows of a pair do not meet
+ROOM = 0.55  # of the width of a view, right of the last roller: for its name and forces
 VIEWS = (("from the side", 0, 2), ("from above", 0, 1))  # axes of the picture
 
 
@@ -34,34 +36,42 @@ def views(ds: xr.Dataset) -> style.Drawn:
     axial = own["axial_force"].values[:, None] * ds["roller_axis"].values
     size = max(float(np.ptp(at, axis=0).max()), 1.0)
     gaps = np.linalg.norm(at[:, None] - at[None], axis=2)
-    longest = min(LONGEST * size, APART * float(np.min(gaps[gaps > 0], initial=np.inf)))
-    scale = longest / max(float(np.abs(radial).max()), float(np.abs(axial).max()), 1e-9)
+    longest = min(LONGEST * size, APART * float(np.min(gaps[gaps > 0], initial=np.inf))), LONGEST * size
+    scales = [
+        most / max(float(np.linalg.norm(force, axis=1).max()), 1e-9)
+        for most, force in zip(longest, (radial, axial), strict=True)
+    ]
     figure, panels = style.panels(f"{ds.attrs['title']}: forces of the rollers on their rails, {case}", 78, 2)
     for axes, (words, across, up) in zip(panels, VIEWS, strict=True):
-        axes.plot(*at[:, [across, up]].T, "o", color="0.35", ms=9, mfc="white", label="roller")
+        axes.plot(*at[:, [across, up]].T, "o", color="0.35", ms=9, mfc="white", ls="none", label="roller")
         masses = ds["mass_at"].values
         axes.plot(*masses[:, [across, up]].T, "D", color="0.35", ms=4, label="mass")
-        for colour, forces, label in zip(style.PAIR, (radial, axial), ("radial", "axial"), strict=False):
-            _arrows(axes, at[:, [across, up]], scale * forces[:, [across, up]], colour, label)
+        for colour, scale, forces in zip(style.PAIR, scales, (radial, axial), strict=False):
+            _arrows(axes, at[:, [across, up]], scale * forces[:, [across, up]], colour)
         _name(axes, own, at[:, [across, up]], worst)
         axes.set(xlabel="x, forward [mm]", ylabel=f"{'z, up' if up == 2 else 'y, left'} [mm]", title=words)
         axes.set_aspect("equal", adjustable="datalim")
-        axes.margins(0.25)
-    panels[0].legend(loc="best", fontsize=7)
+        axes.margins(0.2)
+        axes.update_datalim([(float(at[:, 0].max()) + ROOM * size, float(at[:, up].mean()))])
+        axes.autoscale_view()
+    looks = [("roller", {"marker": "o", "color": "0.35", "mfc": "white", "ls": "none"})]
+    looks.append(("mass", {"marker": "D", "color": "0.35", "ms": 4, "ls": "none"}))
+    looks += [(word, {"color": colour, "lw": 2}) for word, colour in zip(("radial", "axial"), style.PAIR, strict=False)]
+    legend(figure, looks, columns=4)
     caption = (
         f"Carriage from the side and from above in the load case {case}, the worst one of roller {worst}. Arrows are "
-        "the forces of the rollers on their rails; radial and axial force (N) stand beside each; diamonds are masses."
+        "the forces of the rollers on their rails, radial and axial ones to scales of their own; radial and axial force "
+        "(N) stand beside each; diamonds are masses."
     )
     return figure, style.FigureInfo("carriage", caption)
 
 
-def _arrows(axes: Any, at: np.ndarray, forces: np.ndarray, colour: str, label: str) -> None:
+def _arrows(axes: Any, at: np.ndarray, forces: np.ndarray, colour: str) -> None:
     """Draw the forces that are seen in a view as arrows from their rollers."""
     shown = np.linalg.norm(forces, axis=1) > 0
-    arrows = axes.quiver(
-        *at[shown].T, *forces[shown].T, angles="xy", scale_units="xy", scale=1, color=colour, width=0.008
+    axes.quiver(
+        *at[shown].T, *forces[shown].T, angles="xy", scale_units="xy", scale=1, color=colour, width=0.007, zorder=4
     )
-    arrows.set_label(label)
     axes.update_datalim((at + forces)[shown])
 
 
