@@ -60,8 +60,8 @@ def views(ds: xr.Dataset) -> style.Drawn:
     legend(figure, looks, columns=4)
     caption = (
         f"Carriage from the side and from above in the load case {case}, the worst one of roller {worst}. Arrows are "
-        "the forces of the rollers on their rails, radial and axial ones to scales of their own; radial and axial force "
-        "(N) stand beside each; diamonds are masses."
+        "the forces of the rollers on their rails, radial and axial ones to scales of their own; both forces (N) stand "
+        "beside each roller; diamonds are masses."
     )
     return figure, style.FigureInfo("carriage", caption)
 
