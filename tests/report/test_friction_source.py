@@ -20,6 +20,8 @@ FACTORS = {
     "axial_force": {"values": [0, 5, 10]},
 }
 
+KEYS = ("material_pair", "level", "value", "source", "placeholder")
+
 
 def solved(tmp_path=None, **changes):
     study = {"name": "mu", "base": {"friction_coefficient": None}, "factors": FACTORS, "contact_model": "sliding"}
@@ -41,7 +43,7 @@ def test_the_report_lists_every_coefficient_with_source_and_placeholder(tmp_path
     """Kept and unkept results record the same; the page names the guess beside what rests on it."""
     for found in (solved(), solved(tmp_path)):
         records = friction_records(found.data.attrs)
-        assert [tuple(r.values()) for r in records] == expected()
+        assert [tuple(r[key] for key in KEYS) for r in records] == expected()
         page = contents(found)
         table = next(t for t in page["materials"] if t.name == "friction")
         assert [row[2] for row in table.rows] == [value for _, _, value, _, _ in expected()]

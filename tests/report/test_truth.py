@@ -314,8 +314,8 @@ def sentences_of(seed):
         check_occurrence(raw, found, raw.regime == code, np.ones(raw.n, bool))
         said.append(found)
     for flag in results.flags:
-        found = occurrence(results, results.flagged(flag), flag, results.rolling)
-        check_occurrence(raw, found, raw.flags[flag], raw.rolling)
+        found = occurrence(results, results.flagged(flag), flag)
+        check_occurrence(raw, found, raw.flags[flag], np.ones(raw.n, bool))
         said.append(found)
     said += check_best(raw, results) if results.life else []
     outputs = ["peak_stress_roller", *(["roller_life_hours"] if results.life else [])]
