@@ -115,8 +115,7 @@ async function start() {
     group(OPEN[1], parameters(OPEN[1]), bodies, datalist),
     group(DRAWN, add("rail_diameter", rail), parameters(DRAWN), duty),
     group("Limits: what they need", [...grouped.keys()].filter((title) => ![...OPEN, DRAWN].includes(title)).flatMap(parameters)),
-    editor.node,
-    group("Model and conventions", options),
+    group("Materials, model and conventions", editor.node, options),
     group("Profiles, friction law, bearing, catalogue, head of the sheet", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
   );
 
