@@ -54,7 +54,9 @@ def views(ds: xr.Dataset) -> style.Drawn:
         axes.margins(0.2)
         axes.update_datalim([(float(at[:, 0].max()) + ROOM * size, float(at[:, up].mean()))])
         axes.autoscale_view()
-    looks = [("roller", {"marker": "o", "color": "0.35", "mfc": "white", "ls": "none"})]
+    looks: list[tuple[str, dict[str, Any]]] = [
+        ("roller", {"marker": "o", "color": "0.35", "mfc": "white", "ls": "none"})
+    ]
     looks.append(("mass", {"marker": "D", "color": "0.35", "ms": 4, "ls": "none"}))
     looks += [(word, {"color": colour, "lw": 2}) for word, colour in zip(("radial", "axial"), style.PAIR, strict=False)]
     legend(figure, looks, columns=4)
