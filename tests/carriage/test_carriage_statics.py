@@ -22,7 +22,7 @@ def solved(values):
 
 
 def test_four_equal_springs():
-    """P = F/4 +- F/2 (b/c) +- F/2 (a/d): the makers' formula of a load beside the middle."""
+    """P = F/4 +- F/2 (b/c) +- F/2 (a/d): makers' formula for a load off the centre."""
     ds = solved(cart(mass={"value": 100, "at": [30, 10, 50]}, rollers=rollers_below(stiffness=1e4)))
     f, wheelbase, gauge = 100 * G, 300, 80
     for name, (x, y) in SIDES.items():

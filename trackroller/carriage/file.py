@@ -21,6 +21,7 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.damage.catalogue import travel_km
 from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
@@ -82,9 +83,7 @@ class CatalogueRoller:
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
         """Return the life at load factors [1], BL/(0.03 + 0.97 LF)^2, or ^3 if it is lubricated [km]."""
-        with np.errstate(divide="ignore"):
-            whole = self.offset + (1 - self.offset) * np.asarray(load_factor)
-            return np.asarray(self.basic_life / whole ** (3 if self.lubricated else 2))
+        return travel_km(load_factor, self.basic_life, 3.0 if self.lubricated else 2.0, self.offset)
 
 
 @dataclass(frozen=True)

@@ -8,13 +8,11 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.carriage.file import Carriage, MountedRoller
+from trackroller.carriage.file import Carriage
 from trackroller.carriage.solve import cases_of
 from trackroller.errors import InputError, check_names
 from trackroller.parameters import OPTIONS
-from trackroller.roller.aliases import renamed
-
-LOADS = ("radial_force", "axial_force")
+from trackroller.roller.settings import LOADS, parts_for_spectrum
 
 
 def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
@@ -63,16 +61,10 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     if lifted:
         named = ", ".join(case.name for case in lifted)
         text += f" No block holds {100 * share:.4g} % of the travel, in which the roller is lifted: {named}."
-    head = {"name": f"{whole.name}-{name}", "description": text, "base": base_of(roller), "blocks": blocks}
+    base, options = parts_for_spectrum(roller.given)
+    head = {"name": f"{whole.name}-{name}", "description": text, "base": base, "blocks": blocks}
     duty = whole.duty if whole.duty is not None else roller.given.get("duty")
-    options = {key: roller.given[key] for key in OPTIONS if key in roller.given and "spectrum" in OPTIONS[key].files}
     return head | ({"duty": dict(duty)} if isinstance(duty, Mapping) else {}) | options
-
-
-def base_of(roller: MountedRoller) -> dict[str, Any]:
-    """Return the fields of a roller's file that describe the roller, without its loads, options and sheet."""
-    fields = {key: value for key, value in roller.given.items() if key not in (*OPTIONS, "duty", "sheet")}
-    return {key: value for key, value in renamed(fields).items() if key not in LOADS}
 
 
 def study_of(whole: Carriage, ds: xr.Dataset) -> dict[str, Any]:
@@ -89,7 +81,7 @@ def study_of(whole: Carriage, ds: xr.Dataset) -> dict[str, Any]:
     case, roller = cases_of(whole, ds)[i, j], whole.rollers[j]
     loads = {"velocity": _short(case.velocity), **{load: _short(getattr(case, load)) for load in LOADS}}
     free = "roller_profile_radius"
-    base = {key: value for key, value in base_of(roller).items() if key != free} | loads
+    base = {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key != free} | loads
     groove = float(getattr(case, free))
     closest = float(case.guide_profile_radius) * 1.05
     grooves = sorted({_short(groove), _short(-closest), _short(-1.5 * closest)}) if groove < 0 else [groove, 2 * groove]

@@ -84,15 +84,18 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     array([[-98.07, -98.07, -98.07, -98.07]])
     """
     whole = source if isinstance(source, Carriage) else load_carriage(source)
-    ds = forces_of(whole)
-    ds = ds.assign(_margins(springs_of(whole), [loads_of(whole, case) for case in whole.cases]))
+    springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
+    ds = _solution(whole, springs, loads).assign(_margins(springs, loads))
     return with_lives(ds, whole) if lives and all(roller.case is not None for roller in whole.rollers) else ds
 
 
 def forces_of(whole: Carriage) -> xr.Dataset:
     """Return the forces of the rollers in each load case, without margins and lives; see `solve_carriage`."""
-    springs = springs_of(whole)
-    loads = [loads_of(whole, case) for case in whole.cases]
+    return _solution(whole, springs_of(whole), [loads_of(whole, case) for case in whole.cases])
+
+
+def _solution(whole: Carriage, springs: Springs, loads: list[Loads]) -> xr.Dataset:
+    """Return the forces of the rollers as a data set with places, load cases and conventions."""
     found = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
     variables = _forces(whole, found, loads)
     variables |= _of_catalogue(whole, variables) | _places(whole)

@@ -267,7 +267,7 @@ def _balanced(
 
 
 def is_determinate(springs: Springs, found: Equilibrium) -> bool:
-    """Return whether the forces of an equilibrium follow from the sums of forces and moments alone."""
+    """Return whether the sums of forces and moments give all forces of the rollers, whatever their stiffness is."""
     rows = np.vstack([springs.radial[found.loaded], springs.axial[springs.locating & found.loaded]])
     return rows.size == 0 or np.linalg.matrix_rank(rows, tol=1e-9) == len(rows)
 

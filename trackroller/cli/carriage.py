@@ -22,12 +22,15 @@ def run_carriage(
     page = None if report is None else writable_page(report)
     from trackroller.carriage.file import load_carriage
     from trackroller.carriage.files import spectrum_of, study_of
-    from trackroller.carriage.solve import solve_carriage  # heavy: scipy
+    from trackroller.carriage.solve import forces_of, solve_carriage  # heavy: scipy
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
 
     whole = load_carriage(file)
-    ds = solve_carriage(whole, lives=spectrum is None or page is not None)
+    if spectrum is not None and page is None and not as_json:
+        ds = forces_of(whole)  # a spectrum needs neither margins nor lives
+    else:
+        ds = solve_carriage(whole, lives=spectrum is None or page is not None)
     if target is not None and spectrum is not None:
         write_text(target, write_yaml(spectrum_of(whole, ds, spectrum)))
     elif target is not None and study:

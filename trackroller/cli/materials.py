@@ -50,39 +50,17 @@ def _print_rows(rows_of: Callable[..., list[dict[str, str]]], *names: str) -> No
 
 def _points_of(path: Path) -> dict[str, Any]:
     """Return the points of an S-N curve in a table with the columns amplitude and cycles, and their source."""
-    from trackroller.errors import Collector, InputError
-    from trackroller.files import sha256
-    from trackroller.numerics.cells import split_head
-    from trackroller.study.file.user_table import read_table
-
-    wrong = Collector()
-    table = read_table(path, "sn_points", "point", wrong)
-    wrong.check()
-    places = {split_head(head)[0]: (j, split_head(head)[1]) for j, head in enumerate(table.names)}
-    if set(places) != {"amplitude", "cycles"}:
-        remedy = "Name the columns so, the amplitude with its unit in brackets, and remove other columns."
-        given, allowed = ", ".join(table.names), "the columns amplitude [MPa] and cycles"
-        raise InputError("sn_points", given, allowed, remedy).at(path, table.head)
-    points = []
-    for number, cells in table.lines.items():
-        try:
-            points.append([_number(cells[places[name][0]], name, places[name][1]) for name in ("amplitude", "cycles")])
-        except InputError as error:
-            raise error.at(path, number) from None
-    return {"value": points, "source": f"{path.name}, SHA-256 {sha256(path)}"}
-
-
-def _number(cell: str, name: str, unit: str) -> float:
-    """Return the number of a cell in MPa or as cycles; the head of its column or the cell itself states the unit."""
     from trackroller.errors import InputError
-    from trackroller.numerics.numbers import number_or_nan
-    from trackroller.numerics.units import in_unit, split_quantity
+    from trackroller.fit.table import LEAST, from_file
 
-    wanted = "MPa" if name == "amplitude" else "-"
-    value = number_or_nan(cell, wanted, name)
-    if value != value:
-        raise InputError(name, cell, "a number", "Correct the cell.")
-    return value if split_quantity(cell) or not unit else in_unit(value, unit, wanted, name)
+    table, head = from_file(path, field="sn_points", row="point")
+    names = ("amplitude", "cycles")
+    if set(table.rows[0]) != set(names):
+        remedy = "Name the columns so, the amplitude with its unit in brackets, and remove other columns."
+        given, allowed = ", ".join(table.rows[0]), "the columns amplitude [MPa] and cycles"
+        raise InputError("sn_points", given, allowed, remedy).at(path, head)
+    points = [[table.number(row, name, LEAST) for name in names] for row in table]
+    return {"value": points, "source": f"{path.name}, SHA-256 {table.digest}"}
 
 
 @materials.command("add")

@@ -12,6 +12,31 @@ from trackroller.numerics.variable import LIFE
 LAWS = ("dry", "lubricated", "cubic")
 
 
+def travel_km(
+    load_factor: np.ndarray | float, basic_life: np.ndarray | float, power: float, offset: float = 0.03
+) -> np.ndarray:
+    """Return the kilometres that a load factor LF allows, BL/(c + (1 - c) LF)^power.
+
+    Parameters
+    ----------
+    load_factor : numpy.ndarray or float
+        Sum of the loads over their limits [1].
+    basic_life : numpy.ndarray or float
+        Kilometres BL at a load factor of 1 [km].
+    power : float
+        Exponent [1]: 2 for dry and 3 for lubricated rollers.
+    offset : float
+        Load factor c that counts without any load [1]; 0 gives BL/LF^power.
+
+    Returns
+    -------
+    numpy.ndarray
+        Kilometres, inf without any load.
+    """
+    with np.errstate(divide="ignore"):
+        return np.asarray(basic_life * (offset + (1.0 - offset) * np.asarray(load_factor)) ** -power)
+
+
 def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarray) -> np.ndarray:
     """Return the kilometres that a load factor allows.
 
@@ -30,10 +55,8 @@ def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarra
     numpy.ndarray
         Kilometres, (n,); NaN without a law.
     """
-    mixed = 0.03 + 0.97 * load_factor
-    with np.errstate(divide="ignore"):
-        factors = np.select([law == word for word in LAWS], [mixed**-2.0, mixed**-3.0, load_factor**-3.0], np.nan)
-    return np.asarray(basic_life * factors)
+    lives = [travel_km(load_factor, basic_life, *one) for one in ((2.0,), (3.0,), (3.0, 0.0))]
+    return np.asarray(np.select([law == word for word in LAWS], lives, np.nan))
 
 
 def evaluate(solved: SolvedRollers) -> Results:

@@ -199,7 +199,10 @@ class SNCurve:
         return np.asarray(np.where(np.isfinite(by_points), by_points, to_strength))
 
     def _of_points(self, i: int) -> tuple[np.ndarray, np.ndarray]:
-        """Return start [1] and exponent [1] of segment i of the lines by points, NaN where there is none."""
+        """Return the stress over sigma_D at which segment i of each line begins, and its exponent [1].
+
+        NaN for a line without this segment.
+        """
         if self.segments is None:
             return np.asarray(np.nan), np.asarray(np.nan)
         return self.segments[..., i, 0], self.segments[..., i, 1]

@@ -293,6 +293,11 @@ class Line:
         with np.errstate(divide="ignore"):
             return np.where(fails > probability, ndtri(np.minimum(probability / np.maximum(fails, LEAST), 1.0)), np.inf)
 
+    def _life_at_level_0(self, others: np.ndarray, log_stress: float, probability: float) -> np.ndarray:
+        """Return ln N as `log_life` does for a line whose level is 0; `others` are its further fitted values."""
+        own = self.values(np.concatenate([np.zeros((*others.shape[:-1], 1)), others], axis=-1))
+        return self.log_life(own, log_stress, probability)
+
     def interval_of_life(self, log_stress: float, probability: float, confidence: float = 0.9) -> Interval:
         """Return the interval of ln N at which a share of specimens has failed under a stress.
 
@@ -308,8 +313,7 @@ class Line:
 
         def level(value: float, others: np.ndarray) -> np.ndarray:
             """Return the levels that give the life `value`, with the other values as they are."""
-            own = self.values(np.concatenate([np.zeros((*others.shape[:-1], 1)), others], axis=-1))
-            return value - self.log_life(own, log_stress, probability)
+            return value - self._life_at_level_0(others, log_stress, probability)
 
         best = float(self.log_life(self.best, log_stress, probability))
         if not math.isfinite(best):
@@ -330,8 +334,8 @@ class Line:
         """
 
         def level(value: float, others: np.ndarray) -> np.ndarray:
-            own = self.values(np.concatenate([np.zeros((*others.shape[:-1], 1)), others], axis=-1))
-            return log_cycles - self.log_life(own, value, probability)
+            """Return the levels that give `log_cycles` under the stress `value`, with the other values as they are."""
+            return log_cycles - self._life_at_level_0(others, value, probability)
 
         best = self.best
         deviate = math.exp(float(best.log_scatter)) * float(ndtri(probability))

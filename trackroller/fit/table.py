@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -10,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.errors import Collector, InputError, unknown_name
-from trackroller.files import read_bytes
+from trackroller.files import noted_reads
 from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.plain import rows_of
@@ -134,7 +133,7 @@ def read_tests(
         For a file that is not readable, a misspelt or missing column, and an empty table.
     """
     if isinstance(table, (str, Path)):
-        found, place = _from_file(Path(table), optional)
+        found, place = from_file(Path(table), optional)
     else:
         found, place = _from_rows(table), 0
     names = list(dict.fromkeys(name for row in found.rows for name in row))
@@ -163,13 +162,26 @@ def _placed(error: InputError, table: TestTable, line: Any) -> InputError:
     return error.at(table.path, line) if table.path is not None else error
 
 
-def _from_file(path: Path, optional: Collection[str]) -> tuple[TestTable, int]:
+def from_file(
+    path: Path, optional: Collection[str] = (), field: str = FIELD, row: str = "test"
+) -> tuple[TestTable, int]:
+    """Return the rows of a CSV file or a workbook, whatever its columns are, and the line of its head.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    optional : collection of str
+        Names of columns whose cells may be empty.
+    field, row : str
+        Words of messages for the table and for a row.
+    """
     wrong = Collector()
-    found = read_table(path, FIELD, "test", wrong, optional=optional)
+    with noted_reads() as read:
+        found = read_table(path, field, row, wrong, optional=optional)
     wrong.check()
     rows = [dict(zip(found.names, line, strict=True)) for line in found.lines.values()]
-    digest = hashlib.sha256(read_bytes(path, FIELD)).hexdigest()
-    return TestTable(rows, list(found.lines), path, digest), found.head
+    return TestTable(rows, list(found.lines), path, read[path.resolve()][1]), found.head
 
 
 def _from_rows(table: Any) -> TestTable:

@@ -37,9 +37,10 @@ def factor_roles(results: Results) -> dict[str, str]:
 
 
 def of_one_model(results: Results, rows: np.ndarray, model: str = "") -> np.ndarray:
-    """Return those of the rows, shape (n,) bool, that one contact model solved, at one level of each option.
+    """Leave out the rows that another contact model solved, or with another level of an option; shape (n,) bool.
 
-    The level is that of `Results.held_level`, which for the contact model is the most exact one unless it is named.
+    Unless `model` names it, the contact model is the most exact one; other options have the level of
+    `Results.held_level`.
     """
     kept = rows.copy()
     for option in (n for n in results.factors if n in OPTION_FACTORS):

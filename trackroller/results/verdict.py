@@ -177,6 +177,7 @@ class Verdict:
     not_checked : limits that were not checked, and `guide` if its hours are not known
     unconstrained : candidate that would be named without the constraints of the study; None if that is the same one
     by_model : candidate that each other contact model of the study would name
+    longest : row with the longest life, where no row meets the target and designs do not repeat; otherwise -1
     """
 
     kind: str
@@ -197,6 +198,7 @@ class Verdict:
     not_checked: tuple[str, ...] = ()
     unconstrained: Candidate | None = None
     by_model: Mapping[str, Candidate] = field(default_factory=dict)
+    longest: int = -1
 
     @property
     def best(self) -> tuple[Candidate, ...]:
@@ -249,9 +251,11 @@ def verdict_of(results: Results) -> Verdict | None:
     if not candidates.comparable:
         reach: np.ndarray = np.zeros(len(results.table), dtype=bool)
         turns = _given(cases, reach)
-        if results.config.analysis.target and not (may := _targeted(cases)[2])[cases.own].any():
+        required, _, may = _targeted(cases)
+        if results.config.analysis.target and not may[cases.own].any():
             fails = _misses(cases, cases.own & ~may, cases.own, np.where(cases.reason == "", cases.first, cases.reason))
-            return Verdict("none", goal, (), _targeted(cases)[0], why="conditions", fails=fails, **_shared(cases))
+            facts = {"required": required, "fails": fails, "longest": _longest(candidates), **_shared(cases)}
+            return Verdict("none", goal, (), why="conditions", **facts)
         unknown = Verdict("cannot_tell", goal, (), why="conditions", **_shared(cases))
         return replace(unknown, kind="give", turns=turns, rest=unknown) if turns else unknown
     reach = cases.out_of_reach
@@ -267,6 +271,14 @@ def verdict_of(results: Results) -> Verdict | None:
     if traded is not None and found.kind in ("build", "a_or_b", "measure"):
         found = replace(found, kind="give", turns=(Turn("requirement"),), rest=found, tradeoff=traded)
     return replace(found, unconstrained=_unconstrained(cases, found), by_model=_by_model(cases))
+
+
+def _longest(candidates: Candidates) -> int:
+    """Return the usable case with the longest life, -1 without one or in a study without lives."""
+    known = candidates.usable
+    if not (candidates.rising and known.any()):
+        return -1
+    return int(np.argmax(np.where(known, candidates.results.column(candidates.goal[0]), -np.inf)))
 
 
 NAMES = ("build", "lasts", "a_or_b", "measure", "none")  # kinds of verdicts whose first candidate is named

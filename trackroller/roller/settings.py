@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from trackroller.errors import Collector, InputError, check_names
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
-from trackroller.roller.aliases import ALIASES, RADII
+from trackroller.roller.aliases import ALIASES, RADII, renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.fields import other_than_default
@@ -57,6 +57,28 @@ def with_beside(ds: xr.Dataset, beside: Mapping[str, Any]) -> xr.Dataset:
 def sheet_of(ds: xr.Dataset) -> dict[str, str]:
     """Return the texts at the head of the sheet of a result; {} if none were given."""
     return json.loads(ds.attrs.get("sheet", "{}"))
+
+
+LOADS = ("radial_force", "axial_force")
+
+
+def parts_for_spectrum(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return what a load spectrum takes of a roller's file.
+
+    Parameters
+    ----------
+    given : mapping
+        The file.
+
+    Returns
+    -------
+    tuple of dict
+        The fields that describe the roller, without its loads, options, duty and sheet; and the options that a
+        spectrum file takes.
+    """
+    fields = {key: value for key, value in given.items() if key not in (*OPTIONS, "duty", "sheet")}
+    options = {key: given[key] for key, option in OPTIONS.items() if key in given and "spectrum" in option.files}
+    return {key: value for key, value in renamed(fields).items() if key not in LOADS}, options
 
 
 def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, Any]]:

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from trackroller.damage import LIMITS
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
@@ -205,20 +203,13 @@ class _Words:
 
     def nowhere(self) -> Sentence:
         """Say that no case of a study whose designs cannot be compared meets the target, and what the best reaches."""
-        results, goal = self.results, self.found.goal
-        known = self.candidates.usable
-        value, best = results.column(goal[0]), -1
-        if self.found.goal_rises and known.any():
-            best = int(np.argmax(np.where(known, value, -np.inf)))
-        fails = self.found.fails or Misses(0, 0, {})
-        row = results.table.iloc[best]
-        values = (
-            {"lives": quantity(float(value[best]), goal[2]), "name": design_words(self.candidates, row)}
-            if best >= 0
-            else {}
-        )
-        shown = {"lives": "", "name": ""} | values
-        return say("verdict", "nowhere", cases=fails.of, target=self.target(), why=_reasons(fails), **shown)
+        found, lives, name = self.found, "", ""
+        if found.longest >= 0:
+            lives = quantity(float(self.results.column(found.goal[0])[found.longest]), found.goal[2])
+            name = design_words(self.candidates, self.results.table.iloc[found.longest])
+        fails = found.fails or Misses(0, 0, {})
+        values = {"target": self.target(), "why": _reasons(fails), "lives": lives, "name": name}
+        return say("verdict", "nowhere", cases=fails.of, **values)
 
     def by_sample(self) -> Sentence:
         """Say that the interval of the sampled conditions holds the target."""

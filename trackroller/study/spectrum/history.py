@@ -19,13 +19,12 @@ from trackroller.errors import Collector, InputError, listing
 from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
-from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.aliases import renamed
+from trackroller.roller.settings import LOADS, parts_for_spectrum
 from trackroller.study.file.user_table import UserTable, read_table
 
 COLUMNS = {"time": "s", "distance": "m", "radial_force": "N", "axial_force": "N", "velocity": "m/min", "speed": "m/s"}
-LOADS = ("radial_force", "axial_force")
 NO_RAINFLOW = (
     "Blocks hold the travel at each level of load: each revolution is one overrolling. Rainflow counting pairs turning "
     "points between overrollings and does not apply."
@@ -89,19 +88,18 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
         blocks.append(block | ({"velocity": block["distance"] / hours / 60} if hours > 0 else {}))
     blocks.sort(key=lambda block: block["radial_force"])
     named = [{"name": f"level {i + 1}"} | {k: float(f"{v:.8g}") for k, v in b.items()} for i, b in enumerate(blocks)]
-    fields = {key: value for key, value in given.items() if key not in (*SOLVE_OPTIONS, "duty", "sheet", *LOADS)}
+    fields, options = parts_for_spectrum(roller)
     if any("velocity" in block for block in named):
         fields.pop("velocity", None)
-    kept = ("duty", *(name for name, option in SOLVE_OPTIONS.items() if "spectrum" in option.files))
-    options = {name: given[name] for name in kept if name in given}
+    duty = {"duty": given["duty"]} if "duty" in given else {}
     lines = f"{len(log.travel):,} lines of {path.name} in {len(named)} levels of load"
     log.notes.insert(0, f"{lines}: {log.travel.sum() / 1e3:.4g} km in {log.hours.sum():.4g} h.")
     head = {"name": path.stem, "description": " ".join([*log.notes, NO_RAINFLOW])}
-    return head | {"base": fields, "blocks": named} | options, log.notes
+    return head | {"base": fields, "blocks": named} | duty | options, log.notes
 
 
 def read_log(path: Path, velocity: float) -> Log:
-    """Return a log; see `spectrum_of_log`. `velocity` [m/min] holds where the log has none."""
+    """Read a log; see `spectrum_of_log`. `velocity` [m/min] is that of a log without a column of speeds."""
     wrong = Collector()
     table = read_table(path, "--from", "line", wrong)
     wrong.check()

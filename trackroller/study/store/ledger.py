@@ -129,7 +129,7 @@ class Ledger:
 
     @property
     def hours(self) -> float:
-        """Return the time of solving, of all runs together [h]."""
+        """Return the hours that all runs together spent on solving."""
         return float(self.states.attrs["seconds"]) / 3600
 
     def find(self, wanted: np.ndarray) -> np.ndarray:
