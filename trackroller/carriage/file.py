@@ -27,6 +27,7 @@ from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
 from trackroller.numerics.units import split_quantity
+from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
 from trackroller.roller.duty import checked_duty
@@ -232,6 +233,52 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
         return carriage_of({"name": path.stem} | values)
 
 
+def written_out(source: Path | str | Mapping[str, Any], field: str = "carriage") -> dict[str, Any]:
+    """Return the keys of a carriage file with the values of its rollers in place of their files.
+
+    A study keeps them, so that it can be solved without these files. Values of a roller that its file does not name
+    are left out.
+
+    Parameters
+    ----------
+    source : pathlib.Path, str or mapping
+        The file, or a mapping with its keys.
+    field : str
+        Name of the entry that holds the path, for messages.
+
+    Raises
+    ------
+    InputError
+        As `load_carriage`; or if a roller states its material in its own file, because a study names materials.
+    """
+    values = mapping_of(source)
+    if not isinstance(values, Mapping):
+        path = find_beside(str(source), field)
+        text = read_text(path, "carriage file")
+        with errors_by_line(text, file=str(path), aliases=ALIASES), files_beside(path):
+            values = {"name": path.stem} | parse_mapping(text, str(path))
+            return written_out(values, field)
+    whole, out = carriage_of(values), dict(values)
+    out["rollers"] = {
+        roller.name: dict(entry) | ({} if roller.case is None else {"roller": _stated(roller)})
+        for roller, entry in zip(whole.rollers, values["rollers"].values(), strict=True)
+    }
+    return {key: value for key, value in out.items() if value is not None}
+
+
+def _stated(roller: MountedRoller) -> dict[str, Any]:
+    """Return what the file of a roller states, as values of YAML."""
+    assert roller.case is not None
+    given = {name: v for name, v in roller.case.as_dict().items() if name not in roller.case.not_given}
+    for name in MATERIAL_FIELDS:
+        if not isinstance(given.get(name, ""), str):
+            remedy = "Add it to the database by `trackroller materials add`, and write its name."
+            where = f"rollers.{roller.name}.roller.{name}"
+            raise InputError(where, "a mapping", "the name of a material", remedy, "is no name")
+    plain = {name: value for name, value in given.items() if value is not None and value != ""}
+    return plain | {key: list(v) if isinstance(v, tuple) else v for key, v in roller.options.items()}
+
+
 def carriage_of(values: Mapping[str, Any]) -> Carriage:
     """Return the carriage of a mapping with the keys of a file; see `load_carriage`."""
     wrong = Collector()
@@ -260,7 +307,7 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         if values.get("preload") is not None:
             made["preloads"] = _preloads(values["preload"], made["rollers"])
     with wrong.part():
-        _check_curves(made["cases"], made["rollers"])
+        check_curves(made["cases"], made["rollers"])
     wrong.check()
     return Carriage(str(values.get("name", "carriage")), description=str(values.get("description", "")), **made)
 
@@ -549,7 +596,7 @@ _OF_CASE: dict[str, Callable[[Any, str], Any]] = {
 }
 
 
-def _check_curves(cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]) -> None:
+def check_curves(cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]) -> None:
     """Refuse a curve whose centre lies inside the carriage."""
     reach = max(float(np.linalg.norm(roller.at[:2])) for roller in rollers)
     for case in cases:

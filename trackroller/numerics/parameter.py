@@ -63,7 +63,8 @@ class Parameter:
     @property
     def units(self) -> str:
         """Return the unit as the CF conventions write it."""
-        return {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1"}.get(self.unit, self.unit)
+        written = {"deg": "degree", "-": "1", "m/min": "m min-1", "1/h": "h-1", "m/s": "m s-1", "m/s2": "m s-2"}
+        return written.get(self.unit, self.unit)
 
     def allowed(self) -> str:
         """Return what is allowed, in words."""

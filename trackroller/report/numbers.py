@@ -10,7 +10,8 @@ from contextvars import ContextVar
 from typing import Any
 
 from trackroller.errors import listing
-from trackroller.parameters import MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters import MAPPING_FIELDS
+from trackroller.parameters.of_carriage import long_name_of, parameter_of
 from trackroller.roller.duty import duty_of, years
 from trackroller.study.design.levels import NAMED, short
 
@@ -255,7 +256,7 @@ def long_name(name: str) -> str:
     """Name a factor in running text."""
     if name == "normal":  # the word "normal" alone would not be understood
         return "normal problem"
-    return PARAMETERS[name].long_name if name in PARAMETERS else plain(name)
+    return long_name_of(name)
 
 
 def symbol(text: str) -> str:
@@ -269,10 +270,10 @@ def symbol(text: str) -> str:
 
 def factor_label(name: str) -> str:
     """Label the axis of a factor: long name, symbol, unit."""
-    if name not in PARAMETERS:
+    parameter = parameter_of(name)
+    if parameter is None:
         return capital(plain(name))
-    parameter = PARAMETERS[name]
-    return with_unit(f"{capital(parameter.long_name)} {symbol(parameter.symbol)}".rstrip(), parameter.unit)
+    return with_unit(f"{capital(long_name(name))} {symbol(parameter.symbol)}".rstrip(), parameter.unit)
 
 
 def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> str:
@@ -290,9 +291,10 @@ def level_text(name: str, value: Any, unit: bool = True, words: bool = True) -> 
         if math.isinf(value):
             return "straight"
         return f"{'outer' if value > 0 else 'inner'} curve {number(abs(value))} mm"
-    if not unit or name not in PARAMETERS or PARAMETERS[name].unit == "-":
+    parameter = parameter_of(name)
+    if not unit or parameter is None or parameter.unit == "-":
         return number(value)
-    return f"{number(value)} {unit_text(PARAMETERS[name].unit)}".replace(" °", "°")
+    return f"{number(value)} {unit_text(parameter.unit)}".replace(" °", "°")
 
 
 def setting(name: str, value: Any) -> str:

@@ -17,7 +17,8 @@ import xarray as xr
 
 from trackroller.damage.verdict import STATES
 from trackroller.errors import InputError
-from trackroller.parameters import PARAMETERS, REGIME_LABELS
+from trackroller.parameters import REGIME_LABELS
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
 from trackroller.report.numbers import plain, unit_text
@@ -139,8 +140,8 @@ def unit_of(name: str) -> str:
     >>> unit_of("radial_force"), unit_of("peak_stress_roller"), unit_of("regime")
     ('N', 'MPa', '-')
     """
-    if name in PARAMETERS:
-        return PARAMETERS[name].unit
+    if (parameter := parameter_of(name)) is not None:
+        return parameter.unit
     if name not in PARTS and name.replace("years", "hours") in PARTS:
         return "year"
     return unit_text(PARTS[name].variable.units).replace("–", "-") if name in PARTS else "-"

@@ -12,6 +12,7 @@ from trackroller.errors import InputError, nearest
 from trackroller.methods.factor import readable
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.expressions import condition
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.study.outputs import flat, outputs, regimes
 
 Column = tuple[np.ndarray, str, str]  # values (n,), units, long name
@@ -44,7 +45,7 @@ def quantity_of(
     if name in PARAMETERS or name in MATERIAL_FIELDS or (given and (name in ds.coords or name in factors)):
         rows = int(np.prod([ds.sizes[d] for d in dims]))
         values = readable(flat(ds, name, dims) if given else _constant(base, name, rows))
-        known = PARAMETERS.get(name)
+        known = parameter_of(name)
         return values, known.units if known else "", known.long_name if known else name.replace("_", " ")
     try:
         output = outputs(ds, dims, [name], REGIMES[:3], scale="natural", unlimited=True)[0]

@@ -12,7 +12,8 @@ from trackroller.methods import Design
 from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.intervals import constant
 from trackroller.methods.method import Estimates
-from trackroller.parameters import PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.parameters.of_carriage import long_name_of
 from trackroller.study.outputs import Output
 
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
@@ -222,5 +223,5 @@ def stacked(results: list[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
 
 
 def factor_name(name: str) -> str:
-    """Return the long name of a parameter, or the name of another factor with spaces."""
-    return PARAMETERS[name].long_name if name in PARAMETERS else name.replace("_", " ")
+    """Return the long name of a parameter or of a field of a carriage, or the name of another factor with spaces."""
+    return long_name_of(name)

@@ -11,7 +11,8 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.methods import Design
 from trackroller.methods.factor import readable
-from trackroller.parameters import EXACTNESS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.results.candidates import Candidates
 from trackroller.results.constraints import Column, meeting
 from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
@@ -251,7 +252,7 @@ def _of_points(table: xr.Dataset, name: str) -> Column:
     """Return a statistic or an outer factor at each design point, with units and long name."""
     kind, output = statistic(name)
     if not kind:
-        known = PARAMETERS.get(name)
+        known = parameter_of(name)
         return table[name].values, known.units if known else "", known.long_name if known else name
     if kind == "probability" and output in REGIMES:
         estimates, words, units = table["probability"].sel(regime=output), REGIME_LABELS[REGIMES.index(output)], "1"

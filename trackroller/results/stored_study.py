@@ -18,6 +18,7 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.results.results import Results
 from trackroller.roller.record import NOT_GIVEN
+from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part
 from trackroller.study.file.load import checked_keys, former_defaults, with_present_names, without_former
@@ -134,21 +135,25 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     study = study_of_folder(folder)
     ledger = Ledger(Cases(study), folder)
     place = ledger.place
-    rows = np.flatnonzero(place >= 0)
-    if len(rows) in (0, len(place)):
+    of_row = ledger.cases.rows
+    rows = np.setdiff1d(of_row, of_row[place < 0])  # whole rows of the design: a carriage has several cases
+    solved = np.flatnonzero(np.isin(of_row, rows))
+    if not len(rows) or len(solved) == len(place):
         state = "is solved, but not gathered into study.nc" if len(rows) else "has no solved case yet"
         raise InputError("study", str(folder.root), "a study with results", "Run the study to its end first.", state)
-    drawn, cases = solved_part(study.drawn, rows), ledger.cases.design.isel(case=rows)
-    data = labelled(study, drawn, cases, collect(ledger, rows)).assign_coords(case=rows)
+    drawn, cases = solved_part(study.drawn, rows), ledger.cases.design.isel(case=solved)
+    if ROW in cases.coords:
+        cases = cases.assign_coords({ROW: ("case", np.searchsorted(rows, cases[ROW].values))})
+    data = labelled(study, drawn, cases, collect(ledger, solved)).assign_coords(case=rows)
     lacking = [n for n in study.drawn.factors if n not in drawn.factors]
     only = f" They hold one value only of {' and '.join(lacking)}." if lacking else ""
     notice = (
-        f"Unfinished study: {len(rows)} of {len(place)} cases are solved, and all numbers are those of these.{only}"
+        f"Unfinished study: {len(solved)} of {len(place)} cases are solved, and all numbers are those of these.{only}"
     )
     warnings.warn(notice, stacklevel=3)
     if study.config.method.points:  # its goals are statistics of whole design points
         study = dataclasses.replace(study, config=study.config.model_copy(update={"pareto": {}}))
-    data = data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(rows)})
+    data = data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(solved)})
     return Results(study, drawn, data, indices)
 
 

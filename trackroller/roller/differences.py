@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 # changes their result by about as much. A changed formula, quadrature node or draw changes numbers by far more.
 ROUNDING = 1e-6
 # The search for a peak sums tractions in single precision (6e-8) and ends at a finite step, on a path that rounding may
-# turn: between processors 2e-6 was measured, and 4e-5 at the edge of a flat. What is computed at the peak inherits this.
+# turn: between processors 2e-6 was measured, and 4e-5 at the edge of a flat. What is computed at the peak inherits it.
 SEARCH = 1e-4
 # A life is a power of the stress, with an exponent up to 30.
 LIFE = 3e-3

@@ -164,7 +164,7 @@ def status_of(study: Study, folder: StudyFolder) -> Status:
     )
     for name, factor in study.drawn.factors.items():
         if factor.discrete:
-            counts = Counter(_level(name, study.drawn.columns[name][i]) for i in failed)
+            counts = Counter(_level(name, study.drawn.columns[name][i]) for i in ledger.cases.rows[failed])
             status.by_level |= {(name, level): count for level, count in counts.most_common()}
     return status
 

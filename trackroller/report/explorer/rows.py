@@ -12,6 +12,7 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, REGIME_LABELS, REGIMES
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
@@ -84,7 +85,7 @@ def collect(results: Results) -> list[Column]:
 def _setting(results: Results, name: str, role: str) -> Column:
     """Return the column of a factor or of an input that follows from factors."""
     values = results.table[name].to_numpy()
-    parameter = PARAMETERS.get(name)
+    parameter = parameter_of(name)
     unit = unit_text(parameter.unit) if parameter and name not in NAMED else ""
     label = capital(long_name(name))
     few = not results.numeric(name) or results.grid or len(results.levels(name)) <= 12

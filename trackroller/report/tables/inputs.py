@@ -10,6 +10,7 @@ from typing import Any
 from trackroller.materials import Material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_MAPPINGS, OF_LIMITS, PARAMETERS
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
 from trackroller.report.tables.table import Table
 from trackroller.results.results import Results
@@ -91,7 +92,7 @@ def factor_table(results: Results) -> Table | None:
     ]
     rows = []
     for name in (*results.factors, *follows):
-        levels, parameter = results.levels(name), PARAMETERS.get(name)
+        levels, parameter = results.levels(name), parameter_of(name)
         if results.numeric(name) and (name in follows or not results.grid) and len(levels) > 12:
             values = " … ".join(near(v, levels[-1] - levels[0]) for v in (levels[0], levels[-1]))
         else:

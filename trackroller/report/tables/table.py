@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import Life, capital, count, lasting, level_text, long_name, rounded, unit_text
 from trackroller.study.design.levels import NAMED
 
@@ -46,7 +46,7 @@ def cell(value: Any) -> str:
 
 def heading(name: str) -> str:
     """Write the head of a factor's column or row, with its unit."""
-    parameter = PARAMETERS.get(name)
+    parameter = parameter_of(name)
     if name in NAMED or parameter is None or parameter.unit == "-":
         return capital(long_name(name))
     return f"{capital(long_name(name))} [{unit_text(parameter.unit)}]"

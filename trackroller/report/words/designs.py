@@ -58,6 +58,13 @@ def alone(candidates: Candidates) -> bool:
     return candidates.rising and not candidates.results.has("guide_life_hours")
 
 
+def lasting_one(candidates: Candidates) -> str:
+    """Return the word for what lasts: the carriage of a study of one, otherwise the pair or the roller alone."""
+    if candidates.results.study.carriage is not None:
+        return "carriage"
+    return "roller" if alone(candidates) else "pair"
+
+
 def size_words(results: Results) -> str:
     """State the size of a study: '162 cases: 9 designs in 18 conditions each'."""
     cases, candidates = len(results.table), results.candidates()

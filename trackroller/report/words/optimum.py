@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import Life, capital, lasting, long_name, percent, quantity, setting, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared
@@ -105,7 +105,7 @@ def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -
     words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
     for near in search["neighbours"]:
         name, step = near["choice"], float(near["step"])
-        moved = f"{'+' if step > 0 else ''}{quantity(step, PARAMETERS[name].unit if name in PARAMETERS else '1')}"
+        moved = f"{'+' if step > 0 else ''}{quantity(step, getattr(parameter_of(name), 'unit', '1'))}"
         invalid = near["violation"] if near["violation"] > best["violation"][0] else 0.0
         changes = zip(words, _changes(best["values"], near["values"]), strict=True)
         neighbours.append((long_name(name), moved, invalid, [pair for pair in changes if abs(pair[1]) > SMALL]))

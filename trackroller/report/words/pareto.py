@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import Life, capital, lasting, long_name, quantity, with_unit
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
@@ -51,7 +51,7 @@ def goal_words(front: xr.Dataset, name: str) -> str:
 
 def goal_heading(front: xr.Dataset, name: str) -> str:
     """Return the words and the unit of a goal or factor of a Pareto set, as the head of a column."""
-    units = str(front[name].attrs.get("units", "")) or (PARAMETERS[name].unit if name in PARAMETERS else "")
+    units = str(front[name].attrs.get("units", "")) or getattr(parameter_of(name), "unit", "")
     text = capital(goal_words(front, name))
     return with_unit(text, units) if units and units not in ("1", "-") else text
 

@@ -17,11 +17,11 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.words.designs import (
     SAME,
-    alone,
     condition_words,
     design_words,
     ended_by,
     ends_words,
+    lasting_one,
     span_words,
     unanswered,
 )
@@ -99,7 +99,7 @@ class _Words:
         values = {"names": named, "tried": found.tried, "many": len(named), "tie": found.why == "tie"}
         what = [_what(turn) for turn in found.turns]
         lives = self.span(found.best[0]) if found.best else ""
-        who = "roller" if alone(self.candidates) or not found.goal_rises else "pair"
+        who = lasting_one(self.candidates) if found.goal_rises else "roller"
         if found.why == "tie" and (free := self.without_effect()):
             shared = {n: v for n, v in found.best[0].choices.items() if n not in free}
             name = ", ".join(setting(n, v) for n, v in shared.items())
@@ -139,7 +139,8 @@ class _Words:
             unit=found.goal[2],
             sampled=found.sampled,
             where=self.where(one),
-            who="roller" if alone(self.candidates) else "pair",
+            who=lasting_one(self.candidates),
+            body=self.body(one),
             goal=found.goal[1],
             rises=found.goal_rises,
             limit=ends_words(one),
@@ -150,6 +151,15 @@ class _Words:
             error=one.error,
             repeats=found.kind == "lasts",
         )
+
+    def body(self, one: Candidate) -> str:
+        """Name the body that ends a candidate; of a carriage that of its worst roller, with its load case."""
+        if self.results.study.carriage is None:
+            return one.body
+        names = ("worst_roller", "worst_load_case")
+        roller, load_case = (str(self.results.quantity(name)[0][one.case]) for name in names)
+        place = f"roller {roller}" if one.body == "roller" else f"rail at roller {roller}"
+        return f"{place} (most of it in load case {load_case})"
 
     def where(self, one: Candidate) -> str:
         """Name the worst condition of a candidate."""

@@ -19,6 +19,7 @@ from trackroller.methods.factor import parse, readable
 from trackroller.methods.method import study_keys
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
 from trackroller.parameters.example import EXAMPLE
+from trackroller.parameters.of_carriage import field_of, long_name_of
 from trackroller.roller.fields import own_frictions
 from trackroller.study.design.roles import scattered
 from trackroller.study.design.sampling import sample
@@ -101,42 +102,67 @@ def build(config: StudyFile, design: Design, materials: MaterialDatabase) -> xr.
     as `trackroller.study.design.stored` says.
     """
     n = design.size or 1
-    columns, friction = _columns(config, design, n, materials)
-    data = {}
-    for name, parameter in PARAMETERS.items():
-        attrs = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
-        data[name] = ("case", columns.pop(name), attrs)
-    for name in case_columns(columns)[len(PARAMETERS) :]:
-        attrs = {"long_name": name.replace("_", " ")}
-        data[name] = ("case", _mapped(str, object, columns.pop(name)), attrs)
-    coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
-    if "material_pair" in design.columns:
-        columns["material_pair"] = design.columns["material_pair"]
-    for name, values in columns.items():
-        coords[name] = ("case", readable(values), {"long_name": name.replace("_", " ")})
+    columns, friction = columns_of(config.base, design.columns, n, materials)
     places, attrs = stored(design)
-    return xr.Dataset(data, coords | places, {"study_name": config.name, "seed": config.seed, **attrs, **friction})
+    pair = design.columns.get("material_pair")
+    return dataset_of(columns, pair, places, {"study_name": config.name, "seed": config.seed, **attrs, **friction})
 
 
-def _columns(
-    config: StudyFile, design: Design, n: int, materials: MaterialDatabase
+def dataset_of(
+    columns: dict[str, np.ndarray], pair: np.ndarray | None, places: Mapping[str, Any], attrs: Mapping[str, Any]
+) -> xr.Dataset:
+    """Return columns (n,) as a data set of cases: fields of a case as variables, other columns as coordinates.
+
+    Parameters
+    ----------
+    columns : as `columns_of` returns them; they are used up
+    pair : pairs of materials, if they are a factor
+    places : further coordinates
+    attrs : attributes
+    """
+    data, n = {}, len(columns["radial_force"])
+    for name, parameter in PARAMETERS.items():
+        meta = {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
+        data[name] = ("case", columns.pop(name), meta)
+    for name in case_columns(columns)[len(PARAMETERS) :]:
+        data[name] = ("case", _mapped(str, object, columns.pop(name)), {"long_name": name.replace("_", " ")})
+    coords: dict[str, Any] = {"case": ("case", np.arange(n), {"long_name": "case number", "units": "1"})}
+    if pair is not None:
+        columns["material_pair"] = pair
+    for name, values in columns.items():
+        field = field_of(name)
+        meta = {"long_name": long_name_of(name)} | ({} if field is None else {"units": field.units})
+        coords[name] = ("case", readable(values), meta)
+    return xr.Dataset(data, coords | dict(places), attrs)
+
+
+def columns_of(
+    given: Mapping[str, Any], varying: Mapping[str, np.ndarray], n: int, materials: MaterialDatabase
 ) -> tuple[dict[str, np.ndarray], dict[str, str]]:
-    """Return every case field and further factor as a column of n values, and the attribute of `_friction`."""
+    """Return every case field and further factor as a column of n values, and the attribute of `_friction`.
+
+    Parameters
+    ----------
+    given : values that all cases share
+    varying : columns (n,) of the factors
+    n : number of cases
+    materials : the materials, whose pairs decide friction coefficients that are words or missing
+    """
     base = {name: parameter.default for name, parameter in PARAMETERS.items()}
-    base |= EXAMPLE | config.base
+    base |= EXAMPLE | dict(given)
     base.pop("material_pair", None)
-    if pair := config.base.get("material_pair"):
+    if pair := given.get("material_pair"):
         base |= dict(zip(MATERIAL_FIELDS, pair, strict=True))
     columns: dict[str, np.ndarray] = {}
     for name, value in base.items():
         one = np.array(value, dtype=object if isinstance(value, str) or value is None else float)
         columns[name] = np.broadcast_to(one, n)  # a value that all cases share takes no memory
-    columns |= design.columns
+    columns |= varying
     if "material_pair" in columns:
         pairs = columns.pop("material_pair")
         for i, name in enumerate(MATERIAL_FIELDS):
             columns[name] = np.array([pair[i] for pair in pairs], dtype=object)
-    if "friction_coefficient" not in {*config.base, *design.columns}:
+    if "friction_coefficient" not in {*given, *varying}:
         if "friction_law" in columns:
             columns["friction_coefficient"] = own_frictions(columns["friction_law"])
     columns["friction_coefficient"], friction = _friction(materials, columns)

@@ -11,7 +11,9 @@ from trackroller.contact.friction_laws import at_rest
 from trackroller.errors import InputError, listing, unknown_name
 from trackroller.methods.factor import LISTS, parse
 from trackroller.numerics.numbers import number_or_nan
-from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
+from trackroller.numerics.parameter import Parameter
+from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OPTIONS, PARAMETERS, expressions
+from trackroller.parameters.of_carriage import OF_LOAD_CASE, OF_WHOLE, PREFIX, field_of
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
@@ -126,7 +128,7 @@ def field_value(key: str, value: Any, where: str) -> Any:
         return choice(value, where, OPTION_FACTORS[key])
     if key in MATERIAL_FIELDS:
         return _material_name(value, where)
-    return _mapping(key, value, where) if key in MAPPING_FIELDS else _number(key, value, where)
+    return _mapping(key, value, where) if key in MAPPING_FIELDS else _number(PARAMETERS[key], value, where)
 
 
 def _material_name(value: Any, where: str) -> str:
@@ -157,23 +159,22 @@ def _mapping(name: str, value: Any, where: str) -> str:
         raise exc.named(field) from None
 
 
-def _number(name: str, value: Any, where: str) -> Any:
+def _number(parameter: Parameter, value: Any, where: str) -> Any:
     """Return a value of a parameter as a float, a friction level or None."""
-    parameter = PARAMETERS[name]
     if value is None and parameter.allow_missing:
         return None
-    if name == "friction_coefficient" and isinstance(value, str) and value in FRICTION_LEVELS:
+    if isinstance(value, str) and value in parameter.words:
         return value
     number = number_or_nan(value, parameter.unit, where)
     if math.isnan(number) or not parameter.accepts(number):
         remedy = parameter.remedy(number, value)
         if isinstance(value, list):
-            remedy = f"Give several values under factors: {{{name}: {{values: {value}}}}}."
+            remedy = f"Give several values under factors: {{{parameter.name}: {{values: {value}}}}}."
         raise InputError(where, value, parameter.allowed(), remedy)
     return number
 
 
-def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
+def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = False) -> dict[str, Any]:
     """Check the dictionary of a factor.
 
     Parameters
@@ -181,6 +182,7 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
     key : name of the factor
     spec : its dictionary
     factors : all factors of the study, whose expressions may use this factor
+    on_carriage : whether the study has a carriage, whose fields may be factors
 
     Returns
     -------
@@ -191,17 +193,19 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any]) -> dict[str, Any]:
     InputError : unknown name, or an entry that is not allowed
     """
     where = f"factors.{key}"
-    own = key not in FACTOR_NAMES
+    field = field_of(key) if on_carriage and isinstance(key, str) else None
+    parameter = PARAMETERS.get(key, field)
+    own = key not in FACTOR_NAMES and field is None
     if own and not (isinstance(key, str) and key.isidentifier() and _used(key, factors)):
-        raise _unused(str(key), factors)
+        raise _unused(str(key), factors, on_carriage)
     if isinstance(spec, Mapping):
-        spec = {kind: _entries(key, kind, value, f"{where}.{kind}") for kind, value in spec.items()}
+        spec = {kind: _entries(key, kind, value, f"{where}.{kind}", parameter) for kind, value in spec.items()}
     checked = parse(key, spec)
-    if not own and key not in PARAMETERS and checked.kind != "values":
+    if not own and parameter is None and checked.kind != "values":
         raise InputError(where, checked.kind, "names as {values: [...]}")
-    if key in PARAMETERS:
+    if parameter is not None:
         for level in (*checked.levels, *(checked.numbers if checked.kind == "uniform" else ())):
-            _number(key, level, f"{where}.{checked.kind}")
+            _number(parameter, level, f"{where}.{checked.kind}")
     return dict(spec)
 
 
@@ -216,9 +220,13 @@ def _in_expressions(factors: Mapping[Any, Any]) -> set[str]:
     return set().union(*(expressions.names(text, "factors") for text in texts if isinstance(text, str)))
 
 
-def _unused(name: str, factors: Mapping[Any, Any]) -> InputError:
-    """Return the error for a factor that is neither a parameter nor a name of an expression."""
-    error = unknown_name("factors", name, (*FACTOR_NAMES, *ALIASES, *RADII), OPTIONS)
+def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputError:
+    """Return the error for a factor that is neither a parameter, a field of the carriage nor a name of an expression."""
+    fields = (*OF_WHOLE, *OF_LOAD_CASE) if on_carriage else ()
+    if on_carriage and field_of(own := f"{PREFIX}{name}"):
+        allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
+        return InputError("factors", name, allowed, f"Write {own}.", "is not known")
+    error = unknown_name("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
     unknown = sorted(_in_expressions(factors) - {*FACTOR_NAMES, *map(str, factors)})
     if not unknown:
         return error
@@ -227,13 +235,15 @@ def _unused(name: str, factors: Mapping[Any, Any]) -> InputError:
     return InputError("factors", name, allowed, remedy, "is not known")
 
 
-def _entries(key: str, kind: Any, value: Any, where: str) -> Any:
+def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter | None) -> Any:
     """Return the entries of a factor's list: numbers as floats, checked pairs, names as texts."""
     if not isinstance(value, list):
         return value
     if kind == "values":
+        if parameter is not None:
+            return [_number(parameter, entry, where) for entry in value]
         return value if key not in FACTOR_NAMES else [field_value(key, entry, where) for entry in value]
-    unit = PARAMETERS[key].unit if key in PARAMETERS else None
+    unit = None if parameter is None else parameter.unit
     spread = 1 if kind in ("normal", "truncnormal") else None
     plain = 1 if kind in ("lognormal", "weibull") else None  # a number without unit beside the median or scale
     numbers = [

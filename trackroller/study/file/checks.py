@@ -242,11 +242,12 @@ def check_geometry(study: Study) -> None:
 
     Notes
     -----
-    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide. Expressions and
-    tables are checked on the whole design before anything is solved.
+    Relative curvatures are monotonic in each of the quantities, so the ends of a range decide. Expressions, tables and
+    the rollers of a carriage are checked on the whole design before anything is solved.
     """
     config = study.config
-    if config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values()):
+    drawn = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
+    if drawn or config.carriage is not None:
         design = study.design()
         problems = list(geometry_problems({name: design[name].values for name in _GEOMETRY}))
         if problems and config.method.observed:

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import numpy as np
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
 
+from trackroller.carriage.file import written_out
 from trackroller.errors import InputError, collected
 from trackroller.methods import METHODS, Method
 from trackroller.methods.method import study_keys
@@ -57,6 +58,9 @@ class _Design(BaseModel):
     name: Name = Field(description="names the results folder; letters, digits, '.', '_', '-'")
     description: str = Field("", description="one sentence at the head of the report")
     base: dict[str, Any] = Field({}, description="values of all cases")
+    carriage: dict[str, Any] | None = Field(
+        None, description="carriage file whose rollers are solved under its loads; its fields are factors, too"
+    )
     factors: dict[str, dict[str, Any]] = Field({}, description="what varies: a list or a distribution for each factor")
     design: str = Field("grid", description="how the factors are combined")
     samples: int = Field(1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples")
@@ -153,6 +157,11 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
                 raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
         return value
 
+    @field_validator("carriage", mode="before")
+    @classmethod
+    def _carriage(cls, value: Any) -> Any:
+        return None if value is None else written_out(value)
+
     @field_validator("base", mode="before")
     @classmethod
     def _base(cls, value: Any) -> Any:
@@ -160,5 +169,6 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
 
     @field_validator("factors", mode="before")
     @classmethod
-    def _factors(cls, value: Any) -> Any:
-        return collected(value, lambda key, spec: factor(key, spec, value))
+    def _factors(cls, value: Any, info: Any) -> Any:
+        on_carriage = info.data.get("carriage") is not None
+        return collected(value, lambda key, spec: factor(key, spec, value, on_carriage))

@@ -6,20 +6,24 @@ import warnings
 from collections.abc import Collection, Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from pydantic import ValidationError
 
+from trackroller.carriage.fields import check_fields
 from trackroller.contact.friction_laws import at_rest
 from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.numerics.plain import mapping_of
+from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.parameters.example import not_given
+from trackroller.parameters.of_carriage import field_of
 from trackroller.roller.aliases import ALIASES, study_with_radii
 from trackroller.roller.output_names import present_names
 from trackroller.roller.record import NOT_GIVEN
+from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import Analysis, check_analysed
@@ -28,6 +32,9 @@ from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
 from trackroller.study.file.user_table import column_names
 from trackroller.yaml_file import errors_by_line, parse_mapping
+
+if TYPE_CHECKING:
+    from trackroller.carriage.file import Carriage
 
 EXAMPLES = {  # of keys that are mappings or lists
     "base": "{radial_force: -200}",
@@ -174,9 +181,62 @@ def complete(study: Study, former: Collection[str] = ()) -> Study:
         names.add("friction_coefficient")  # the first value of the table
     values = not_given(names)
     update: dict[str, Any] = {"base": config.base | values}
+    if study.carriage is not None:
+        update, values = _on_carriage(study, study.carriage, names)
     if config.until is not None and "samples" not in config.model_fields_set:
         update["samples"] = config.until.replicates * config.method.first_look
     return replace(study, config=config.model_copy(update=update), not_given=(*former, *values))
+
+
+def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Return the keys that a study takes from its carriage, and the values of parameters that no file gives.
+
+    The key `base` takes what all rollers share, `roles` the roles of the fields, and `duty` that of the carriage.
+    """
+    config, wrong = study.config, Collector()
+    for name in sorted(names & {*given_by(whole)}):
+        allowed = "parameters that the carriage does not give"
+        wrong.errors.append(InputError(name, None, allowed, "Remove it: statics gives it.", "stands beside a carriage"))
+    if config.method.observed:
+        allowed = "a design of factors, because a table lists loads of rollers"
+        wrong.errors.append(InputError("design", config.design, allowed, "Write factors in place of the table."))
+    fields = [name for name in names if field_of(name)]
+    with wrong.part():
+        check_fields(whole, fields)
+    for roller in whole.rollers:
+        if roller.case is None:
+            wrong.errors.append(
+                InputError(f"carriage.rollers.{roller.name}.roller", None, "its file", "Add roller: FILE.")
+            )
+        for key, value in roller.options.items():
+            with wrong.part():
+                _check_option(config, key, value, f"carriage.rollers.{roller.name}.roller.{key}")
+    if "life" not in config.outputs:
+        allowed = "outputs with life, by which the worst roller is found"
+        wrong.errors.append(InputError("outputs", list(config.outputs), allowed, "Add life."))
+    duty = whole.duty if config.duty is None else config.duty
+    if whole.duty is not None and duty != whole.duty:
+        wrong.errors.append(InputError("duty", config.duty, "the duty of the carriage", "Remove one of them."))
+    wrong.check()
+    known = names | ({*MATERIAL_FIELDS} if "material_pair" in names else set())
+    common = {name: value for name, value in common_values(whole).items() if name not in known}
+    cases = [roller.case for roller in whole.rollers if roller.case is not None]
+    lacking = {name for name in common if all(name in case.not_given for case in cases)}
+    roles = {} if config.method.points else {name: field.role for name in fields if (field := field_of(name))}
+    return (
+        {"base": config.base | common, "roles": roles | config.roles, "duty": duty},
+        {name: value for name, value in not_given(known).items() if name in lacking},
+    )
+
+
+def _check_option(config: StudyFile, key: str, value: Any, where: str) -> None:
+    """Refuse an option in the file of a roller that the study does not have."""
+    stated = getattr(config, key, None)
+    listed = tuple(value) if isinstance(value, (list, tuple)) else value
+    if key == "outputs" or stated == listed:
+        return
+    allowed = f"the option of the study, {stated}"
+    raise InputError(where, value, allowed, f"Write {key}: {value} in the study, or remove it from the roller's file.")
 
 
 def parse_study(

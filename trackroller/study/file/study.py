@@ -10,13 +10,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.carriage.file import Carriage, carriage_of
 from trackroller.files import Reads
 from trackroller.materials import MaterialDatabase, load_database
 from trackroller.methods.factor import Factor, parse
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.doubts import doubts
 from trackroller.roller.record import NOT_GIVEN
-from trackroller.study.design import build
+from trackroller.study.design import build, carriage_cases
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.file.config import IN_STUDY, StudyFile
 from trackroller.yaml_file import write_yaml
@@ -81,6 +82,11 @@ class Study:
         return {name: parse(name, spec) for name, spec in self.factors.items()}
 
     @cached_property
+    def carriage(self) -> Carriage | None:
+        """Return the carriage whose rollers are solved, None for a study of one roller."""
+        return None if self.config.carriage is None else carriage_of(self.config.carriage)
+
+    @cached_property
     def materials(self) -> MaterialDatabase:
         """Return the material database: the built-in one, changed and extended by the user's file."""
         return load_database() if self.database is None else self.database
@@ -139,7 +145,12 @@ class Study:
         -------
         xarray.Dataset
             Dimension `case`, one variable a parameter, materials by name. The attributes hold the study file and the
-            options that `solve` takes for these cases.
+            options that `solve` takes for these cases. A study of a carriage has a case for each loaded roller in each
+            load case, see `trackroller.study.design.carriage_cases`.
         """
         attrs = {"study": self.merged(), "options": json.dumps(self.options), NOT_GIVEN: json.dumps(self.not_given)}
-        return build.build(self.config, self.drawn, self.materials).assign_attrs(attrs)
+        if self.carriage is not None:
+            cases = carriage_cases.expanded(self.config, self.drawn, self.materials, self.carriage)
+        else:
+            cases = build.build(self.config, self.drawn, self.materials)
+        return cases.assign_attrs(attrs)

@@ -32,6 +32,7 @@ from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller.case import CaseTable, MaterialArrays, to_table
 from trackroller.roller.options import options_of_cases
 from trackroller.roller.table import TEXTS
+from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.store.sources import solver_digest
 
 if TYPE_CHECKING:
@@ -113,6 +114,12 @@ class Cases:
     def design(self) -> xr.Dataset:
         """Return the cases as the solver takes them."""
         return self.study.design()
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Return the row of the study's design of each case, shape (n,)."""
+        design = self.design
+        return np.asarray(design[ROW].values if ROW in design.coords else np.arange(design.sizes["case"]))
 
     @cached_property
     def options(self) -> tuple[list[dict[str, Any]], np.ndarray]:

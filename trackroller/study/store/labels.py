@@ -14,6 +14,7 @@ from trackroller.methods.factor import Factor, readable
 from trackroller.numerics.numbers import all_equal
 from trackroller.parameters import FRICTION_LEVELS, MATERIAL_FIELDS
 from trackroller.roller.record import MATERIALS, materials_of_design
+from trackroller.study.design.carriage_cases import of_worst_rollers
 from trackroller.study.design.stored import FACTOR, META, PLACE
 from trackroller.study.store import provenance
 
@@ -33,7 +34,7 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
     drawn : Design
         Its design.
     cases : xarray.Dataset
-        Its n cases, as `Study.design` returns them.
+        Its n cases, as `Study.design` returns them; for a study of a carriage those of all its rollers.
     solved : xarray.Dataset
         Their results, each with `case` as its first dimension, with the coordinates of the other dimensions and the
         attributes of the solver.
@@ -44,6 +45,8 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
         Results with parameters, factors and the places of the design as coordinates. The attributes hold what is needed
         to repeat the study, and the study file itself.
     """
+    if study.carriage is not None:
+        cases, solved = of_worst_rollers(study.config, drawn, study.materials, cases, solved)
     grid = drawn.factors if drawn.method.crossed else {}
     shape = drawn.meta["shape"] if grid else (cases.sizes["case"],)
     sizes = dict(zip(grid or ("case",), shape, strict=True))

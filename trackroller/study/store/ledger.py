@@ -229,7 +229,7 @@ def planned(found: Ledger) -> Ledger:
         name = chunk_name(names[part])
         # an index of all names would take 70 bytes a case
         block = fields.isel(case=part, missing_dims="ignore").assign_coords(case=names[part])
-        words = ", ".join([f"chunk {count} of {len(parts)}", *_levels_of(study, part)])
+        words = ", ".join([f"chunk {count} of {len(parts)}", *_levels_of(study, cases.rows[part])])
         attrs = {"options": json.dumps(options[group[part[0]]]), "identity": identity, "words": words}
         chunks.write(folder.case_list(name), block.assign_attrs(attrs))
         sizes[name] = len(part)

@@ -1,0 +1,346 @@
+"""The cases of a study of a carriage: each loaded roller in each load case; and the results of its worst roller.
+
+A row of such a design is a carriage. Statics gives the loads of its rollers, and each loaded roller in each load case
+is a case of its own, which is solved as any other. The results of a row are those of the worst roller, whose life to
+the first limit is the shortest.
+
+ASSUME: damage adds up linearly over the load cases (Palmgren-Miner), limit by limit, by their shares of the travel.
+ASSUME: the load cases load the same two tracks of a roller and the same point of the guide.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import xarray as xr
+
+from trackroller.carriage.fields import changed
+from trackroller.carriage.solve import forces_of
+from trackroller.damage import LIMITS, verdict
+from trackroller.damage.miner import block_damage, repetitions_to_failure
+from trackroller.damage.pair import first_failure
+from trackroller.errors import InputError
+from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters.of_carriage import field_of
+from trackroller.roller.output_names import declared
+from trackroller.roller.settings import LOADS
+from trackroller.study.design.build import build, columns_of, dataset_of
+
+if TYPE_CHECKING:
+    from trackroller.carriage.file import Carriage
+    from trackroller.materials import MaterialDatabase
+    from trackroller.methods import Design
+    from trackroller.study.file.config import StudyFile
+
+ROW, ROLLER, LOAD_CASE, SHARE, HOURS = "design_row", "carriage_roller", "load_case", "share", "hours_per_km"
+REASONS = "carriage_reasons"  # attribute: JSON, why the rollers do not hold the carriage, by the number of its row
+OF_LOADS = (*LOADS, "velocity")  # parameters that the carriage gives
+STIFF = (  # parameters of a roller that decide the stiffness of its contacts
+    *("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle"),
+    *MATERIAL_FIELDS,
+)
+DIGITS = 8  # of a force: the last digits depend on the processor, and a case is known by its numbers
+
+
+def given_by(whole: Carriage) -> tuple[str, ...]:
+    """Return the parameters of a roller that a carriage gives, so that no study may."""
+    return OF_LOADS if any(case.speed is not None for case in whole.cases) else LOADS
+
+
+def common_values(whole: Carriage) -> dict[str, Any]:
+    """Return the parameters that all rollers of a carriage share, without their loads."""
+    stated = [roller.case.as_dict() for roller in whole.rollers if roller.case is not None]
+    shared = {name: value for name, value in stated[0].items() if all(other[name] == value for other in stated[1:])}
+    return {name: value for name, value in shared.items() if name not in given_by(whole) and value not in (None, "")}
+
+
+def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, whole: Carriage) -> xr.Dataset:
+    """Return the cases of a study of a carriage.
+
+    Parameters
+    ----------
+    config : StudyFile
+        What the study file says.
+    design : Design
+        Its design, a row for each carriage.
+    materials : MaterialDatabase
+        The materials.
+    whole : Carriage
+        The carriage of the study file.
+
+    Returns
+    -------
+    xarray.Dataset
+        As `trackroller.study.design.build.build` returns it, a case for each loaded roller in each load case.
+        Coordinates along `case`: row of the design, names of roller and load case, share of the travel, and hours that
+        the whole carriage travels for a km. The attribute `REASONS` says why a row has no cases.
+    """
+    places, reasons = _loads(design, whole)
+    number = places["roller"]
+    parts, order = [], []
+    for j, roller in enumerate(whole.rollers):
+        own = np.flatnonzero(number == j)
+        if not len(own) or roller.case is None:
+            continue
+        rows = places["row"][own]
+        given = {name: values[rows] for name, values in design.columns.items()}
+        base = {name: v for name, v in roller.case.as_dict().items() if v is not None and v != ""} | config.base
+        columns, friction = columns_of(base, given, len(own), materials)
+        for name in LOADS:
+            columns[name] = places[name][own]
+        speed = places["speed"][own]
+        columns["velocity"] = np.where(np.isnan(speed), columns["velocity"].astype(float), 60 * speed)
+        parts.append(dataset_of(columns, given.get("material_pair"), {}, friction))
+        order.append(own)
+    if not parts:
+        first = next(iter(reasons.values()), "no roller carries load")
+        raise InputError("carriage", whole.name, "a carriage that its rollers hold in a row of the design", "", first)
+    sort = np.argsort(np.concatenate(order))
+    cases = xr.concat([part.drop_vars("case") for part in parts], "case", combine_attrs="override").isel(case=sort)
+    velocity = cases["velocity"].values
+    shares = np.array([case.share for case in whole.cases])[places["load_case"]]
+    words = {"long_name": "case number", "units": "1"}
+    coords: dict[str, Any] = {
+        "case": ("case", np.arange(len(sort)), words),
+        ROW: ("case", places["row"], {"long_name": "row of the design", "units": "1"}),
+        ROLLER: ("case", _names([r.name for r in whole.rollers], number), {"long_name": "roller of the carriage"}),
+        LOAD_CASE: (
+            "case",
+            _names([case.name for case in whole.cases], places["load_case"]),
+            {"long_name": "load case of the carriage"},
+        ),
+        SHARE: ("case", shares, {"long_name": "share of the travel", "units": "1"}),
+        HOURS: ("case", _hours(places, velocity, whole), {"long_name": "hours of travel for a km", "units": "h km-1"}),
+    }
+    attrs = {"study_name": config.name, "seed": config.seed, REASONS: json.dumps(reasons)}
+    return cases.assign_coords(coords).assign_attrs(attrs)
+
+
+def _names(names: list[str], numbers: np.ndarray) -> np.ndarray:
+    named: np.ndarray = np.array(names, dtype=object)[numbers]
+    return named
+
+
+def _hours(places: Mapping[str, np.ndarray], velocity: np.ndarray, whole: Carriage) -> np.ndarray:
+    """Return the hours that a carriage travels for a km with all its load cases, for each case [h/km].
+
+    A load case that states no speed has the velocity of the roller.
+    """
+    hours = np.zeros(len(velocity))
+    for i, case in enumerate(whole.cases):
+        speed = places["speeds"][:, i]
+        hours += case.share / np.where(np.isnan(speed), 0.06 * velocity, 3.6 * speed)
+    return hours
+
+
+def _loads(design: Design, whole: Carriage) -> tuple[dict[str, np.ndarray], dict[int, str]]:
+    """Return row, load case, roller, forces and speeds of each case, and why rows have none."""
+    fields = [name for name in design.columns if field_of(name)]
+    stiff = [name for name in design.columns if name in (*STIFF, "material_pair")]
+    found: dict[tuple[Any, ...], Any] = {}
+    columns: dict[str, list[np.ndarray]] = {}
+    reasons: dict[int, str] = {}
+    for row in range(design.size):
+        key = tuple(design.columns[name][row] for name in (*fields, *stiff))
+        if key not in found:
+            given = dict(zip((*fields, *stiff), key, strict=True))
+            found[key] = _statics(whole, *({name: given[name] for name in names} for names in (fields, stiff)))
+        if isinstance(found[key], str):
+            reasons[row] = found[key]
+            continue
+        for name, values in found[key].items():
+            columns.setdefault(name, []).append(values)
+        columns.setdefault("row", []).append(np.full(len(found[key]["roller"]), row))
+    return {name: np.concatenate(values) for name, values in columns.items()} or {"roller": np.empty(0, int)}, reasons
+
+
+def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, Any]) -> dict[str, np.ndarray] | str:
+    """Return the loads of the loaded rollers of one carriage, or why its rollers do not hold it."""
+    given = {name: value for name, value in stiff.items() if name != "material_pair"}
+    given |= dict(zip(MATERIAL_FIELDS, stiff.get("material_pair", ()), strict=False))
+    try:
+        rollers = tuple(r if r.case is None else replace(r, case=replace(r.case, **given)) for r in whole.rollers)
+        own = changed(replace(whole, rollers=rollers), fields)
+        ds = forces_of(own)
+    except InputError as error:
+        return f"{error.field} {error.value}: {error.wrong}" if error.wrong else str(error)
+    i, j = np.nonzero(ds["radial_force"].values < 0)
+    speeds = ds["speed"].values
+    forces = {name: _rounded(ds[name].values[i, j]) for name in LOADS}
+    return {"load_case": i, "roller": j, "speed": speeds[i], "speeds": np.tile(speeds, (len(i), 1)), **forces}
+
+
+def _rounded(values: np.ndarray) -> np.ndarray:
+    """Return numbers with `DIGITS` digits, forces that are rounding beside the largest one as 0."""
+    largest = np.abs(values).max(initial=0.0)
+    kept = np.where(np.abs(values) < 1e-9 * largest, 0.0, values)
+    return np.array([float(f"{value:.{DIGITS - 1}e}") for value in kept.tolist()])
+
+
+def of_worst_rollers(
+    config: StudyFile, design: Design, materials: MaterialDatabase, cases: xr.Dataset, solved: xr.Dataset
+) -> tuple[xr.Dataset, xr.Dataset]:
+    """Return a row for each carriage: its parameters and results are those of its worst roller.
+
+    Parameters
+    ----------
+    config, design, materials
+        As for `expanded`.
+    cases : xarray.Dataset
+        The cases, as `expanded` returns them.
+    solved : xarray.Dataset
+        Their results along `case`.
+
+    Returns
+    -------
+    tuple of xarray.Dataset
+        Cases and results along `case`, a row for each row of the design. Lives add up the damage of all load cases of
+        the worst roller. Its other results, and its loads, are those of the load case that uses most of its life;
+        utilisations are the largest ones. A roller that does not roll in a load case is the worst one. A row that the
+        rollers do not hold has the regime lift-off, and its `reason` says why.
+    """
+    tracks = _Tracks(cases, solved)
+    row = cases[ROW].values[tracks.first]
+    # the worst roller of each row: the first one after sorting by row and life
+    order = np.lexsort((tracks.rank, row))
+    best = order[np.unique(row[order], return_index=True)[1]]
+    place = np.full(design.size, -1)
+    place[row[best]] = tracks.ruling[best]
+    held = place >= 0
+    shown = solved.isel(case=np.maximum(place, 0)).copy(deep=True)
+    for name, values in tracks.summed.items():
+        full = shown[name].values
+        full[row[best]] = values[best]
+        shown[name].values = full
+    reasons = {int(i): text for i, text in json.loads(cases.attrs.get(REASONS, "{}")).items()}
+    _without_results(shown, ~held, [reasons.get(i, "") for i in range(design.size)])
+    plain = build(config, design, materials)
+    for name in (*PARAMETERS, *MATERIAL_FIELDS):
+        if name in cases and not np.array_equal(cases[name].values, plain[name].values):
+            values = cases[name].values[np.maximum(place, 0)]
+            missing = np.nan if values.dtype.kind == "f" else plain[name].values
+            plain[name] = ("case", np.where(held, values, missing), plain[name].attrs)
+    for name, label in ((ROLLER, "worst roller"), (LOAD_CASE, "load case that uses most of its life")):
+        values = np.where(held, cases[name].values[np.maximum(place, 0)], "")
+        plain = plain.assign_coords({f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})})
+    numbers = shown["case"].copy(data=np.arange(design.size))
+    return plain, shown.assign_coords(case=numbers)
+
+
+def _without_results(shown: xr.Dataset, gone: np.ndarray, reasons: list[str]) -> None:
+    """Make the rows without a case rows of a lift-off without results, each with its reason."""
+    for variable in shown.data_vars.values():
+        values = variable.values
+        values[gone] = np.nan if values.dtype.kind == "f" else "" if values.dtype.kind in "OUT" else 0
+        variable.values = values
+    shown["regime"][gone] = REGIMES.index("lift_off")
+    if "reason" in shown:
+        shown["reason"].values = np.where(gone, np.array(reasons, dtype=object), shown["reason"].values)
+
+
+class _Tracks:
+    """The cases of each roller of each row, in groups; `first` is the first case of each group.
+
+    Attributes
+    ----------
+    first : numpy.ndarray of int
+        First case of each group.
+    ruling : numpy.ndarray of int
+        Case of each group whose results stand for it: the one that does most damage, or that does not roll.
+    rank : numpy.ndarray
+        What sorts the groups of a row, the worst one first: its life to the first limit [h].
+    summed : dict of str to numpy.ndarray
+        Lives with the damage of all load cases, utilisations and states of limits, by group.
+    """
+
+    def __init__(self, cases: xr.Dataset, solved: xr.Dataset) -> None:
+        names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
+        group = cases[ROW].values * len(names) + rollers
+        self.order = np.argsort(group, kind="stable")
+        _, self.start = np.unique(group[self.order], return_index=True)
+        self.first = self.order[self.start]
+        self.solved, self.counts = solved, np.diff(np.append(self.start, len(group)))
+        self.share, self.hours = cases[SHARE].values, cases[HOURS].values[self.first]
+        self.time = self.share / (0.06 * cases["velocity"].values)  # hours in the load case for a km
+        self.summed = self._summed()
+        self._judge(cases)
+
+    def of(self, values: np.ndarray, reduce: Callable[..., np.ndarray] = np.add) -> np.ndarray:
+        """Return the sum, or another reduction, over the cases of each group."""
+        return np.asarray(reduce.reduceat(values[self.order], self.start))  # type: ignore[attr-defined]
+
+    def life(self, values: np.ndarray, units: str) -> np.ndarray:
+        """Return a life with the damage of all load cases; in hours by their time, otherwise by their travel."""
+        weight, whole = (self.time, self.hours) if units == "h" else (self.share, np.ones(len(self.first)))
+        shape = (-1, *(1,) * (values.ndim - 1))
+        damage = self.of(block_damage(weight.reshape(shape), values))
+        return np.asarray(whole.reshape(shape) * repetitions_to_failure(damage))
+
+    def _judge(self, cases: xr.Dataset) -> None:
+        """Set `ruling` and `rank`."""
+        regime = self.solved["regime"].values * (self.share > 0)
+        worst = self.of(regime, np.maximum)
+        name = next(n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved)
+        lives = self.summed[name]
+        damage = np.nan_to_num(block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300)
+        load = np.abs(cases["radial_force"].values)
+        stand = np.lexsort((load, damage, regime))  # the case that rules is the last one of its group
+        last = np.full(len(self.first), -1)
+        last[np.repeat(np.arange(len(self.first)), self.counts)[np.argsort(self.order)][stand]] = stand
+        self.ruling = last
+        self.rank = np.where(worst > 0, -worst.astype(float), np.nan_to_num(lives, nan=np.inf))
+
+    def _summed(self) -> dict[str, np.ndarray]:
+        """Return lives with the damage of all load cases, utilisations and states of limits, by group."""
+        out = {}
+        for name, variable in self.solved.data_vars.items():
+            known = declared(str(name))
+            if known is not None and known.life:
+                out[str(name)] = self.life(variable.values, str(variable.attrs.get("units", "")))
+        if "life_hours" in out:
+            for body, life in zip(BODIES, np.moveaxis(out["life_hours"].min(axis=1), -1, 0), strict=True):
+                out[f"{body}_life_hours"] = life
+            out["pair_life_hours"], first = first_failure(out["roller_life_hours"], out["guide_life_hours"])
+            out["first_to_fail"] = first.astype(self.solved["first_to_fail"].dtype)
+        return out | (self._by_limit(out) if "life_hours_by_limit" in self.solved else {})
+
+    def _by_limit(self, out: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return the lives by limit and to the first one, and which one it is; fatigue adds up track by track."""
+        solved = self.solved
+        new: dict[str, np.ndarray] = {}
+        limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
+        counts = (self.share > 0)[:, None, None]
+        used = self.of(np.where(counts, solved["utilisation"].values, np.nan), np.fmax)
+        state = self.of(np.where(counts, solved["limit_state"].values, 0), np.maximum)
+        meanings = solved["validity_body"].attrs["flag_meanings"].split()
+        breaks = (solved["validity_body"].values >> meanings.index("static")) & 1 & (self.share > 0)[:, None]
+        broken = verdict.breaking(self.of(breaks, np.maximum).astype(bool), limits)
+        timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
+        for end in verdict.ENDS:
+            lives = out[f"life_hours_by_limit{end}"].copy()
+            for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue" and "life_hours" in solved):
+                lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
+            first, which = verdict.first_of(lives, used, timed, limits, broken, state == 0)
+            new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
+            new[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
+            if not end:
+                words = solved["limiting_mechanism"].attrs["flag_meanings"].split()
+                values = np.ravel(solved["limiting_mechanism"].attrs["flag_values"])
+                names = [*(limit.name for limit in limits), "unknown"]
+                numbers = np.array([values[words.index(name)] for name in names])
+                new["limiting_mechanism"] = numbers[which].astype(solved["limiting_mechanism"].dtype)
+        return new | {"utilisation": used, "limit_state": state.astype(solved["limit_state"].dtype)}
+
+    def _fatigue(self, by_limit: np.ndarray) -> np.ndarray:
+        """Return the hours to the fatigue limit at its failure probability, (group, body), of the worse track.
+
+        ASSUME: both tracks of a case have the same ratio of this life to the life at 50 %.
+        """
+        tracks = self.solved["life_hours"].transpose("case", "contact", "body").values
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ratio = by_limit / tracks.min(axis=1)
+        return np.asarray(self.life(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None], "h").min(axis=1))
