@@ -88,6 +88,12 @@ def test_the_life_of_each_row_is_that_of_the_worst_roller():
         found = ds.isel(dict(zip(levels, place, strict=True)))
         worst = str(alone.attrs["worst_roller"])
         assert str(found["worst_roller"].values) == worst
+        row = cases.isel(case=int(found["case"]))
+        assert (str(row["carriage_roller"].values), str(row["load_case"].values)) == (
+            worst,
+            str(found["worst_load_case"].values),
+        )
+        assert float(row["axial_force"]) == float(found["axial_force"])
         assert float(found[LIFE]) == pytest.approx(
             float(alone.life_hours.sel(roller=worst)), rel=2e-3
         )  # `standard` there

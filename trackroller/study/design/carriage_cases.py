@@ -200,8 +200,9 @@ def of_worst_rollers(
     tuple of xarray.Dataset
         Cases and results along `case`, a row for each row of the design. Lives add up the damage of all load cases of
         the worst roller. Its other results, and its loads, are those of the load case that uses most of its life;
-        utilisations are the largest ones. A roller that does not roll in a load case is the worst one. A row that the
-        rollers do not hold has the regime lift-off, and its `reason` says why.
+        utilisations are the largest ones. `case` is the number of this case, -1 for a row without one. A roller that
+        does not roll in a load case is the worst one. A row that the rollers do not hold has the regime lift-off, and
+        its `reason` says why.
     """
     tracks = _Tracks(cases, solved)
     row = cases[ROW].values[tracks.first]
@@ -227,8 +228,7 @@ def of_worst_rollers(
     for name, label in ((ROLLER, "worst roller"), (LOAD_CASE, "load case that uses most of its life")):
         values = np.where(held, cases[name].values[np.maximum(place, 0)], "")
         plain = plain.assign_coords({f"worst_{name.removeprefix('carriage_')}": ("case", values, {"long_name": label})})
-    numbers = shown["case"].copy(data=np.arange(design.size))
-    return plain, shown.assign_coords(case=numbers)
+    return plain.assign_coords(case=place), shown.assign_coords(case=place)
 
 
 def _without_results(shown: xr.Dataset, gone: np.ndarray, reasons: list[str]) -> None:

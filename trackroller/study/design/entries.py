@@ -221,7 +221,7 @@ def _in_expressions(factors: Mapping[Any, Any]) -> set[str]:
 
 
 def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputError:
-    """Return the error for a factor that is neither a parameter, a field of the carriage nor a name of an expression."""
+    """Return the error for a factor that is no parameter, no field of the carriage and no name of an expression."""
     fields = (*OF_WHOLE, *OF_LOAD_CASE) if on_carriage else ()
     if on_carriage and field_of(own := f"{PREFIX}{name}"):
         allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"

@@ -200,7 +200,7 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
     if config.method.observed:
         allowed = "a design of factors, because a table lists loads of rollers"
         wrong.errors.append(InputError("design", config.design, allowed, "Write factors in place of the table."))
-    fields = [name for name in names if field_of(name)]
+    fields = [name for name in study.factors if field_of(name)]  # in their order: a file is written the same again
     with wrong.part():
         check_fields(whole, fields)
     for roller in whole.rollers:

@@ -85,7 +85,7 @@ def _labels(design: xr.Dataset, sizes: dict[str, int], grid: dict[str, Factor]) 
         if dim == "material_pair":
             for i, name in enumerate(MATERIAL_FIELDS):
                 add(name, (dim,), np.array([pair[i] for pair in factor.levels], dtype=object))
-    number = np.arange(design.sizes["case"])
+    number = design["case"].values
     words = {"long_name": "case number, for `trackroller repeat`", "units": "1"}
     labels["case"] = _variable(tuple(sizes), number.reshape(*sizes.values()), words, coordinate=True)
     for name, values in ((str(name), v.values) for name, v in design.variables.items() if v.dims == ("case",)):
