@@ -18,6 +18,7 @@ from trackroller import parameters as p
 from trackroller.materials import builtin_database
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
 from trackroller.parameters.accuracy import PRESETS
+from trackroller.parameters.of_carriage import OF_LOAD_CASE, OF_ROLLER, OF_WHOLE
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.dataset import COMMENTS, VARIABLES
 from validation.pages import TEMPLATES
@@ -140,6 +141,21 @@ def render() -> str:
         "`roller_material` and `guide_material` take a name of the material database, or a mapping of material values;",
         "the default is `1.7225-normalised`. Both relative curvatures must be positive, else the input is refused.\n",
         *_table(("name", "meaning"), [(f"`{name}`", told) for name, told in p.MAPPING_FIELDS.items()]),
+        "### Fields of a carriage\n",
+        "Factors of a study with the key `carriage`. A field of all load cases also takes the name of one,",
+        "`carriage_speed_in_curve`; a coordinate names its roller, `carriage_x_of_FL`.\n",
+        *_table(
+            ("name", "unit", "role", "meaning"),
+            [
+                (f"`{v.name}{of}`{more}", v.unit, v.role, v.meaning)
+                for fields, of, more in (
+                    (OF_WHOLE, "", ""),
+                    (OF_LOAD_CASE, "", ", `_in_CASE`"),
+                    (OF_ROLLER, "_of_ROLLER", ""),
+                )
+                for v in fields.values()
+            ],
+        ),
         "### Materials of the database\n",
         "`trackroller materials show NAME` lists every value with its source and mark.\n",
         *_table(("name", "R_m [MPa]", "sigma_D [MPa]", "guesses", "description"), _materials()),
