@@ -2,16 +2,13 @@
 
 A row of such a design is a carriage. Statics gives the loads of its rollers, and each loaded roller in each load case
 is a case of its own, which is solved as any other. The results of a row are those of the worst roller, whose life to
-the first limit is the shortest.
-
-ASSUME: damage adds up linearly over the load cases (Palmgren-Miner), limit by limit, by their shares of the travel.
-ASSUME: the load cases load the same two tracks of a roller and the same point of the guide.
+the first limit is the shortest; its damage adds up over the load cases, see `trackroller.carriage.lives`.
 """
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -19,14 +16,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.carriage.fields import changed
+from trackroller.carriage.lives import Lives
 from trackroller.carriage.solve import forces_of
-from trackroller.damage import LIMITS, verdict
-from trackroller.damage.miner import block_damage, repetitions_to_failure
-from trackroller.damage.pair import first_failure
 from trackroller.errors import InputError
-from trackroller.parameters import BODIES, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.of_carriage import field_of
-from trackroller.roller.output_names import declared
 from trackroller.roller.settings import LOADS
 from trackroller.study.design.build import build, columns_of, dataset_of
 
@@ -204,18 +198,19 @@ def of_worst_rollers(
         does not roll in a load case is the worst one. A row that the rollers do not hold has the regime lift-off, and
         its `reason` says why.
     """
-    tracks = _Tracks(cases, solved)
-    row = cases[ROW].values[tracks.first]
-    # the worst roller of each row: the first one after sorting by row and life
-    order = np.lexsort((tracks.rank, row))
-    best = order[np.unique(row[order], return_index=True)[1]]
+    names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
+    group, kmh = cases[ROW].values * len(names) + rollers, 0.06 * cases["velocity"].values
+    lives = Lives(group, cases[SHARE].values, kmh, cases[HOURS].values, solved)
+    row = cases[ROW].values[lives.first]
+    order = np.lexsort((lives.rank, row))
+    worst = order[np.unique(row[order], return_index=True)[1]]  # the first one of each row
     place = np.full(design.size, -1)
-    place[row[best]] = tracks.ruling[best]
+    place[row[worst]] = lives.ruling[worst]
     held = place >= 0
     shown = solved.isel(case=np.maximum(place, 0)).copy(deep=True)
-    for name, values in tracks.summed.items():
+    for name, values in lives.summed.items():
         full = shown[name].values
-        full[row[best]] = values[best]
+        full[row[worst]] = values[worst]
         shown[name].values = full
     reasons = {int(i): text for i, text in json.loads(cases.attrs.get(REASONS, "{}")).items()}
     _without_results(shown, ~held, [reasons.get(i, "") for i in range(design.size)])
@@ -240,107 +235,3 @@ def _without_results(shown: xr.Dataset, gone: np.ndarray, reasons: list[str]) ->
     shown["regime"][gone] = REGIMES.index("lift_off")
     if "reason" in shown:
         shown["reason"].values = np.where(gone, np.array(reasons, dtype=object), shown["reason"].values)
-
-
-class _Tracks:
-    """The cases of each roller of each row, in groups; `first` is the first case of each group.
-
-    Attributes
-    ----------
-    first : numpy.ndarray of int
-        First case of each group.
-    ruling : numpy.ndarray of int
-        Case of each group whose results stand for it: the one that does most damage, or that does not roll.
-    rank : numpy.ndarray
-        What sorts the groups of a row, the worst one first: its life to the first limit [h].
-    summed : dict of str to numpy.ndarray
-        Lives with the damage of all load cases, utilisations and states of limits, by group.
-    """
-
-    def __init__(self, cases: xr.Dataset, solved: xr.Dataset) -> None:
-        names, rollers = np.unique(cases[ROLLER].values.astype(str), return_inverse=True)
-        group = cases[ROW].values * len(names) + rollers
-        self.order = np.argsort(group, kind="stable")
-        _, self.start = np.unique(group[self.order], return_index=True)
-        self.first = self.order[self.start]
-        self.solved, self.counts = solved, np.diff(np.append(self.start, len(group)))
-        self.share, self.hours = cases[SHARE].values, cases[HOURS].values[self.first]
-        self.time = self.share / (0.06 * cases["velocity"].values)  # hours in the load case for a km
-        self.summed = self._summed()
-        self._judge(cases)
-
-    def of(self, values: np.ndarray, reduce: Callable[..., np.ndarray] = np.add) -> np.ndarray:
-        """Return the sum, or another reduction, over the cases of each group."""
-        return np.asarray(reduce.reduceat(values[self.order], self.start))  # type: ignore[attr-defined]
-
-    def life(self, values: np.ndarray, units: str) -> np.ndarray:
-        """Return a life with the damage of all load cases; in hours by their time, otherwise by their travel."""
-        weight, whole = (self.time, self.hours) if units == "h" else (self.share, np.ones(len(self.first)))
-        shape = (-1, *(1,) * (values.ndim - 1))
-        damage = self.of(block_damage(weight.reshape(shape), values))
-        return np.asarray(whole.reshape(shape) * repetitions_to_failure(damage))
-
-    def _judge(self, cases: xr.Dataset) -> None:
-        """Set `ruling` and `rank`."""
-        regime = self.solved["regime"].values * (self.share > 0)
-        worst = self.of(regime, np.maximum)
-        name = next(n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved)
-        lives = self.summed[name]
-        damage = np.nan_to_num(block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300)
-        load = np.abs(cases["radial_force"].values)
-        stand = np.lexsort((load, damage, regime))  # the case that rules is the last one of its group
-        last = np.full(len(self.first), -1)
-        last[np.repeat(np.arange(len(self.first)), self.counts)[np.argsort(self.order)][stand]] = stand
-        self.ruling = last
-        self.rank = np.where(worst > 0, -worst.astype(float), np.nan_to_num(lives, nan=np.inf))
-
-    def _summed(self) -> dict[str, np.ndarray]:
-        """Return lives with the damage of all load cases, utilisations and states of limits, by group."""
-        out = {}
-        for name, variable in self.solved.data_vars.items():
-            known = declared(str(name))
-            if known is not None and known.life:
-                out[str(name)] = self.life(variable.values, str(variable.attrs.get("units", "")))
-        if "life_hours" in out:
-            for body, life in zip(BODIES, np.moveaxis(out["life_hours"].min(axis=1), -1, 0), strict=True):
-                out[f"{body}_life_hours"] = life
-            out["pair_life_hours"], first = first_failure(out["roller_life_hours"], out["guide_life_hours"])
-            out["first_to_fail"] = first.astype(self.solved["first_to_fail"].dtype)
-        return out | (self._by_limit(out) if "life_hours_by_limit" in self.solved else {})
-
-    def _by_limit(self, out: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-        """Return the lives by limit and to the first one, and which one it is; fatigue adds up track by track."""
-        solved = self.solved
-        new: dict[str, np.ndarray] = {}
-        limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
-        counts = (self.share > 0)[:, None, None]
-        used = self.of(np.where(counts, solved["utilisation"].values, np.nan), np.fmax)
-        state = self.of(np.where(counts, solved["limit_state"].values, 0), np.maximum)
-        meanings = solved["validity_body"].attrs["flag_meanings"].split()
-        breaks = (solved["validity_body"].values >> meanings.index("static")) & 1 & (self.share > 0)[:, None]
-        broken = verdict.breaking(self.of(breaks, np.maximum).astype(bool), limits)
-        timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
-        for end in verdict.ENDS:
-            lives = out[f"life_hours_by_limit{end}"].copy()
-            for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue" and "life_hours" in solved):
-                lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
-            first, which = verdict.first_of(lives, used, timed, limits, broken, state == 0)
-            new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
-            new[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
-            if not end:
-                words = solved["limiting_mechanism"].attrs["flag_meanings"].split()
-                values = np.ravel(solved["limiting_mechanism"].attrs["flag_values"])
-                names = [*(limit.name for limit in limits), "unknown"]
-                numbers = np.array([values[words.index(name)] for name in names])
-                new["limiting_mechanism"] = numbers[which].astype(solved["limiting_mechanism"].dtype)
-        return new | {"utilisation": used, "limit_state": state.astype(solved["limit_state"].dtype)}
-
-    def _fatigue(self, by_limit: np.ndarray) -> np.ndarray:
-        """Return the hours to the fatigue limit at its failure probability, (group, body), of the worse track.
-
-        ASSUME: both tracks of a case have the same ratio of this life to the life at 50 %.
-        """
-        tracks = self.solved["life_hours"].transpose("case", "contact", "body").values
-        with np.errstate(invalid="ignore", divide="ignore"):
-            ratio = by_limit / tracks.min(axis=1)
-        return np.asarray(self.life(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None], "h").min(axis=1))

@@ -1,0 +1,134 @@
+"""The lives of the rollers of carriages over their load cases, limit by limit.
+
+ASSUME: damage adds up linearly over the load cases (Palmgren-Miner), limit by limit, by their shares of the travel.
+ASSUME: the load cases load the same two tracks of a roller and the same point of the guide.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+import xarray as xr
+
+from trackroller.damage import LIMITS, verdict
+from trackroller.damage.miner import block_damage, repetitions_to_failure
+from trackroller.damage.pair import first_failure
+from trackroller.parameters import BODIES
+from trackroller.roller.output_names import declared
+
+
+class Lives:
+    """The lives of rollers that are solved in several load cases.
+
+    Parameters
+    ----------
+    group : numpy.ndarray of int, shape (n,)
+        Roller of each solved case.
+    share : numpy.ndarray, shape (n,)
+        Share of the travel of its load case [1].
+    speed : numpy.ndarray, shape (n,)
+        Its speed [km/h].
+    hours : numpy.ndarray, shape (n,)
+        Hours that the carriage travels for a km, with all its load cases [h/km].
+    solved : xarray.Dataset
+        Results of the cases along `case`.
+
+    Attributes
+    ----------
+    first : numpy.ndarray of int
+        First case of each roller; rollers come in the order of their numbers.
+    summed : dict of str to numpy.ndarray
+        Lives with the damage of all load cases, largest utilisations and worst states of limits, by roller.
+    ruling : numpy.ndarray of int
+        Case of each roller that does most damage, or in which it does not roll.
+    rank : numpy.ndarray
+        What sorts rollers, the worst one first: the life to the first limit [h], below 0 for one that does not roll.
+    """
+
+    def __init__(
+        self, group: np.ndarray, share: np.ndarray, speed: np.ndarray, hours: np.ndarray, solved: xr.Dataset
+    ) -> None:
+        self.order = np.argsort(group, kind="stable")
+        _, self.start = np.unique(group[self.order], return_index=True)
+        self.first = self.order[self.start]
+        self.solved, self.counts = solved, np.diff(np.append(self.start, len(group)))
+        self.share, self.hours, self.time = share, hours[self.first], share / speed
+        self.summed = self._summed()
+        self.ruling, self.rank = self._judged()
+
+    def of(self, values: np.ndarray, reduce: Callable[..., np.ndarray] = np.add) -> np.ndarray:
+        """Return the sum, or another reduction, over the cases of each roller."""
+        return np.asarray(reduce.reduceat(values[self.order], self.start))  # type: ignore[attr-defined]
+
+    def life(self, values: np.ndarray, units: str) -> np.ndarray:
+        """Return a life with the damage of all load cases; in hours by their time, otherwise by their travel."""
+        weight, whole = (self.time, self.hours) if units == "h" else (self.share, np.ones(len(self.first)))
+        shape = (-1, *(1,) * (values.ndim - 1))
+        damage = self.of(block_damage(weight.reshape(shape), values))
+        return np.asarray(whole.reshape(shape) * repetitions_to_failure(damage))
+
+    def _judged(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return the case that stands for each roller, and what ranks the rollers."""
+        regime = self.solved["regime"].values * (self.share > 0)
+        name = next(n for n in ("pair_life_to_first_limit_hours", "pair_life_hours") if n in self.solved)
+        damage = np.nan_to_num(block_damage(self.time, self.solved[name].values), nan=0.0, posinf=1e300)
+        used = self.solved["max_pressure"].max("contact").values if "max_pressure" in self.solved else self.share
+        order = np.lexsort((used, damage, regime))  # the case that rules is the last one of its roller
+        group = np.empty(len(order), dtype=int)
+        group[self.order] = np.repeat(np.arange(len(self.first)), self.counts)
+        ruling = np.empty(len(self.first), dtype=int)
+        ruling[group[order]] = order
+        worst = self.of(regime, np.maximum)
+        return ruling, np.where(worst > 0, -worst.astype(float), np.nan_to_num(self.summed[name], nan=np.inf))
+
+    def _summed(self) -> dict[str, np.ndarray]:
+        """Return lives with the damage of all load cases, utilisations and states of limits, by roller."""
+        out = {}
+        for name, variable in self.solved.data_vars.items():
+            known = declared(str(name))
+            if known is not None and known.life:
+                out[str(name)] = self.life(variable.values, str(variable.attrs.get("units", "")))
+        if "life_hours" in out:
+            for body, life in zip(BODIES, np.moveaxis(out["life_hours"].min(axis=1), -1, 0), strict=True):
+                out[f"{body}_life_hours"] = life
+            out["pair_life_hours"], first = first_failure(out["roller_life_hours"], out["guide_life_hours"])
+            out["first_to_fail"] = first.astype(self.solved["first_to_fail"].dtype)
+        return out | (self._by_limit(out) if "life_hours_by_limit" in self.solved else {})
+
+    def _by_limit(self, out: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
+        """Return the lives by limit and to the first one, and which one it is; fatigue adds up track by track."""
+        solved = self.solved
+        new: dict[str, np.ndarray] = {}
+        limits = [LIMITS[name] for name in solved["limit"].values.tolist()]
+        counts = (self.share > 0)[:, None, None]
+        used = self.of(np.where(counts, solved["utilisation"].values, np.nan), np.fmax)
+        state = self.of(np.where(counts, solved["limit_state"].values, 0), np.maximum)
+        meanings = solved["validity_body"].attrs["flag_meanings"].split()
+        breaks = (solved["validity_body"].values >> meanings.index("static")) & 1 & (self.share > 0)[:, None]
+        broken = verdict.breaking(self.of(breaks, np.maximum).astype(bool), limits)
+        timed = solved["life_hours_by_limit"].notnull().any(["case", "body"]).values
+        for end in verdict.ENDS:
+            lives = out[f"life_hours_by_limit{end}"].copy()
+            for i in (i for i, limit in enumerate(limits) if limit.name == "fatigue" and "life_hours" in solved):
+                lives[:, i] = self._fatigue(solved[f"life_hours_by_limit{end}"].values[:, i])
+            first, which = verdict.first_of(lives, used, timed, limits, broken, state == 0)
+            new |= {f"life_hours_by_limit{end}": lives, f"life_to_first_limit_hours{end}": first}
+            new[f"pair_life_to_first_limit_hours{end}"] = first_failure(*first.T)[0]
+            if not end:
+                words = solved["limiting_mechanism"].attrs["flag_meanings"].split()
+                values = np.ravel(solved["limiting_mechanism"].attrs["flag_values"])
+                names = [*(limit.name for limit in limits), "unknown"]
+                numbers = np.array([values[words.index(name)] for name in names])
+                new["limiting_mechanism"] = numbers[which].astype(solved["limiting_mechanism"].dtype)
+        return new | {"utilisation": used, "limit_state": state.astype(solved["limit_state"].dtype)}
+
+    def _fatigue(self, by_limit: np.ndarray) -> np.ndarray:
+        """Return the hours to the fatigue limit at its failure probability, (roller, body), of the worse track.
+
+        ASSUME: both tracks of a case have the same ratio of this life to the life at 50 %.
+        """
+        tracks = self.solved["life_hours"].transpose("case", "contact", "body").values
+        with np.errstate(invalid="ignore", divide="ignore"):
+            ratio = by_limit / tracks.min(axis=1)
+        return np.asarray(self.life(tracks * np.where(np.isnan(ratio), 1.0, ratio)[:, None], "h").min(axis=1))
