@@ -70,6 +70,8 @@ def _one_contact(ds: xr.Dataset) -> Iterator[Sentence]:
 
 def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
     for name, what in MARGINS:
+        if f"{name}_to_lift_off" not in ds:  # the forces alone
+            continue
         first = ds[f"{name}_to_lift_off"].values
         if np.isfinite(first).any():
             i = int(np.argmin(first))
