@@ -58,7 +58,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     xarray.Dataset
         Dimensions `load_case` and `roller`. `radial_force` and `axial_force` [N] have the signs of `Case`; a lifted
         roller has 0 N. `approach` [mm] is that of the roller to its rail. `payload_to_lift_off`,
-        `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. With `lives`,
+        `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
+        (load_case) is False where the sharing of axial load among the rollers did not settle. With `lives`,
         `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
         roller with the shortest one.
 
@@ -69,7 +70,7 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
 
     Notes
     -----
-    The margins take a second a load case, up to ten where many rollers lift. The lives take as long as
+    The margins take a tenth of a second a load case, up to two where many rollers lift. The lives take as long as
     `trackroller.solve` for each roller and load case.
 
     Examples
@@ -218,6 +219,11 @@ def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> di
             _attrs("mm", "approach of the roller to its rail"),
         ),
         "drive_force": (_C, np.array([one.drive for one in loads]), _attrs("N", "force of the drive along the track")),
+        "converged": (
+            _C,
+            np.array([one.converged for one in found]),
+            {"long_name": "whether radial forces and axial stiffness belong together"},
+        ),
         "share": (_C, np.array([case.share for case in whole.cases]), _attrs("1", "share of the travel")),
         "speed": (_C, np.array(speeds), _attrs("m s-1", "speed")),
     }

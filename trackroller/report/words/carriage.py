@@ -33,7 +33,7 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
     ds : xarray.Dataset
         Result of `trackroller.carriage`.
     """
-    return [_worst(ds), *_lifted(ds), *_one_contact(ds), *_margins(ds), *_catalogue(ds)]
+    return [_worst(ds), *_unsettled(ds), *_lifted(ds), *_one_contact(ds), *_margins(ds), *_catalogue(ds)]
 
 
 def _worst(ds: xr.Dataset) -> Sentence:
@@ -44,6 +44,12 @@ def _worst(ds: xr.Dataset) -> Sentence:
     km, hours = (float(ds[name].sel(roller=roller)) for name in ("life_km", "life_hours"))
     unknown = ds["roller"].values[np.isnan(ds["life_km"].values)].tolist()
     return say("carriage", "carriage_worst", roller=roller, case=case, km=km, life=lasting(hours, "h"), unknown=unknown)
+
+
+def _unsettled(ds: xr.Dataset) -> Iterator[Sentence]:
+    cases = ds["load_case"].values[~ds["converged"].values].tolist()
+    if cases:
+        yield say("carriage", "carriage_unsettled", cases=cases)
 
 
 def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
@@ -74,7 +80,7 @@ def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
             continue
         first = ds[f"{name}_to_lift_off"].values
         if np.isfinite(first).any():
-            i = int(np.argmin(first))
+            i = int(np.nanargmin(first))
             tipping = float(ds[f"{name}_to_tipping"].values[i])
             case = str(ds["load_case"].values[i])
             yield say("carriage", "carriage_margin", what=what, lift_off=float(first[i]), tipping=tipping, case=case)
