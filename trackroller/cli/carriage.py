@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 
 from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result
@@ -15,11 +16,13 @@ def run_carriage(
 ) -> None:
     """Solve a carriage file, and write or print the result.
 
-    `out` receives the spectrum of the roller `spectrum`, or with `study` a study of the worst loads, otherwise netCDF.
-    `report` receives the page. `as_json` prints JSON; without it and `out`, tables are printed.
+    `out` receives the spectrum of the roller `spectrum`, or with `study` a study of all loads with a CSV file
+    of its cases; otherwise netCDF. `report` receives the page. `as_json` prints JSON; without it and
+    `out`, tables are printed.
     """
     target = _target(out, spectrum, study)
     page = None if report is None else writable_page(report)
+    table = _beside(target) if target is not None and study else None
     from trackroller.carriage.file import load_carriage
     from trackroller.carriage.files import spectrum_of, study_of
     from trackroller.carriage.solve import forces_of, solve_carriage  # heavy: scipy
@@ -27,14 +30,16 @@ def run_carriage(
     from trackroller.report.pages.sheet import as_json as text_of
 
     whole = load_carriage(file)
-    if spectrum is not None and page is None and not as_json:
-        ds = forces_of(whole)  # a spectrum needs neither margins nor lives
+    if (spectrum is not None or study) and page is None and not as_json:
+        ds = forces_of(whole)  # loads need neither margins nor lives
     else:
-        ds = solve_carriage(whole, lives=spectrum is None or page is not None)
+        ds = solve_carriage(whole)
     if target is not None and spectrum is not None:
         write_text(target, write_yaml(spectrum_of(whole, ds, spectrum)))
-    elif target is not None and study:
-        write_text(target, write_yaml(study_of(whole, ds)))
+    elif target is not None and table is not None:
+        keys, rows = study_of(whole, ds, table.name)
+        write_text(table, rows)
+        write_text(target, write_yaml(keys))
     elif target is not None:
         write_result(ds, target)
     if page is not None:
@@ -43,6 +48,17 @@ def run_carriage(
         print(text_of(ds))
     elif target is None:
         print_carriage(ds)
+
+
+def _beside(study: Path) -> Path:
+    """Return the table of cases to write beside a study; refuse to replace a file of somebody else."""
+    from trackroller.carriage.files import HEADS  # heavy: scipy
+
+    table = study.with_suffix(".csv")
+    if os.path.lexists(table) and (not table.is_file() or not table.read_bytes().startswith(HEADS.encode())):
+        allowed, wrong = f"a name beside which {table.name} is free", f"would replace {table.name} of somebody else"
+        raise InputError("--out", study.name, allowed, "Give another name with -o.", wrong)
+    return table
 
 
 def _target(out: Path | None, spectrum: str | None, study: bool) -> Path | None:

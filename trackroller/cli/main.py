@@ -205,7 +205,9 @@ def carriage(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc), or the file below")] = None,
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
     spectrum: Annotated[str | None, typer.Option("--spectrum", help="roller whose spectrum -o receives")] = None,
-    study: Annotated[bool, typer.Option("--study", help="-o receives a study of the worst loads")] = False,
+    study: Annotated[
+        bool, typer.Option("--study", help="-o receives a study of all loads, and a CSV beside it")
+    ] = False,
 ) -> None:
     """Print loads and lives of the rollers of a carriage by load case, and the margins to lift-off and tipping."""
 
