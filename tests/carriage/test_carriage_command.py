@@ -14,6 +14,7 @@ from trackroller.carriage.solve import forces_of, with_lives
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.words.carriage import sentences
+from trackroller.roller.record import doubts_of
 from trackroller.study.spectrum.file import Spectrum, load_spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import write_yaml
@@ -181,6 +182,28 @@ def test_the_data(folder):
     with xr.open_dataset(folder / "loads.nc") as ds:
         assert ds.radial_force.dims == ("load_case", "roller")
         assert ds.radial_force.attrs["units"] == "N"
+
+
+def test_doubts_about_rollers_are_told(folder):
+    """What `solve` asks about a roller is asked about each roller of a carriage, under the loads of the carriage."""
+    values = shuttle(rollers=rollers_between(stiffness=1e4))
+    values["rollers"]["FL"]["roller"] = ROLLER | {"roller_profile_radius": 0.1, "radial_force": -1e7}
+    (folder / "odd.yaml").write_text(write_yaml(values))
+    done = run("odd.yaml", "--spectrum", "FR", "-o", "s.yaml")
+    (told,) = [line for line in done.stderr.splitlines() if "doubtful" in line]
+    assert told.startswith(
+        "trackroller: doubtful: Roller FL: roller_profile_radius = 0.1 mm is 3 times below the usual"
+    )
+    assert doubts_of(tr.carriage(values, lives=False)) == [told.partition("doubtful: ")[2]]
+
+
+def test_doubts_that_rollers_share_are_told_once():
+    values = shuttle(rollers=rollers_between(roller=ROLLER | {"velocity": 0.1}), cases=[{"name": "stand"}])
+    ds = tr.carriage(values, lives=False)
+    (text,) = doubts_of(ds)
+    assert text.startswith("Roller FL, FR, RL, RR: velocity = 0.1 m/min is 3 times below")
+    values["cases"][0]["speed"] = "1 m/s"
+    assert doubts_of(tr.carriage(values, lives=False)) == []
 
 
 @pytest.mark.parametrize(

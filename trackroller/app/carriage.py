@@ -28,6 +28,7 @@ from trackroller.report.pages.carriage import tables
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.carriage import sentences, worst_place
 from trackroller.roller.aliases import ALIASES
+from trackroller.roller.record import doubts_of
 from trackroller.study.store import ownership
 from trackroller.study.store.digests import read_record
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
@@ -152,7 +153,7 @@ def carriage_lives(text: str, file: str = "") -> dict[str, Any]:
 @lives_in_years
 def _lives(ds: xr.Dataset) -> dict[str, Any]:
     return {
-        "said": [one.text for one in sentences(ds)],
+        "said": [*(one.text for one in sentences(ds)), *(f"Doubtful: {text}" for text in doubts_of(ds))],
         "tables": [_table(table) for table in tables(ds)],
         "worst": str(ds.attrs.get("worst_roller", "")),
     }

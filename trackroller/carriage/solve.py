@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -24,10 +25,15 @@ from trackroller.carriage.statics import (
 )
 from trackroller.contact.hertz import contact_modulus, unit_approach
 from trackroller.errors import InputError
+from trackroller.materials import load_database
+from trackroller.parameters import BODIES
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import file_attributes
+from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import with_duty, years
 from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.record import DOUBTS
+from trackroller.roller.settings import LOADS
 
 LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (
@@ -87,6 +93,7 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     whole = source if isinstance(source, Carriage) else load_carriage(source)
     springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
     ds = _solution(whole, springs, loads).assign(_margins(springs, loads))
+    ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     return with_lives(ds, whole) if lives and all(roller.case is not None for roller in whole.rollers) else ds
 
 
@@ -286,6 +293,23 @@ def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
             loads = {name: float(ds[name][i, j]) for name in ("radial_force", "axial_force")}
             made[i, j] = replace(case, **loads, **({} if speed is None else {"velocity": 60 * speed}))
     return made
+
+
+def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
+    """Return a sentence for each unusual value of the rollers and their loads, see `trackroller.roller.doubts`."""
+    database = load_database()
+    by_text: dict[str, list[str]] = {}
+    cases = cases_of(whole, ds)
+    for j, roller in enumerate(whole.rollers):
+        if roller.case is None:
+            continue
+        loaded = [case for (_, own), case in cases.items() if own == j]
+        values = {name: value for name, value in roller.case.as_dict().items() if name not in LOADS}
+        values |= {name: [getattr(case, name) for case in loaded] for name in (*LOADS, "velocity") if loaded}
+        for text in doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES)):
+            by_text.setdefault(text, []).append(roller.name)
+    one = len(whole.rollers) == 1
+    return [text if one else f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
 
 
 def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 
 from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result
+from trackroller.cli.usage import print_doubts
 from trackroller.errors import InputError
 from trackroller.files import write_text
 from trackroller.yaml_file import write_yaml
@@ -25,7 +26,7 @@ def run_carriage(
     table = _beside(target) if target is not None and study else None
     from trackroller.carriage.file import load_carriage
     from trackroller.carriage.files import spectrum_of, study_of
-    from trackroller.carriage.solve import forces_of, solve_carriage  # heavy: scipy
+    from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage  # heavy: scipy
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
 
@@ -34,6 +35,7 @@ def run_carriage(
         ds = forces_of(whole)  # loads need neither margins nor lives
     else:
         ds = solve_carriage(whole)
+    print_doubts(doubts_of_rollers(whole, ds))
     if target is not None and spectrum is not None:
         write_text(target, write_yaml(spectrum_of(whole, ds, spectrum)))
     elif target is not None and table is not None:

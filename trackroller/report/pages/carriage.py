@@ -17,6 +17,7 @@ from trackroller.report.pages.sheet import pictures, versions_text
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.carriage import sentences
+from trackroller.roller.record import doubts_of
 
 LARGE = "–"  # of a margin that is not reached
 UNKNOWN = "not known"
@@ -123,6 +124,7 @@ def write_carriage(ds: xr.Dataset, path: Path | str, file: str = "carriage.yaml"
         "name": capital(str(ds.attrs["title"])),
         "description": str(ds.attrs.get("description", "")),
         "said": [sentence.text for sentence in sentences(ds)],
+        "doubts": doubts_of(ds),
         "figure": next(iter(drawn.values())),
         "tables": [
             *tables(ds),
