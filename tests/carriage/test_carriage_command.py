@@ -8,8 +8,10 @@ from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
 from typer.testing import CliRunner
 
 import trackroller as tr
+from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.files import spectrum_of, study_of
+from trackroller.carriage.loads import GRAVITY
 from trackroller.carriage.solve import forces_of, with_lives
 from trackroller.cli.main import app
 from trackroller.errors import InputError
@@ -59,6 +61,17 @@ def test_sentences_state_lifted_rollers(lifting):
     assert said["carriage_lifted", "FR"]["cases"] == ["push"]
     assert said["carriage_lifted", "FR"]["share"] == 0.25
     assert ("carriage_lifted", "FL") not in said
+
+
+def test_a_carriage_without_a_life_says_why():
+    weak = [{"pair": [f"{end}L", f"{end}R"], "force": "60 N"} for end in "FR"]
+    ds = tr.carriage(shuttle(cases=[{"name": "run"}], preload=weak))
+    said = {one.kind: one for one in sentences(ds)}
+    assert not said["carriage_no_life"].values["endless"]
+    assert said["carriage_one_contact"].values["rollers"] == ["FL", "FR", "RL", "RR"]
+    assert "The rollers FL, FR, RL and RR do not roll on both contacts in run" in said["carriage_one_contact"].text
+    unknown = tr.carriage(cart(rollers={n: r | {"roller": None, "stiffness": 1e4} for n, r in rollers_below().items()}))
+    assert "the file of FL, FR, RL and RR is not given" in " ".join(one.text for one in sentences(unknown))
 
 
 def test_a_roller_with_play_is_named():
@@ -213,11 +226,48 @@ def test_doubts_that_rollers_share_are_told_once():
         (["--spectrum", "FX", "-o", "s.yaml"], "'FX' is not known"),
         (["--spectrum", "FL", "--study", "-o", "s.yaml"], "one of --spectrum and --study"),
         (["-o", "loads.txt"], "netCDF"),
+        (["--example"], "nothing but -o beside it"),
     ],
 )
 def test_wrong_options_are_named(folder, words, message):
     done = run("shuttle.yaml", *words)
     assert message in str(done.exception)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "trackroller carriage --example -o shuttle.yaml"),
+        (["nothere.yaml"], "trackroller carriage --example -o nothere.yaml"),
+        (["--example", "-o", "a.txt"], "ends in .yaml"),
+        (["--example", "-o", "shuttle.yaml"], "is there already"),
+        (["--example", "--study"], "--study"),
+    ],
+)
+def test_a_newcomer_is_led_to_the_example(folder, words, message):
+    before = (folder / "shuttle.yaml").read_text()
+    done = run(*words)
+    assert message in str(done.exception)
+    assert (folder / "shuttle.yaml").read_text() == before
+
+
+def test_the_example_is_one_file_that_can_be_solved(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("--example").stdout == EXAMPLE
+    done = run("--example", "-o", "cart.yaml")
+    assert done.exit_code == 0 and "trackroller carriage cart.yaml" in done.stderr
+    ds = forces_of(load_carriage(tmp_path / "cart.yaml"))
+    assert np.allclose(ds.axial_force.sum("roller"), -100 * GRAVITY)
+    assert run("cart.yaml", "--spectrum", "FL", "-o", "s.yaml").exit_code == 0
+    assert load_spectrum(tmp_path / "s.yaml").blocks[1].name == "curve"
+
+
+@pytest.mark.slow
+def test_the_example_answers_how_many_years(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("--example", "-o", "shuttle.yaml").exit_code == 0
+    said = run("shuttle.yaml").output
+    assert "is the worst one" in said and "years)" in said
 
 
 def test_the_report_of_a_data_set(tmp_path):

@@ -94,7 +94,9 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
     ds = _solution(whole, springs, loads).assign(_margins(springs, loads))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
-    return with_lives(ds, whole) if lives and all(roller.case is not None for roller in whole.rollers) else ds
+    if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
+        return ds.assign_attrs(without_case=", ".join(without))
+    return with_lives(ds, whole) if lives else ds
 
 
 def forces_of(whole: Carriage) -> xr.Dataset:
