@@ -11,18 +11,21 @@ from __future__ import annotations
 import io
 import math
 import re
-from collections.abc import Collection, Iterator, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager, suppress
+from itertools import pairwise
 from pathlib import Path
 from typing import Any, ClassVar
 
 from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.constructor import DuplicateKeyError, SafeConstructor
 from ruamel.yaml.error import MarkedYAMLError, YAMLError
 from ruamel.yaml.events import AliasEvent, CollectionEndEvent, CollectionStartEvent, ScalarEvent
 from ruamel.yaml.nodes import MappingNode, ScalarNode, SequenceNode
 from ruamel.yaml.representer import SafeRepresenter
 from ruamel.yaml.resolver import BaseResolver
+from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from trackroller.errors import InputError, raise_all
 from trackroller.files import read_text
@@ -270,6 +273,68 @@ def write_yaml(data: Mapping[str, Any]) -> str:
     out = io.StringIO()
     writer.dump(dict(data), out)
     return out.getvalue()
+
+
+def change_yaml(text: str, changes: Iterable[tuple[Sequence[str | int], str | None]], what: str) -> str:
+    r"""Return a YAML text with some values changed; its comments and its other lines stay.
+
+    Parameters
+    ----------
+    text : str
+        One YAML document, a mapping.
+    changes : iterable of (path, value)
+        Keys and numbers of list entries that lead to a value, and the value as it is typed; None removes the entry. A
+        mapping that is not there is added, and a number one behind the last entry of a list adds an entry.
+    what : str
+        Kind of text, for messages.
+
+    Raises
+    ------
+    InputError
+        If the text is no YAML mapping, or if a path leads nowhere.
+
+    Examples
+    --------
+    >>> change_yaml("mass: {at: [0, 0, 60]} # empty\n", [(["mass", "at", 2], "70"), (["name"], "cart")], "file")
+    'mass: {at: [0, 0, 70]} # empty\nname: cart\n'
+    """
+    parse_mapping(text, what)
+    editor = YAML(typ="rt")
+    editor.width = 10_000  # a long line stays one
+    editor.preserve_quotes = True  # type: ignore[assignment]  # the library types its default, None
+    editor.indent(mapping=2, sequence=4, offset=2)
+    whole = editor.load(text)
+    for path, value in changes:
+        place = whole
+        try:
+            for key, after in pairwise(path):
+                if isinstance(place, CommentedMap) and place.get(key) is None:
+                    place[key] = CommentedSeq() if isinstance(after, int) else CommentedMap()
+                    place[key].fa.set_flow_style()
+                place = place[key]
+            if value is None:
+                del place[path[-1]]
+            elif isinstance(place, CommentedSeq) and path[-1] == len(place):
+                place.append(_typed(editor, value, what))
+            else:
+                place[path[-1]] = _typed(editor, value, what)
+        except (KeyError, IndexError, TypeError, AttributeError):
+            where = ".".join(map(str, path))
+            raise InputError(
+                where, value, f"an entry of the {what}", "Change the text instead.", "is not there"
+            ) from None
+    out = io.StringIO()
+    editor.dump(whole, out)
+    return out.getvalue()
+
+
+def _typed(editor: YAML, value: str, what: str) -> Any:
+    """Return a value as it is typed: what YAML reads, and a text if it is no YAML."""
+    try:
+        parse_yaml(value, what)
+    except InputError:
+        return DoubleQuotedScalarString(value) if needs_quotes(value) else value
+    return editor.load(value)
 
 
 def needs_quotes(text: str) -> bool:

@@ -339,7 +339,7 @@ def test_two_pages_disturb_each_other_not(page, browser, live):
 
 
 @pytest.mark.skipif(not AXE.is_file(), reason="needs axe-core: npm ci in web/")
-@pytest.mark.parametrize("tab", ["roller", "whatif", "study", "results"])
+@pytest.mark.parametrize("tab", ["roller", "whatif", "study", "results", "carriage"])
 @pytest.mark.parametrize("width, scheme", [(1280, "light"), (1280, "dark"), (400, "light")])
 def test_axe_finds_nothing(page, tab, width, scheme):
     page.resize(width, 800)
@@ -349,6 +349,8 @@ def test_axe_finds_nothing(page, tab, width, scheme):
     if tab == "whatif":
         page.run("trackroller.state.pin()")
         page.until("document.querySelectorAll('.variants tbody tr').length > 20")
+    if tab == "carriage":
+        page.until("document.querySelector('.carriage .stage').dataset.stage === 'complete'")
     page.call("Page.setBypassCSP", enabled=True)
     page.run(AXE.read_text(encoding="utf-8") + "; 0")
     found = page.run("axe.run().then((r) => r.violations.map((v) => [v.id, v.nodes.map((n) => n.html.slice(0, 90))]))")
@@ -361,8 +363,10 @@ def test_no_width_scrolls_sideways(page, width):
     steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
     page.run(f"trackroller.state.replace({json.dumps(steel | {'motor_force': 0, 'friction_coefficient': 0.1})})")
     page.until("document.querySelector('.margins').textContent.includes('†')")
-    for tab in ("roller", "whatif", "study", "results"):
+    for tab in ("roller", "whatif", "study", "results", "carriage"):
         show(page, tab)
+        if tab == "carriage":
+            page.until("document.querySelectorAll('.views .handle').length > 0")
         assert page.run("document.documentElement.scrollWidth") <= width, tab
 
 

@@ -8,14 +8,18 @@ from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
 from typer.testing import CliRunner
 
 import trackroller as tr
+from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.files import spectrum_of, study_of
+from trackroller.carriage.loads import GRAVITY
 from trackroller.carriage.solve import forces_of, with_lives
 from trackroller.cli.main import app
+from trackroller.errors import InputError
 from trackroller.report.words.carriage import sentences
+from trackroller.roller.record import doubts_of
 from trackroller.study.spectrum.file import Spectrum, load_spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-from trackroller.yaml_file import read_mapping, write_yaml
+from trackroller.yaml_file import write_yaml
 
 
 @pytest.fixture
@@ -59,6 +63,17 @@ def test_sentences_state_lifted_rollers(lifting):
     assert ("carriage_lifted", "FL") not in said
 
 
+def test_a_carriage_without_a_life_says_why():
+    weak = [{"pair": [f"{end}L", f"{end}R"], "force": "60 N"} for end in "FR"]
+    ds = tr.carriage(shuttle(cases=[{"name": "run"}], preload=weak))
+    said = {one.kind: one for one in sentences(ds)}
+    assert not said["carriage_no_life"].values["endless"]
+    assert said["carriage_one_contact"].values["rollers"] == ["FL", "FR", "RL", "RR"]
+    assert "The rollers FL, FR, RL and RR do not roll on both contacts in run" in said["carriage_one_contact"].text
+    unknown = tr.carriage(cart(rollers={n: r | {"roller": None, "stiffness": 1e4} for n, r in rollers_below().items()}))
+    assert "the file of FL, FR, RL and RR is not given" in " ".join(one.text for one in sentences(unknown))
+
+
 def test_a_roller_with_play_is_named():
     values = shuttle(
         rollers=rollers_between() | {"D" + n: r for n, r in rollers_below().items()}, cases=[{"name": "a"}]
@@ -69,14 +84,73 @@ def test_a_roller_with_play_is_named():
     assert said[0].values["gap"] == pytest.approx(0.25, abs=1e-6)
 
 
-def test_a_study_of_the_worst_loads():
-    whole = load_carriage(shuttle(cases=[{"name": "run"}]))
+def test_a_study_has_the_loads_of_all_rollers(folder):
+    whole = load_carriage(folder / "shuttle.yaml")
+    ds = forces_of(whole)
+    assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
+    design = tr.load_study(folder / "study.yaml").design()
+    for name in ("radial_force", "axial_force"):
+        assert np.allclose(design[name], ds[name].values.ravel(), rtol=1e-9, atol=1e-9)
+    assert np.allclose(np.unique(design["velocity"]), sorted({tr.Case().velocity, 60}))
+    rows = (folder / "study.csv").read_text().splitlines()
+    assert rows[0] == "load_case,roller,share,radial_force [N],axial_force [N],velocity [m/min]"
+    assert [row.split(",")[:3] for row in rows[1:3]] == [["start", "FL", "0.1"], ["start", "FR", "0.1"]]
+
+
+def test_a_lifted_roller_has_no_row(lifting):
+    study, rows = study_of(lifting, forces_of(lifting), "t.csv")
+    lifted = int((forces_of(lifting).radial_force == 0).sum())
+    assert len(rows.splitlines()) == 1 + 16 - lifted and f"{lifted} in all" in study["description"]
+
+
+def test_rollers_that_differ_have_columns(tmp_path):
+    values = shuttle(duty={"hours_per_day": 8})
+    values["rollers"]["FL"]["roller"] = ROLLER | {"guide_curve_radius": 5000, "guide_material": "1.7225-normalised"}
+    whole = load_carriage(values)
+    study, rows = study_of(whole, forces_of(whole), "s.csv")
+    (tmp_path / "s.csv").write_text(rows)
+    (tmp_path / "s.yaml").write_text(write_yaml(study))
+    design = tr.load_study(tmp_path / "s.yaml").design()
+    left = rows.splitlines()[1].split(",")
+    assert left[1] == "FL" and {"5000", "1.7225-normalised"} <= set(left)
+    assert sorted({*design["guide_curve_radius"].values.tolist()}) == [5000, np.inf]
+    assert study["duty"] == {"hours_per_day": 8, "days_per_year": 365} and study["contact_model"] == "sliding"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"contact_model": "kalker"}, "contact_model"),
+        ({"roller_profile": {"arc": -8.0}, "normal": "hertz"}, "roller_profile"),
+    ],
+)
+def test_rollers_that_no_table_can_hold_are_refused(change, message):
+    values = shuttle()
+    values["rollers"]["FL"]["roller"] = ROLLER | change
+    whole = load_carriage(values)
+    with pytest.raises(InputError, match=message):
+        study_of(whole, forces_of(whole), "s.csv")
+
+
+def test_a_table_of_somebody_else_is_kept(folder):
+    (folder / "study.csv").write_text("mine\n")
+    assert "of somebody else" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
+    assert (folder / "study.csv").read_text() == "mine\n" and not (folder / "study.yaml").exists()
+    (folder / "study.csv").unlink()
+    for _ in range(2):
+        assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
+
+
+@pytest.mark.slow
+def test_the_study_runs_as_it_is(folder):
+    assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
+    done = CliRunner().invoke(app, ["run", "study.yaml"])
+    assert done.exit_code == 0, done.output
+    whole = load_carriage(folder / "shuttle.yaml")
     ds = with_lives(forces_of(whole), whole)
-    study = tr.load_study(study_of(whole, ds))
-    design = study.design()
-    worst = ds.sel(roller=ds.attrs["worst_roller"], load_case="run")
-    assert np.allclose(design.axial_force, float(worst.axial_force), rtol=1e-9)
-    assert np.allclose(design.radial_force, float(worst.radial_force), rtol=1e-9)
+    with tr.open_study(folder / "results" / "shuttle-loads").data as found:
+        lives = found["pair_life_to_first_limit_hours"].values
+    assert np.allclose(lives, ds.case_life_hours.values.ravel(), rtol=1e-6)
 
 
 @pytest.fixture
@@ -114,15 +188,35 @@ def test_the_spectrum_is_read_as_it_is(folder):
 
 
 @pytest.mark.slow
-def test_the_study_and_the_data(folder):
-    assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
-    assert read_mapping(folder / "study.yaml")["name"].startswith("shuttle-")
+def test_the_data(folder):
     assert run("shuttle.yaml", "-o", "loads.nc").exit_code == 0
     import xarray as xr
 
     with xr.open_dataset(folder / "loads.nc") as ds:
         assert ds.radial_force.dims == ("load_case", "roller")
         assert ds.radial_force.attrs["units"] == "N"
+
+
+def test_doubts_about_rollers_are_told(folder):
+    """What `solve` asks about a roller is asked about each roller of a carriage, under the loads of the carriage."""
+    values = shuttle(rollers=rollers_between(stiffness=1e4))
+    values["rollers"]["FL"]["roller"] = ROLLER | {"roller_profile_radius": 0.1, "radial_force": -1e7}
+    (folder / "odd.yaml").write_text(write_yaml(values))
+    done = run("odd.yaml", "--spectrum", "FR", "-o", "s.yaml")
+    (told,) = [line for line in done.stderr.splitlines() if "doubtful" in line]
+    assert told.startswith(
+        "trackroller: doubtful: Roller FL: roller_profile_radius = 0.1 mm is 3 times below the usual"
+    )
+    assert doubts_of(tr.carriage(values, lives=False)) == [told.partition("doubtful: ")[2]]
+
+
+def test_doubts_that_rollers_share_are_told_once():
+    values = shuttle(rollers=rollers_between(roller=ROLLER | {"velocity": 0.1}), cases=[{"name": "stand"}])
+    ds = tr.carriage(values, lives=False)
+    (text,) = doubts_of(ds)
+    assert text.startswith("Roller FL, FR, RL, RR: velocity = 0.1 m/min is 3 times below")
+    values["cases"][0]["speed"] = "1 m/s"
+    assert doubts_of(tr.carriage(values, lives=False)) == []
 
 
 @pytest.mark.parametrize(
@@ -132,11 +226,48 @@ def test_the_study_and_the_data(folder):
         (["--spectrum", "FX", "-o", "s.yaml"], "'FX' is not known"),
         (["--spectrum", "FL", "--study", "-o", "s.yaml"], "one of --spectrum and --study"),
         (["-o", "loads.txt"], "netCDF"),
+        (["--example"], "nothing but -o beside it"),
     ],
 )
 def test_wrong_options_are_named(folder, words, message):
     done = run("shuttle.yaml", *words)
     assert message in str(done.exception)
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "trackroller carriage --example -o shuttle.yaml"),
+        (["nothere.yaml"], "trackroller carriage --example -o nothere.yaml"),
+        (["--example", "-o", "a.txt"], "ends in .yaml"),
+        (["--example", "-o", "shuttle.yaml"], "is there already"),
+        (["--example", "--study"], "--study"),
+    ],
+)
+def test_a_newcomer_is_led_to_the_example(folder, words, message):
+    before = (folder / "shuttle.yaml").read_text()
+    done = run(*words)
+    assert message in str(done.exception)
+    assert (folder / "shuttle.yaml").read_text() == before
+
+
+def test_the_example_is_one_file_that_can_be_solved(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("--example").stdout == EXAMPLE
+    done = run("--example", "-o", "cart.yaml")
+    assert done.exit_code == 0 and "trackroller carriage cart.yaml" in done.stderr
+    ds = forces_of(load_carriage(tmp_path / "cart.yaml"))
+    assert np.allclose(ds.axial_force.sum("roller"), -100 * GRAVITY)
+    assert run("cart.yaml", "--spectrum", "FL", "-o", "s.yaml").exit_code == 0
+    assert load_spectrum(tmp_path / "s.yaml").blocks[1].name == "curve"
+
+
+@pytest.mark.slow
+def test_the_example_answers_how_many_years(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    assert run("--example", "-o", "shuttle.yaml").exit_code == 0
+    said = run("shuttle.yaml").output
+    assert "is the worst one" in said and "years)" in said
 
 
 def test_the_report_of_a_data_set(tmp_path):

@@ -9,10 +9,13 @@ import pytest
 from carts import SIDES, cart, rollers_below, rollers_between, shuttle
 from scipy.optimize import minimize
 
+from trackroller.carriage import statics
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.loads import GRAVITY, loads_of
 from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
 from trackroller.carriage.statics import equilibrium
+from trackroller.report.pages.carriage import margin_table
+from trackroller.report.words.carriage import sentences
 
 G = GRAVITY
 
@@ -198,6 +201,54 @@ def test_one_sided_contact_has_the_least_energy(lateral, more):
     force, _ = springs.force(springs.offset + springs.radial @ best.x)
     assert np.allclose(force, found.radial, atol=1e-3 * force.max())
     assert (lateral < 60) or (found.radial[:4] == 0).any()
+
+
+def sharing(lateral=0.0, structure=None):
+    """Return a carriage whose eight rollers share the axial load."""
+    more = {} if structure is None else {"structure": structure}
+    below = {f"D{name}": one for name, one in rollers_below(**more).items()}
+    push = {"name": "push", "forces": [{"force": [0, lateral, 0], "at": [60, 0, 80]}]}
+    return shuttle(rollers=rollers_between(**more) | below, payloads=[{"value": 20, "at": [30, 10, 50]}], cases=[push])
+
+
+@pytest.mark.parametrize("structure", [None, 3e4])
+@pytest.mark.parametrize("lateral", [0.0, 900.0, 3000.0])
+def test_axial_stiffness_belongs_to_the_radial_force(lateral, structure):
+    whole = load_carriage(sharing(lateral, structure))
+    springs, wrench = springs_of(whole), loads_of(whole, whole.cases[0]).all
+    found = equilibrium(springs, np.concatenate([wrench[1:3], wrench[3:] / springs.length]))
+    assert found.converged
+    radial, _ = springs.force(springs.offset + springs.radial @ found.start)
+    assert np.allclose(found.radial, radial, atol=1e-7 * radial.max())
+    pressed = found.loaded & springs.locating
+    slide = (springs.axial @ found.start)[pressed]
+    stiffness = springs.axial_stiffness(np.maximum(radial, 1e-3))[pressed]
+    assert np.allclose(found.axial[pressed], stiffness * slide, rtol=1e-6, atol=1e-4)
+    assert np.all(found.axial[~pressed] == 0)
+
+
+def test_newton_s_method_ends_where_the_passes_end(monkeypatch):
+    quick = solved(sharing(900.0))
+    monkeypatch.setattr(statics, "NEWTON", ())
+    slow = solved(sharing(900.0))
+    for name in ("radial_force", "axial_force"):
+        assert np.allclose(quick[name], slow[name], rtol=1e-7, atol=1e-6)
+
+
+def test_the_slope_of_the_axial_stiffness():
+    springs, force = springs_of(load_carriage(sharing(structure=3e4))), np.full(8, 500.0)
+    slope = (springs.axial_stiffness(force + 0.01) - springs.axial_stiffness(force - 0.01)) / 0.02
+    assert np.allclose(springs.axial_slope(force), slope, rtol=1e-6)
+
+
+def test_forces_that_do_not_settle_are_told(monkeypatch):
+    assert solved(sharing(900.0)).converged.values.tolist() == [True]
+    monkeypatch.setattr(statics, "MOST_PASSES", 1)
+    ds = solve_carriage(sharing(900.0), lives=False)
+    assert ds.converged.values.tolist() == [False]
+    assert "carriage_unsettled" in [one.kind for one in sentences(ds)]
+    assert margin_table(ds).rows[0][0] == "push (not settled)"
+    assert math.isnan(ds.loads_to_lift_off[0]) and "not known" in margin_table(ds).rows[0]
 
 
 def test_margins_of_a_cart():

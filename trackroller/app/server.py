@@ -64,6 +64,7 @@ class Refused(tornado.web.HTTPError):
 
 # the thread of the solver answers
 SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet", "file_of_roller"), "picture")
+SOLVING |= {"carriage_lives": "carriage"}
 STUDIES = (
     *("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines"),
     *("page_of", "file_of_study"),
@@ -71,6 +72,8 @@ STUDIES = (
 PAGES = ("sheet", "page_of", "file_of_roller", "file_of_study")  # have addresses of their own
 FILES = {"all_fields": "fields", "material": "materials", "save_material": "materials"}  # the thread of the files
 FILES |= dict.fromkeys(STUDIES, "studies")
+CARRIAGES = ("carriage_files", "open_carriage", "carriage_loads", "save_carriage", "carriage_spectrum")
+FILES |= dict.fromkeys(CARRIAGES, "carriage")
 _loading = threading.Lock()
 
 

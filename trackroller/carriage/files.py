@@ -1,18 +1,22 @@
-"""Files that follow from a solved carriage: the load spectrum of a roller, and a study of the worst loads."""
+"""Files that follow from a solved carriage: the load spectrum of a roller, and a study of the loads of all rollers."""
 
 from __future__ import annotations
 
+import csv
+import io
 from collections.abc import Mapping
 from typing import Any
 
-import numpy as np
 import xarray as xr
 
 from trackroller.carriage.file import Carriage
 from trackroller.carriage.solve import cases_of
 from trackroller.errors import InputError, check_names
-from trackroller.parameters import OPTIONS
+from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.settings import LOADS, parts_for_spectrum
+
+TABLED = (*LOADS, "velocity")  # columns of each table of loads
+HEADS = "load_case,roller,share"  # the columns before them, which say where a load comes from
 
 
 def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
@@ -67,34 +71,82 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     return head | ({"duty": dict(duty)} if isinstance(duty, Mapping) else {}) | options
 
 
-def study_of(whole: Carriage, ds: xr.Dataset) -> dict[str, Any]:
-    """Return a study of the worst roller under its worst loads, as the keys of a study file.
+def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any], str]:
+    """Return a study of all loads of all rollers: the keys of a study file, and the text of its table of cases.
 
-    Its one factor is the profile radius of the groove, from a close to a wide one, because a study needs a factor; the
-    user puts the choices that are free in its place.
+    Parameters
+    ----------
+    whole : Carriage
+        The carriage.
+    ds : xarray.Dataset
+        Its forces by `trackroller.carriage`.
+    table : str
+        Name of the table, from the folder of the study.
+
+    Returns
+    -------
+    tuple of dict and str
+        The table has a row for each load case and roller that carries load. Fields in which the rollers differ are
+        columns; all others stand in the study.
+
+    Raises
+    ------
+    InputError
+        If the file of a roller is not given, or if the rollers differ in more than numbers and names.
     """
-    worst = ds.attrs.get("worst_roller", "")
-    if not worst:
-        raise InputError("rollers", None, "a roller whose life is known", "Add roller: FILE to every roller.")
-    j = [roller.name for roller in whole.rollers].index(worst)
-    i = int(np.nanargmin(ds["case_life_hours"].values[:, j]))
-    case, roller = cases_of(whole, ds)[i, j], whole.rollers[j]
-    loads = {"velocity": _short(case.velocity), **{load: _short(getattr(case, load)) for load in LOADS}}
-    free = "roller_profile_radius"
-    base = {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key != free} | loads
-    groove = float(getattr(case, free))
-    closest = float(case.guide_profile_radius) * 1.05
-    grooves = sorted({_short(groove), _short(-closest), _short(-1.5 * closest)}) if groove < 0 else [groove, 2 * groove]
-    options = {
-        key: value for key, value in roller.options.items() if "study" in OPTIONS[key].files and key != "outputs"
-    }
-    return {
-        "name": f"{whole.name}-{worst}".lower().replace(" ", "-"),
-        "description": f"Roller {worst} of {whole.name} under its worst loads, in load case {whole.cases[i].name}.",
-        "base": base,
-        "factors": {free: {"values": grooves}},
-        **options,
-    }
+    for roller in whole.rollers:
+        if roller.case is None:
+            raise InputError(f"rollers.{roller.name}.roller", None, "the file of the roller", "Add roller: FILE.")
+    _check_same_options(whole)
+    base, varying = _shared(whole)
+    units = {name: PARAMETERS[name].unit for name in (*varying, *TABLED) if name in PARAMETERS}
+    heads = [*HEADS.split(","), *TABLED, *varying]
+    rows: list[list[Any]] = [[f"{name} [{units[name]}]" if units.get(name, "-") != "-" else name for name in heads]]
+    for (i, j), case in sorted(cases_of(whole, ds).items()):
+        fields = [getattr(case, name) for name in (*TABLED, *varying)]
+        shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
+        rows.append([whole.cases[i].name, whole.rollers[j].name, f"{whole.cases[i].share:.10g}", *shown])
+    out = io.StringIO()
+    csv.writer(out, lineterminator="\n").writerows(rows)
+    lifted = ds["radial_force"].size - (len(rows) - 1)
+    text = f"Loads of the rollers of {whole.name} by load case."
+    if lifted:
+        text += f" Rollers that are lifted carry no load and have no row, {lifted} in all."
+    study = {"name": f"{whole.name}-loads", "description": text, "base": base, "design": "table", "table": table}
+    duty = {} if whole.duty is None else {"duty": dict(whole.duty)}
+    given = whole.rollers[0].options
+    options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}
+    return study | duty | options, out.getvalue()
+
+
+def _check_same_options(whole: Carriage) -> None:
+    """Refuse rollers with different options: a study has one value of each."""
+    first = whole.rollers[0]
+    for roller in whole.rollers:
+        for key in {*roller.options, *first.options} - {"outputs"}:
+            own, other = (one.options.get(key, OPTIONS[key].default) for one in (roller, first))
+            if own != other:
+                allowed = f"the same {key} for all rollers, which is {other} for {first.name}"
+                raise InputError(f"rollers.{roller.name}.roller", f"{key}: {own}", allowed, "Change one of the files.")
+
+
+def _shared(whole: Carriage) -> tuple[dict[str, Any], list[str]]:
+    """Return what the files of all rollers say alike, and the fields in which the rollers differ."""
+    given = [
+        {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key not in TABLED}
+        for roller in whole.rollers
+    ]
+    if all(one == given[0] for one in given):
+        return given[0], []
+    cases = [roller.case for roller in whole.rollers if roller.case is not None]
+    fields = [{key: value for key, value in case.as_dict().items() if key not in TABLED} for case in cases]
+    varying = [key for key in fields[0] if any(one[key] != fields[0][key] for one in fields)]
+    for key in varying:
+        if key in MAPPING_FIELDS:
+            allowed, remedy = "the same for all rollers", "Write the spectrum of each roller with --spectrum instead."
+            raise InputError(key, None, allowed, remedy, "differs among the rollers")
+    told = {key for key in fields[0] if not all(key in case.not_given for case in cases)}
+    return {key: value for key, value in fields[0].items() if key in told and key not in varying}, varying
 
 
 def _short(value: Any) -> float:

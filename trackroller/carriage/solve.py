@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.carriage.file import Carriage, MountedRoller, load_carriage
+from trackroller.carriage.lives import Lives
 from trackroller.carriage.loads import Loads, loads_of
 from trackroller.carriage.statics import (
     MOTIONS,
@@ -23,11 +25,18 @@ from trackroller.carriage.statics import (
     multipliers,
 )
 from trackroller.contact.hertz import contact_modulus, unit_approach
+from trackroller.damage import verdict
+from trackroller.damage.miner import block_damage
 from trackroller.errors import InputError
+from trackroller.materials import load_database
+from trackroller.parameters import BODIES
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import file_attributes
+from trackroller.roller.doubts import doubts
 from trackroller.roller.duty import with_duty, years
 from trackroller.roller.geometry import contact_geometry
+from trackroller.roller.record import DOUBTS
+from trackroller.roller.settings import LOADS
 
 LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (
@@ -37,7 +46,7 @@ CONVENTIONS = (
     "preload is the force between the pair with no other load",
     "a lifted roller carries no load; a locating roller carries axial load both ways while it carries radial load",
     "contacts without friction give the stiffness: Hertz's approach at the load of each roller",
-    "shares are shares of the travel; lives add up linearly over the load cases (Palmgren-Miner)",
+    "shares are shares of the travel; damage adds up linearly over the load cases, limit by limit (Palmgren-Miner)",
 )
 TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
 _RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
@@ -58,7 +67,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     xarray.Dataset
         Dimensions `load_case` and `roller`. `radial_force` and `axial_force` [N] have the signs of `Case`; a lifted
         roller has 0 N. `approach` [mm] is that of the roller to its rail. `payload_to_lift_off`,
-        `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. With `lives`,
+        `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
+        (load_case) is False where the sharing of axial load among the rollers did not settle. With `lives`,
         `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
         roller with the shortest one.
 
@@ -69,7 +79,7 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
 
     Notes
     -----
-    The margins take a second a load case, up to ten where many rollers lift. The lives take as long as
+    The margins take a tenth of a second a load case, up to two where many rollers lift. The lives take as long as
     `trackroller.solve` for each roller and load case.
 
     Examples
@@ -86,7 +96,10 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     whole = source if isinstance(source, Carriage) else load_carriage(source)
     springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
     ds = _solution(whole, springs, loads).assign(_margins(springs, loads))
-    return with_lives(ds, whole) if lives and all(roller.case is not None for roller in whole.rollers) else ds
+    ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
+    if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
+        return ds.assign_attrs(without_case=", ".join(without))
+    return with_lives(ds, whole) if lives else ds
 
 
 def forces_of(whole: Carriage) -> xr.Dataset:
@@ -218,6 +231,11 @@ def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> di
             _attrs("mm", "approach of the roller to its rail"),
         ),
         "drive_force": (_C, np.array([one.drive for one in loads]), _attrs("N", "force of the drive along the track")),
+        "converged": (
+            _C,
+            np.array([one.converged for one in found]),
+            {"long_name": "whether radial forces and axial stiffness belong together"},
+        ),
         "share": (_C, np.array([case.share for case in whole.cases]), _attrs("1", "share of the travel")),
         "speed": (_C, np.array(speeds), _attrs("m s-1", "speed")),
     }
@@ -282,6 +300,23 @@ def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
     return made
 
 
+def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
+    """Return a sentence for each unusual value of the rollers and their loads, see `trackroller.roller.doubts`."""
+    database = load_database()
+    by_text: dict[str, list[str]] = {}
+    cases = cases_of(whole, ds)
+    for j, roller in enumerate(whole.rollers):
+        if roller.case is None:
+            continue
+        loaded = [case for (_, own), case in cases.items() if own == j]
+        values = {name: value for name, value in roller.case.as_dict().items() if name not in LOADS}
+        values |= {name: [getattr(case, name) for case in loaded] for name in (*LOADS, "velocity") if loaded}
+        for text in doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES)):
+            by_text.setdefault(text, []).append(roller.name)
+    one = len(whole.rollers) == 1
+    return [text if one else f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
+
+
 def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:
     """Return a solved carriage with the life of each roller, its regime, and the worst roller.
 
@@ -299,8 +334,10 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         from trackroller.roller.solver import solve as solve_cases  # numba compiles on import
     else:
         solve_cases = solve
-    hours, regime = np.full(ds["radial_force"].shape, np.inf), np.full(ds["radial_force"].shape, -1, dtype=np.int8)
-    speed = np.ones(hours.shape)
+    shape, n = ds["radial_force"].shape, len(whole.rollers)
+    case_hours, regime, damage = np.full(shape, np.inf), np.full(shape, -1, dtype=np.int8), np.zeros(shape)
+    lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
+    pace = _hours_per_km(whole, ds)
     flags: Mapping[str, Any] = {}
     cases = cases_of(whole, ds)
     groups: dict[str, list[tuple[int, int]]] = {}
@@ -312,27 +349,44 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
             [cases[place] for place in places], outputs=("forces", "peak_stress", "life", "limits"), **options
         )
         flags = solved["regime"].attrs
-        for k, place in enumerate(places):
-            hours[place], regime[place] = float(solved[LIFE][k]), int(solved["regime"][k])
-            speed[place] = 0.06 * float(cases[place].velocity)  # km/h
-    shares = ds["share"].values[:, None]
-    with np.errstate(divide="ignore"):
-        damage = np.where(shares > 0, shares / (hours * speed), 0.0)  # of a km of travel
-        travel = 1 / np.sum(damage, axis=0)
-    own = [0.06 * float(roller.case.velocity) for roller in whole.rollers if roller.case is not None]
-    pace = np.where(np.isnan(ds["speed"].values)[:, None], np.array(own), 3.6 * ds["speed"].values[:, None])
-    lasts = travel * np.sum(shares / pace, axis=0)
+        i, j = np.array(places).T
+        speed = np.array([0.06 * float(cases[place].velocity) for place in places])  # km/h
+        lives = Lives(j, ds["share"].values[i], speed, pace[j], solved)
+        for end in lasts:
+            lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
+        case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
+        damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
+    first = "to the first limit of the roller or its rail"
+    travel = lasts[""] / pace
     variables: dict[str, Any] = {
-        "case_life_hours": (_RC, hours, _attrs("h", "life to the first limit under the loads of a load case alone")),
+        "case_life_hours": (_RC, case_hours, _attrs("h", "life to the first limit under a load case alone")),
         "damage_per_km": (_RC, damage, _attrs("km-1", "damage of a load case by a km of travel with all load cases")),
         "roller_regime": (_RC, regime, meanings),
-        "life_km": (_R, travel, _attrs("km", "travel of the carriage to the first limit of the roller or its rail")),
-        "life_hours": (_R, lasts, _attrs("h", "hours of travel to the first limit of the roller or its rail")),
+        "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
+        "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
+        "life_hours_low": (_R, lasts["_low"], _attrs("h", f"low end of the hours of travel {first}")),
+        "life_hours_high": (_R, lasts["_high"], _attrs("h", f"high end of the hours of travel {first}")),
     }
     if whole.duty is not None:
-        variables["life_years"] = (_R, years(lasts, whole.duty), _attrs("year", "years of the duty to the first limit"))
+        variables["life_years"] = (
+            _R,
+            years(lasts[""], whole.duty),
+            _attrs("year", "years of the duty to the first limit"),
+        )
     known = np.where(np.isnan(travel), np.inf, travel)
     worst = ds["roller"].values[int(np.argmin(known))] if np.isfinite(known).any() else ""
     return ds.assign(variables).assign_attrs(worst_roller=str(worst))
+
+
+def _hours_per_km(whole: Carriage, ds: xr.Dataset) -> np.ndarray:
+    """Return the hours that the carriage travels for a km, by roller [h/km].
+
+    A load case that states no speed has the velocity of the roller.
+    """
+    own = [0.06 * float(roller.case.velocity) for roller in whole.rollers if roller.case is not None]
+    speed = ds["speed"].values[:, None]
+    return np.asarray(
+        np.sum(ds["share"].values[:, None] / np.where(np.isnan(speed), np.array(own), 3.6 * speed), axis=0)
+    )

@@ -6,7 +6,8 @@ second spring along its axis, which acts as long as the roller presses on its ra
 
 The radial springs have a potential energy that is convex, so that its minimum is the equilibrium and is found by a
 damped Newton method, which linearises each spring at its load. The axial stiffness follows from the radial load, and is
-computed again until the forces stay the same.
+computed again until the forces stay the same; close to the solution, Newton's method solves for both together. A roller
+that is about to lift loses its axial load by a jump, beyond which no equilibrium with this roller exists.
 
 ASSUME: displacements are small; a lifted locating roller carries no axial load.
 """
@@ -15,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 from scipy.optimize import brentq, linprog, nnls
@@ -26,7 +28,9 @@ MOTIONS = (
     "pitches about the y axis",
     "yaws about the z axis",
 )
-MOST_PASSES = 24  # of the axial stiffness; a few are usual
+MOST_PASSES = 24  # of the axial stiffness; two are usual before Newton's method takes over
+NEWTON = (1, 4, 11, 23)  # passes after which Newton's method is tried
+MOST_STEPS = 20  # of this method
 LARGEST_MULTIPLIER = 1000.0  # a carriage that holds so many times its loads counts as one that never tips
 _INFEASIBLE = 1e-9  # of the wrench: what no force of the rollers balances
 
@@ -87,16 +91,23 @@ class Springs:
         pressed = np.maximum(approach, 0.0)
         with np.errstate(divide="ignore", invalid="ignore"):
             root = np.fmin(np.sqrt(pressed / self.contact), np.cbrt(pressed / self.radial_compliance))
-            for _ in range(60):  # from above: the approach is a convex function of the cube root of the force
+            for _ in range(
+                60 if self._mixed else 0
+            ):  # from above: the approach is a convex function of the cube root of the force
                 over = self.contact * root**2 + self.radial_compliance * root**3 - pressed
                 slope = 2 * self.contact * root + 3 * self.radial_compliance * root**2
                 step = np.where(pressed > 0, over / slope, 0.0)
                 root = root - step
-                if not np.any(np.abs(step) > 1e-16 * root):
+                if (np.abs(step) <= 1e-15 * root).all():
                     break
             stiffness = 1.0 / (2 / 3 * self.contact / root + self.radial_compliance)
         root = np.where(pressed > 0, root, 0.0)
         return root**3, np.where(approach >= 0, np.where(root > 0, stiffness, self._unloaded()), 0.0)
+
+    @cached_property
+    def _mixed(self) -> bool:
+        """Return whether a roller has a contact and a compliance in series; otherwise its force is a closed form."""
+        return bool(np.any((self.contact > 0) & (self.radial_compliance > 0)))
 
     def _unloaded(self) -> np.ndarray:
         """Return the stiffness of a roller that just touches: that of a linear spring, 0 for a Hertzian contact."""
@@ -117,6 +128,11 @@ class Springs:
         of_contacts = self.contact / (1.5 * np.cbrt(force) * self.tangent**2)
         return 1.0 / (of_contacts + self.axial_compliance)
 
+    def axial_slope(self, force: np.ndarray) -> np.ndarray:
+        """Return the derivative of `axial_stiffness` by the radial force (n,) [1/mm]."""
+        of_contacts = self.contact / (4.5 * np.cbrt(force) ** 4 * self.tangent**2)
+        return self.axial_stiffness(force) ** 2 * of_contacts
+
     def linear_at(self, force: float) -> Springs:
         """Return linear springs with the compliance of these at one radial force; preload and play are kept."""
         compliance = 2 / 3 * self.contact / np.cbrt(force) + self.radial_compliance
@@ -130,13 +146,15 @@ class Equilibrium:
     """Forces of n rollers: `radial` >= 0 presses on the rail, `axial` acts on the roller along its axis [N], (n,).
 
     `approach` is that of each roller to its rail [mm], (n,); below 0 the roller has lifted by so much. `start` is the
-    displacement, from which a similar wrench is solved faster.
+    displacement, from which a similar wrench is solved faster. `converged` tells whether the axial stiffness belongs to
+    the radial forces.
     """
 
     radial: np.ndarray
     axial: np.ndarray
     approach: np.ndarray
     start: np.ndarray
+    converged: bool = True
 
     @property
     def loaded(self) -> np.ndarray:
@@ -177,7 +195,7 @@ def equilibrium(springs: Springs, wrench: np.ndarray, start: np.ndarray | None =
     Moves
         If no forces of the rollers balance the wrench.
     """
-    size = max(float(np.abs(wrench).max()), float(springs.force(springs.offset)[0].max()), 1e-9)
+    size = _size(springs, wrench)
     carries, seen = springs.locating.copy(), set()
     radial = np.full(carries.shape, size / carries.size)
     while True:
@@ -188,6 +206,11 @@ def equilibrium(springs: Springs, wrench: np.ndarray, start: np.ndarray | None =
             return found
         seen.add(tuple(now))
         carries, radial = now, np.maximum(found.radial, 1e-6 * size)
+
+
+def _size(springs: Springs, wrench: np.ndarray) -> float:
+    """Return the size of the forces [N], to which tolerances refer."""
+    return max(float(np.abs(wrench).max()), float(springs.force(springs.offset)[0].max()), 1e-9)
 
 
 def _check_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) -> None:
@@ -203,21 +226,64 @@ def _settled(
     springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, radial: np.ndarray, start: np.ndarray | None
 ) -> Equilibrium:
     """Return the equilibrium with the axial stiffness that belongs to its radial forces."""
-    stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, 1e-6 * size)), 0.0)
+    least = 1e-6 * size
+    stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
     if start is None:
         start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(5), size)
-    place = start
-    for turn in range(MOST_PASSES):
-        stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, 1e-6 * size)), 0.0)
+    place, converged = start, not (carries.any() and springs.contact.any())
+    for turn in range(1 if converged else MOST_PASSES):
         place = _minimum(springs, stiffness, wrench, place, size)
-        approach = springs.offset + springs.radial @ place
-        new, _ = springs.force(approach)
-        new[new < 1e-12 * size] = 0.0
-        change, radial = np.abs(new - radial).max(), new if turn < 12 else (new + radial) / 2
-        if change <= 1e-9 * size or not (carries.any() and springs.contact.any()):
+        coupled = None if converged or turn not in NEWTON else _coupled(springs, carries, wrench, place, size)
+        if coupled is not None:
+            place, converged = coupled, True
             break
-    axial = stiffness * (springs.axial @ place)
-    return Equilibrium(*_balanced(springs, carries, wrench, new, axial), approach, place)
+        new, _ = springs.force(springs.offset + springs.radial @ place)
+        change, radial = np.abs(new - radial).max(), new if turn < 12 else (new + radial) / 2
+        stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
+        converged = converged or bool(change <= 1e-9 * size)
+        if converged:
+            break
+    approach = springs.offset + springs.radial @ place
+    radial, _ = springs.force(approach)
+    radial[radial < 1e-12 * size] = 0.0
+    axial = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0) * (springs.axial @ place)
+    return Equilibrium(*_balanced(springs, carries, wrench, radial, axial), approach, place, converged)
+
+
+def _coupled(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, place: np.ndarray, size: float
+) -> np.ndarray | None:
+    """Return the displacement (5,) at which forces and axial stiffness belong together, by Newton's method.
+
+    None if the method does not come closer from `place`.
+    """
+    least = 1e-6 * size
+
+    def at(place: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+        force, radial_stiffness = springs.force(springs.offset + springs.radial @ place)
+        pressed, slide = np.maximum(force, least), springs.axial @ place
+        stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
+        slope = np.where(carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0)
+        rest = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
+        curve = (springs.radial.T * radial_stiffness) @ springs.radial + (springs.axial.T * stiffness) @ springs.axial
+        return float(np.abs(rest).max()), rest, curve + (springs.axial.T * (slope * slide)) @ springs.radial
+
+    norm, rest, curve = at(place)
+    for _ in range(MOST_STEPS):
+        if norm <= 1e-11 * size:
+            return place
+        try:
+            step = np.linalg.solve(curve, -rest)
+        except np.linalg.LinAlgError:
+            return None
+        for share in (1.0, 0.5, 0.25, 0.125):
+            new = at(place + share * step)
+            if new[0] < (1 - 0.1 * share) * norm:
+                break
+        else:
+            return place if norm <= 1e-9 * size else None  # rounding ends the decrease
+        place, (norm, rest, curve) = place + share * step, new
+    return None
 
 
 def _minimum(
@@ -286,22 +352,27 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     -------
     tuple of float
         Multipliers [1]; inf if it does not happen up to `LARGEST_MULTIPLIER`. Rollers count that carry load at the
-        multiplier 1 or by their preload; one that has lifted at 1 gives a multiplier below 1.
+        multiplier 1 or by their preload; one that has lifted at 1 gives a multiplier below 1. Loads for which no
+        equilibrium with all of these rollers is found count as lifting one. The first is NaN if the equilibrium at 1
+        did not converge.
     """
     given = equilibrium(springs, fixed + varying)
     watched = given.loaded | (springs.offset > 0)
 
     def lowest(multiplier: float) -> float:
-        """Return the smallest approach of the rollers that carry load; below 0 where the carriage is not held."""
+        """Return the smallest approach of the rollers that carry load; below 0 where they do not carry all loads."""
         try:
             found = equilibrium(springs, fixed + multiplier * varying, given.start)
         except Moves:
             return -springs.length
-        return float(found.approach[watched].min())
+        smallest = float(found.approach[watched].min())
+        return smallest if found.converged else min(smallest, -1e-12 * springs.length)
 
     tipping = _tipping(springs, fixed, varying, lambda multiplier: _holds(springs, fixed + multiplier * varying))
     if not watched.any() or not np.any(varying):
         return np.inf, tipping
+    if not given.converged:
+        return np.nan, tipping
     if given.approach[watched].min() <= 0:
         return (float(brentq(lowest, 0.0, 1.0, xtol=1e-9)) if lowest(0.0) > 0 else 0.0), tipping
     last = min(tipping * (1 - 1e-9), LARGEST_MULTIPLIER)

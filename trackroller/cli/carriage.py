@@ -2,39 +2,60 @@
 
 from __future__ import annotations
 
+import os
+import shlex
+from collections.abc import Mapping
 from pathlib import Path
 
 from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result
+from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.files import write_text
 from trackroller.yaml_file import write_yaml
 
+START = "trackroller carriage --example -o {}"  # how a user gets a file to change
+
 
 def run_carriage(
-    file: Path, as_json: bool, out: Path | None, report: Path | None, spectrum: str | None, study: bool
+    file: Path | None,
+    example: bool,
+    as_json: bool,
+    out: Path | None,
+    report: Path | None,
+    spectrum: str | None,
+    study: bool,
 ) -> None:
-    """Solve a carriage file, and write or print the result.
+    """Solve a carriage file, and write or print the result; with `example`, write or print a file to start from.
 
-    `out` receives the spectrum of the roller `spectrum`, or with `study` a study of the worst loads, otherwise netCDF.
-    `report` receives the page. `as_json` prints JSON; without it and `out`, tables are printed.
+    `out` receives the spectrum of the roller `spectrum`, or with `study` a study of all loads with a CSV file
+    of its cases; otherwise netCDF. `report` receives the page. `as_json` prints JSON; without it and
+    `out`, tables are printed.
     """
+    if example:
+        _write_example(file, out, {"--json": as_json, "--report": report, "--spectrum": spectrum, "--study": study})
+        return
+    file = _given(file)
     target = _target(out, spectrum, study)
     page = None if report is None else writable_page(report)
+    table = _beside(target) if target is not None and study else None
     from trackroller.carriage.file import load_carriage
     from trackroller.carriage.files import spectrum_of, study_of
-    from trackroller.carriage.solve import forces_of, solve_carriage  # heavy: scipy
+    from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage  # heavy: scipy
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
 
     whole = load_carriage(file)
-    if spectrum is not None and page is None and not as_json:
-        ds = forces_of(whole)  # a spectrum needs neither margins nor lives
+    if (spectrum is not None or study) and page is None and not as_json:
+        ds = forces_of(whole)  # loads need neither margins nor lives
     else:
-        ds = solve_carriage(whole, lives=spectrum is None or page is not None)
+        ds = solve_carriage(whole)
+    print_doubts(doubts_of_rollers(whole, ds))
     if target is not None and spectrum is not None:
         write_text(target, write_yaml(spectrum_of(whole, ds, spectrum)))
-    elif target is not None and study:
-        write_text(target, write_yaml(study_of(whole, ds)))
+    elif target is not None and table is not None:
+        keys, rows = study_of(whole, ds, table.name)
+        write_text(table, rows)
+        write_text(target, write_yaml(keys))
     elif target is not None:
         write_result(ds, target)
     if page is not None:
@@ -43,6 +64,46 @@ def run_carriage(
         print(text_of(ds))
     elif target is None:
         print_carriage(ds)
+
+
+def _given(file: Path | None) -> Path:
+    """Return the carriage file; a user who has none learns how to get one."""
+    if file is None:
+        remedy = f"Write one to start from: {START.format('shuttle.yaml')}, and change its values."
+        raise InputError("carriage file", None, "a file with masses, rollers and load cases", remedy)
+    if not file.exists():
+        remedy = f"Check the path, or write an example there: {START.format(shlex.quote(str(file)))}"
+        raise InputError("carriage file", str(file), "the path of a file", remedy, "does not exist")
+    return file
+
+
+def _write_example(file: Path | None, out: Path | None, others: Mapping[str, object]) -> None:
+    """Write or print the example; a file that is there stays."""
+    from trackroller.carriage.example import EXAMPLE
+
+    more = [str(file)] * (file is not None) + [name for name, value in others.items() if value]
+    if more:
+        remedy = f"Write the example first: {START.format('shuttle.yaml')}"
+        raise InputError("--example", more[0], "nothing but -o beside it", remedy, "stands beside it")
+    if out is None:
+        print(EXAMPLE, end="")
+        return
+    if out.suffix.lower() not in YAML or os.path.lexists(out):
+        wrong = "is there already" if os.path.lexists(out) else ""
+        raise InputError("--out", str(out), "a new file whose name ends in .yaml", "Give another name.", wrong)
+    write_text(writable(out), EXAMPLE)
+    print_line(f"{out} is written. Change its values, then: trackroller carriage {shlex.quote(str(out))}")
+
+
+def _beside(study: Path) -> Path:
+    """Return the table of cases to write beside a study; refuse to replace a file of somebody else."""
+    from trackroller.carriage.files import HEADS  # heavy: scipy
+
+    table = study.with_suffix(".csv")
+    if os.path.lexists(table) and (not table.is_file() or not table.read_bytes().startswith(HEADS.encode())):
+        allowed, wrong = f"a name beside which {table.name} is free", f"would replace {table.name} of somebody else"
+        raise InputError("--out", study.name, allowed, "Give another name with -o.", wrong)
+    return table
 
 
 def _target(out: Path | None, spectrum: str | None, study: bool) -> Path | None:

@@ -200,12 +200,15 @@ def spectrum(
 
 @command("trackroller.cli.carriage", "run_carriage")
 def carriage(
-    file: Annotated[Path, typer.Argument(help="masses, rollers and load cases (YAML)", show_default=False)],
+    file: Annotated[Path | None, typer.Argument(help="masses, rollers and load cases (YAML); see --example")] = None,
+    example: Annotated[bool, typer.Option("--example", help="print a file to start from, or write it to -o")] = False,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc), or the file below")] = None,
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,
     spectrum: Annotated[str | None, typer.Option("--spectrum", help="roller whose spectrum -o receives")] = None,
-    study: Annotated[bool, typer.Option("--study", help="-o receives a study of the worst loads")] = False,
+    study: Annotated[
+        bool, typer.Option("--study", help="-o receives a study of all loads, and a CSV beside it")
+    ] = False,
 ) -> None:
     """Print loads and lives of the rollers of a carriage by load case, and the margins to lift-off and tipping."""
 
@@ -245,7 +248,7 @@ def live_page(
         list[str] | None, typer.Option(help="HOST[:PORT] of a forwarded port that may ask too; may be repeated")
     ] = None,
 ) -> None:
-    """Open the live page of a roller in the browser: sliders, pictures, variants, studies; Ctrl-C ends it."""
+    """Open the live page of a roller or a carriage: sliders, pictures, variants, studies; Ctrl-C ends it."""
     from trackroller.app.start import serve
 
     serve(folder, port, not no_browser, allow_host or ())

@@ -17,8 +17,10 @@ from trackroller.report.pages.sheet import pictures, versions_text
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.report.words.carriage import sentences
+from trackroller.roller.record import doubts_of
 
 LARGE = "–"  # of a margin that is not reached
+UNKNOWN = "not known"
 
 
 def load_table(ds: xr.Dataset) -> Table:
@@ -69,8 +71,11 @@ def margin_table(ds: xr.Dataset) -> Table:
     rows = []
     for i, case in enumerate(ds["load_case"].values):
         values = [float(ds[name][i]) for name in names]
-        shown = [cell(value) if math.isfinite(value) else LARGE for value in values]
-        rows.append([str(case), cell(100 * float(ds["share"][i])), cell(float(ds["drive_force"][i])), *shown])
+        shown = [UNKNOWN if math.isnan(value) else cell(value) if math.isfinite(value) else LARGE for value in values]
+        unsettled = "" if bool(ds["converged"][i]) else " (not settled)"
+        rows.append(
+            [f"{case}{unsettled}", cell(100 * float(ds["share"][i])), cell(float(ds["drive_force"][i])), *shown]
+        )
     note = "A margin is a multiplier of the payload, or of all loads, with the same preload. A dash: not up to 1000."
     return Table("carriage_margins", "Load cases and margins", heads, rows, note)
 
@@ -119,6 +124,7 @@ def write_carriage(ds: xr.Dataset, path: Path | str, file: str = "carriage.yaml"
         "name": capital(str(ds.attrs["title"])),
         "description": str(ds.attrs.get("description", "")),
         "said": [sentence.text for sentence in sentences(ds)],
+        "doubts": doubts_of(ds),
         "figure": next(iter(drawn.values())),
         "tables": [
             *tables(ds),

@@ -9,6 +9,7 @@ import xarray as xr
 
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.numbers import lasting
+from trackroller.report.words.designs import SAME
 from trackroller.report.words.sentence import Sentence, say
 
 MARGINS = (("payload", "The payload"), ("loads", "All loads"))
@@ -33,7 +34,15 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
     ds : xarray.Dataset
         Result of `trackroller.carriage`.
     """
-    return [_worst(ds), *_lifted(ds), *_one_contact(ds), *_margins(ds), *_catalogue(ds)]
+    return [
+        _worst(ds),
+        *_without_life(ds),
+        *_unsettled(ds),
+        *_lifted(ds),
+        *_one_contact(ds),
+        *_margins(ds),
+        *_catalogue(ds),
+    ]
 
 
 def _worst(ds: xr.Dataset) -> Sentence:
@@ -43,7 +52,24 @@ def _worst(ds: xr.Dataset) -> Sentence:
         return say("carriage", "carriage_largest", roller=roller, case=case, force=force)
     km, hours = (float(ds[name].sel(roller=roller)) for name in ("life_km", "life_hours"))
     unknown = ds["roller"].values[np.isnan(ds["life_km"].values)].tolist()
-    return say("carriage", "carriage_worst", roller=roller, case=case, km=km, life=lasting(hours, "h"), unknown=unknown)
+    low, high = (float(ds[f"life_hours{end}"].sel(roller=roller)) for end in ("_low", "_high"))
+    span = [lasting(low, "h"), lasting(high, "h")] if high > low * (1 + SAME) else []
+    life = lasting(hours, "h")
+    return say("carriage", "carriage_worst", roller=roller, case=case, km=km, life=life, span=span, unknown=unknown)
+
+
+def _without_life(ds: xr.Dataset) -> Iterator[Sentence]:
+    if ds.attrs.get("without_case"):
+        yield say("carriage", "carriage_without_case", rollers=ds.attrs["without_case"].split(", "))
+    elif "life_km" in ds and not ds.attrs.get("worst_roller"):
+        unloaded = bool((ds["radial_force"] == 0).all())
+        yield say("carriage", "carriage_no_life", endless=unloaded or not np.isnan(ds["life_km"].values).any())
+
+
+def _unsettled(ds: xr.Dataset) -> Iterator[Sentence]:
+    cases = ds["load_case"].values[~ds["converged"].values].tolist()
+    if cases:
+        yield say("carriage", "carriage_unsettled", cases=cases)
 
 
 def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
@@ -60,19 +86,23 @@ def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
 def _one_contact(ds: xr.Dataset) -> Iterator[Sentence]:
     if "roller_regime" not in ds:
         return
+    alike: dict[tuple[int, ...], list[str]] = {}  # rollers by their load cases in a regime, which come first
     for roller in ds["roller"].values:
         own = ds["roller_regime"].sel(roller=roller).values
         for regime in sorted({*own.tolist()} - {-1, ROLLING}):
-            names = ds["load_case"].values[own == regime].tolist()
-            label = REGIME_LABELS[regime]
-            yield say("carriage", "carriage_one_contact", roller=str(roller), cases=names, regime=label)
+            alike.setdefault((regime, *np.flatnonzero(own == regime).tolist()), []).append(str(roller))
+    for (regime, *cases), rollers in alike.items():
+        names, label = ds["load_case"].values[cases].tolist(), REGIME_LABELS[regime]
+        yield say("carriage", "carriage_one_contact", rollers=rollers, cases=names, regime=label)
 
 
 def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
     for name, what in MARGINS:
+        if f"{name}_to_lift_off" not in ds:  # the forces alone
+            continue
         first = ds[f"{name}_to_lift_off"].values
         if np.isfinite(first).any():
-            i = int(np.argmin(first))
+            i = int(np.nanargmin(first))
             tipping = float(ds[f"{name}_to_tipping"].values[i])
             case = str(ds["load_case"].values[i])
             yield say("carriage", "carriage_margin", what=what, lift_off=float(first[i]), tipping=tipping, case=case)

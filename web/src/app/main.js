@@ -1,5 +1,6 @@
 // The live page: tabs, the fields of the roller, and what follows from every change of them.
 import { ask } from "./api.js";
+import { carriageView } from "./carriage.js";
 import { copy, el, replace } from "../dom.js";
 import { parameterRow, wordRow } from "./fields.js";
 import { live } from "./live.js";
@@ -15,6 +16,7 @@ const TABS = [
   ["whatif", "What if"],
   ["study", "Study"],
   ["results", "Results"],
+  ["carriage", "Carriage"],
 ];
 const OPEN = ["Loads and use", "Roller and guide"];
 const INSTEAD = { axis_distance: ["outer_radius", "groove_depth"], outer_radius: ["axis_distance"], groove_depth: ["axis_distance"] };
@@ -119,14 +121,20 @@ async function start() {
     group("Profiles, friction law, bearing, catalogue, head of the sheet", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
   );
 
-  const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => state.undo() }, "Undo");
-  const redo = el("button", { type: "button", title: "Ctrl+Y", onclick: () => state.redo() }, "Redo");
+  const shown_ = () => (state.tab === "carriage" ? carriage : state); // whose changes are undone
+  const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => shown_().undo() }, "Undo");
+  const redo = el("button", { type: "button", title: "Ctrl+Y", onclick: () => shown_().redo() }, "Redo");
+  const steps = () => {
+    undo.disabled = !shown_().canUndo();
+    redo.disabled = !shown_().canRedo();
+  };
+  const carriage = carriageView(state, { changed: steps });
   const reset = el("button", { type: "button", onclick: () => state.replace(offered.first) }, "Reset");
   const pin = el("button", { type: "button", onclick: () => state.pin() }, "Pin");
   const sheet = el("a", { target: "_blank", rel: "noopener" }, "Printable sheet");
   const link = el("button", { type: "button", title: "without the address of this server", onclick: () => copy(location.href, link) }, "Copy link");
   const tabs = TABS.map(([name, text]) => el("button", { type: "button", role: "tab", id: `tab-${name}`, "aria-controls": `panel-${name}`, onclick: () => state.show(name) }, text));
-  const contents = { roller: el("div", { class: "roller" }, fields, view.node, el("div", { class: "lives" }, view.lives)), whatif: variants.node, study: study.node, results: results.node };
+  const contents = { roller: el("div", { class: "roller" }, fields, view.node, el("div", { class: "lives" }, view.lives)), whatif: variants.node, study: study.node, results: results.node, carriage: carriage.node };
   const panels = TABS.map(([name]) => el("div", { role: "tabpanel", id: `panel-${name}`, "aria-labelledby": `tab-${name}`, tabindex: "-1" }, contents[name]));
   const list = el("div", { role: "tablist", "aria-label": "Parts of the page" }, tabs);
   list.addEventListener("keydown", (event) => {
@@ -139,8 +147,8 @@ async function start() {
   replace(root, el("header", {}, el("h1", {}, "trackroller"), list, running, el("div", { class: "tools" }, undo, redo, reset, pin, sheet, link)), el("main", {}, panels));
   document.addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || /^(TEXTAREA|INPUT)$/.test(event.target.tagName) && event.target.type !== "range") return;
-    if (event.key === "z") state.undo();
-    else if (event.key === "y") state.redo();
+    if (event.key === "z") shown_().undo();
+    else if (event.key === "y") shown_().redo();
     else return;
     event.preventDefault();
   });
@@ -158,8 +166,7 @@ async function start() {
     if (what === "case" || what === "moving") {
       for (const row of rows.values()) row.set(shown[row.name] ? shown[row.name]() : state.values[row.name]);
       for (const name of offered.bodies) rows.get(name).tell(facts(offered.materials.find((m) => m.name === (state.values[name] ?? offered.materials[0].name))));
-      undo.disabled = !state.canUndo();
-      redo.disabled = !state.canRedo();
+      steps();
       sheet.href = state.file("sheet");
       flow.changed();
     }
@@ -172,12 +179,15 @@ async function start() {
       if (state.tab === "results") results.look();
       if (state.tab === "study") study.draw();
       if (state.tab === "roller") view.redraw();
+      if (state.tab === "carriage") carriage.draw();
+      for (const own of [reset, pin, sheet]) own.hidden = state.tab === "carriage"; // they belong to the one roller
+      steps();
     }
     if (what !== "moving") variants.draw();
     address();
   });
   addEventListener("hashchange", () => location.hash !== own && state.read(location.hash));
-  addEventListener("resize", () => (view.redraw(), variants.redraw()));
+  addEventListener("resize", () => (view.redraw(), variants.redraw(), carriage.redraw()));
   matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => (view.redraw(), variants.redraw()));
   state.read(location.hash || new URLSearchParams(offered.first).toString());
   if (!TABS.some(([name]) => name === state.tab)) state.show("roller");

@@ -11,6 +11,7 @@ export function createState() {
     values: {},
     pins: [],
     tab: "roller",
+    carriage: "", // the file of the folder that the tab Carriage shows
     onChange: (listener) => listeners.add(listener),
   };
   const tell = (what) => listeners.forEach((listener) => listener(what));
@@ -71,14 +72,16 @@ export function createState() {
   state.written = () => {
     const found = new URLSearchParams(Object.entries(state.values));
     if (state.tab !== "roller" || ![...found].length) found.set("tab", state.tab); // an empty address is the first example
+    if (state.carriage) found.set("carriage", state.carriage);
     for (const pin of state.pins) found.append(PIN, new URLSearchParams(Object.entries(pin)));
     return found.toString();
   };
   state.read = (hash) => {
     const found = new URLSearchParams(hash.replace(/^#/, ""));
     state.tab = found.get("tab") ?? "roller";
+    state.carriage = found.get("carriage") ?? "";
     state.pins = found.getAll(PIN).slice(0, MOST_PINS).map((text) => Object.fromEntries(new URLSearchParams(text)));
-    state.values = Object.fromEntries([...found].filter(([name]) => name !== PIN && name !== "tab"));
+    state.values = Object.fromEntries([...found].filter(([name]) => ![PIN, "tab", "carriage"].includes(name)));
     tell("case");
     tell("pins");
     tell("tab");

@@ -1,0 +1,204 @@
+"""Carriages of the live page: the loads of a text at once, its lives and margins later, and the files of the folder.
+
+The text of a carriage file is what the page keeps. Fields and the picture send changes of it, and the answer holds the
+changed text, so that fields, picture and text show the same carriage.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import re
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pydantic
+import xarray as xr
+
+from trackroller.app.studies import RESULTS, TEXTS, WRITTEN
+from trackroller.carriage.example import EXAMPLE
+from trackroller.carriage.file import Carriage, carriage_of
+from trackroller.carriage.files import spectrum_of
+from trackroller.carriage.solve import forces_of, solve_carriage
+from trackroller.errors import InputError
+from trackroller.files import files_beside, is_link, read_text, sha256
+from trackroller.report.numbers import lives_in_years
+from trackroller.report.pages.carriage import tables
+from trackroller.report.tables.table import Table, cell
+from trackroller.report.words.carriage import sentences, worst_place
+from trackroller.roller.aliases import ALIASES
+from trackroller.roller.record import doubts_of
+from trackroller.study.store import ownership
+from trackroller.study.store.digests import read_record
+from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
+
+LONGEST = 200_000  # bytes of a file that the list looks into
+HEADS = tuple(re.compile(rf"^{key}\s*:", re.M) for key in ("mass", "rollers", "cases"))
+WHAT = "carriage file"
+RECORD = WRITTEN / "carriages.sha256"  # which files the page has read or written
+
+
+class Change(pydantic.BaseModel):
+    """A changed value of a carriage file; see `trackroller.yaml_file.change_yaml`."""
+
+    path: list[str | int]
+    value: str | None
+
+
+def carriage_files() -> dict[str, Any]:
+    """Return the carriage files of the folder, and the example with which the page begins."""
+    found = sorted(path.as_posix() for pattern in ("*.y*ml", "*/*.y*ml") for path in Path().glob(pattern))
+    return {"files": [name for name in found if _is_carriage(Path(name))], "example": EXAMPLE}
+
+
+def _is_carriage(path: Path) -> bool:
+    """Return whether a file of this folder has the keys of a carriage file."""
+    if path.parts[0] in (RESULTS.name, WRITTEN.name) or not path.resolve().is_relative_to(Path.cwd().resolve()):
+        return False
+    try:
+        text = read_text(path, WHAT, LONGEST)
+    except InputError:
+        return False
+    return all(head.search(text) for head in HEADS)
+
+
+def open_carriage(file: str) -> dict[str, Any]:
+    """Return the text of a carriage file of the folder; the page may write this file from now on."""
+    path = _place(file, "file")
+    text = read_text(path, WHAT)
+    _note(path, {sha256(path)})
+    return {"text": text}
+
+
+def carriage_loads(text: str, file: str = "", changes: list[Change] | None = None) -> dict[str, Any]:
+    """Change the text of a carriage, and return the loads of its rollers by statics alone.
+
+    Parameters
+    ----------
+    text : str
+        A carriage file.
+    file : str
+        Its name, from whose folder it names the files of rollers; "" for the folder of the page.
+    changes : list of Change, optional
+        What is changed before.
+
+    Returns
+    -------
+    dict
+        `text` and its `values`; `errors` with field, line and message; `places` of rollers and masses, and `loads`,
+        each None while the text is wrong.
+    """
+    out: dict[str, Any] = {"text": text, "values": None, "errors": [], "places": None, "loads": None}
+    try:
+        out["text"] = change_yaml(text, [(one.path, one.value) for one in changes], WHAT) if changes else text
+        out["values"] = parse_mapping(out["text"], WHAT)
+        whole = _carriage(out["text"], file)
+        out["places"] = _places(whole)
+        out["loads"] = _loads(forces_of(whole))
+    except InputError as exc:
+        out["errors"] = _errors(exc)
+    return out
+
+
+def _errors(exc: InputError) -> list[dict[str, Any]]:
+    return [{"field": one.field, "line": one.line, "message": str(one)} for one in exc.errors]
+
+
+def _carriage(text: str, file: str) -> Carriage:
+    """Return the checked carriage of a text."""
+    path = _place(file, "file") if file else Path("carriage.yaml")
+    values = parse_mapping(text, WHAT)
+    with errors_by_line(text, aliases=ALIASES), files_beside(path):
+        return carriage_of({"name": path.stem} | values)
+
+
+def _places(whole: Carriage) -> dict[str, Any]:
+    """Return where rollers and masses are, for the picture."""
+    rollers = [
+        {"name": r.name, "at": r.at.tolist(), "pushes": r.pushes.tolist(), "axis": r.axis.tolist()}
+        for r in whole.rollers
+    ]
+    masses = [{"at": mass.at.tolist(), "value": mass.value} for mass in (whole.mass, *whole.payloads)]
+    return {"rollers": rollers, "masses": masses, "cases": [case.name for case in whole.cases]}
+
+
+def _loads(ds: xr.Dataset) -> dict[str, Any]:
+    """Return the forces as numbers by load case and roller, and as a table with a row for each roller."""
+    radial, axial = (ds[name].values for name in ("radial_force", "axial_force"))
+    rows = [
+        [str(name), *("lifted" if r == 0 else f"{cell(float(r))} / {cell(float(a))}" for r, a in both)]
+        for name, both in zip(ds["roller"].values, np.stack([radial, axial], 2).swapaxes(0, 1), strict=True)
+    ]
+    heads = ["Roller", *map(str, ds["load_case"].values)]
+    note = "Radial forces below 0 press the roller on its rail; axial forces act on the roller along its own axis x_R."
+    return {
+        "radial": radial.tolist(),
+        "axial": axial.tolist(),
+        "worst": worst_place(ds)[1],
+        "table": _table(Table("", "Radial / axial force of the rollers by load case [N]", heads, rows, note)),
+        "said": [one.text for one in sentences(ds)],
+    }
+
+
+def _table(table: Table) -> dict[str, Any]:
+    return {"title": table.title, "heads": table.heads, "rows": table.rows, "note": table.note}
+
+
+def carriage_lives(text: str, file: str = "") -> dict[str, Any]:
+    """Return lives and margins of a carriage: sentences, and the tables of `trackroller carriage`."""
+    return _lives(solve_carriage(_carriage(text, file)))
+
+
+@lives_in_years
+def _lives(ds: xr.Dataset) -> dict[str, Any]:
+    return {
+        "said": [*(one.text for one in sentences(ds)), *(f"Doubtful: {text}" for text in doubts_of(ds))],
+        "tables": [_table(table) for table in tables(ds)],
+        "worst": str(ds.attrs.get("worst_roller", "")),
+    }
+
+
+def save_carriage(text: str, file: str) -> dict[str, str]:
+    """Write a carriage file into the folder."""
+    return {"file": _write(_place(file, "file"), text)}
+
+
+def carriage_spectrum(text: str, roller: str, file: str = "") -> dict[str, str]:
+    """Write the load spectrum of a roller into the folder, as `trackroller carriage --spectrum` does."""
+    whole = _carriage(text, file)
+    values = spectrum_of(whole, forces_of(whole), roller)
+    name = re.sub(r"[^\w.-]+", "-", f"{whole.name}-{roller}").strip(".-") or "spectrum"
+    return {"file": _write(_place((Path(file).parent / f"{name}.yaml").as_posix(), "file"), write_yaml(values))}
+
+
+def _place(file: str, field: str) -> Path:
+    """Return the path of a YAML file in this folder, or in a folder of it that is not the page's own."""
+    path = Path(file.strip())
+    allowed = "a name such as shuttle.yaml, in this folder or in a folder of it"
+    whole = path.suffix.lower() in (".yaml", ".yml") and file.isprintable() and not path.is_absolute()
+    hidden = any(part.startswith(".") for part in path.parts)
+    if not whole or hidden or len(path.parts) > 2 or path.parts[0] in (RESULTS.name, TEXTS.name):
+        raise InputError(field, file[:200], allowed, "Give the file a name that ends in .yaml.")
+    if is_link(path) or is_link(path.parent):
+        raise InputError(field, file, allowed, "Copy the file here.", "is a link")
+    return path
+
+
+def _write(path: Path, text: str) -> str:
+    """Write a file, unless somebody else has changed it since the page read or wrote it."""
+    digest, known = hashlib.sha256(text.encode()).hexdigest(), read_record(RECORD)[1].get(path.as_posix(), set())
+    if os.path.lexists(path) and (not path.is_file() or sha256(path) not in known | {digest}):
+        remedy = "Give it another name, or open the file first."
+        raise InputError(
+            "file", path.as_posix(), "a name whose file this page read or wrote", remedy, "is there already"
+        )
+    _note(path, known | {digest})
+    ownership.write_text(path, text)
+    return path.as_posix()
+
+
+def _note(path: Path, digests: set[str]) -> None:
+    """Note what this page has read or written, so that it may write the file again."""
+    known = read_record(RECORD)[1]
+    ownership.write_record(RECORD, known | {path.as_posix(): digests}, current=True)
