@@ -117,6 +117,15 @@ def test_the_page_writes_over_its_own_files_only(folder):
     assert (folder / "cart.yaml").read_text() == EXAMPLE
 
 
+def test_the_list_holds_what_can_be_opened(folder):
+    for name in ("a.yaml", ".hidden.yaml", "studies/b.yaml", "results/c.yaml", "carts/d.yml", "carts/deep/e.yaml"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(EXAMPLE)
+    (folder / "roller.yaml").write_text("axial_force: 3")
+    (folder / "link.yaml").symlink_to(folder / "a.yaml")
+    assert carriage_files()["files"] == ["a.yaml", "carts/d.yml"]
+
+
 @pytest.mark.parametrize(
     "name",
     ["../a.yaml", "/tmp/a.yaml", "a.txt", "", ".a.yaml", "results/a.yaml", "studies/a.yaml", "a/b/c.yaml", "l.yaml"],
