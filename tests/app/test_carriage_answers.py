@@ -117,6 +117,15 @@ def test_the_page_writes_over_its_own_files_only(folder):
     assert (folder / "cart.yaml").read_text() == EXAMPLE
 
 
+def test_the_list_holds_what_can_be_opened(folder):
+    for name in ("a.yaml", ".hidden.yaml", "studies/b.yaml", "results/c.yaml", "carts/d.yml", "carts/deep/e.yaml"):
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(EXAMPLE)
+    (folder / "roller.yaml").write_text("axial_force: 3")
+    (folder / "link.yaml").symlink_to(folder / "a.yaml")
+    assert carriage_files()["files"] == ["a.yaml", "carts/d.yml"]
+
+
 @pytest.mark.parametrize(
     "name",
     ["../a.yaml", "/tmp/a.yaml", "a.txt", "", ".a.yaml", "results/a.yaml", "studies/a.yaml", "a/b/c.yaml", "l.yaml"],
@@ -152,6 +161,51 @@ def test_a_path_that_leads_nowhere_is_named():
     shown = carriage_loads(EXAMPLE, changes=changed(rollers__FL__at__x="10"))
     assert [one["field"] for one in shown["errors"]] == ["rollers.FL.at.x"]
     assert shown["text"] == EXAMPLE
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {"text": 5},
+        {"text": EXAMPLE, "changes": 3},
+        {"text": EXAMPLE, "changes": [{"path": "mass", "value": "1"}]},
+        {"text": EXAMPLE, "changes": [{"path": ["mass"]}]},
+        {"text": EXAMPLE, "more": 1},
+    ],
+)
+def test_malformed_questions_are_refused(live, body):
+    status, found = live.ask("carriage_loads", **body)
+    assert status == 400 and found["errors"][0]["message"].startswith("The request is wrong")
+
+
+@pytest.mark.parametrize(
+    "path", [[], [-1], ["mass", "value", "deep"], ["rollers", 3], ["payloads", 7, "value"], ["name", "x"]]
+)
+def test_odd_paths_are_answered_in_words(live, path):
+    status, found = live.ask("carriage_loads", text=EXAMPLE, changes=[{"path": path, "value": "1"}])
+    assert status == 200 and (found["errors"] or found["text"] != EXAMPLE)
+
+
+def scalars(values, path=()):
+    """Yield the path of each number and text."""
+    for key, value in values.items() if isinstance(values, dict) else enumerate(values):
+        if isinstance(value, (dict, list)):
+            yield from scalars(value, (*path, key))
+        else:
+            yield (*path, key)
+
+
+def test_each_value_of_the_text_can_be_changed():
+    """The changed text reads as the changed values; the case that all rollers share is changed for all of them."""
+    for path in scalars(parse_mapping(EXAMPLE, "file")):
+        expected = parse_mapping(EXAMPLE, "file")
+        place = expected
+        for key in path[:-1]:
+            place = place[key]
+        place[path[-1]] = 4711
+        text = change_yaml(EXAMPLE, [(path, "4711")], "file")
+        assert parse_mapping(text, "file") == expected, path
+        assert text.count("#") == EXAMPLE.count("#")
 
 
 def test_a_value_is_added_where_a_mapping_is_missing():

@@ -141,6 +141,14 @@ def test_a_table_of_somebody_else_is_kept(folder):
         assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
 
 
+def test_a_study_of_one_load_case(tmp_path):
+    whole = load_carriage(shuttle(cases=[{"name": "run"}]))
+    study, rows = study_of(whole, forces_of(whole), "s.csv")
+    (tmp_path / "s.csv").write_text(rows)
+    (tmp_path / "s.yaml").write_text(write_yaml(study))
+    assert study["roles"] == {"roller": "condition"} and len(tr.load_study(tmp_path / "s.yaml").design().case) == 4
+
+
 @pytest.mark.slow
 def test_the_study_runs_as_it_is(folder):
     assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
@@ -148,9 +156,12 @@ def test_the_study_runs_as_it_is(folder):
     assert done.exit_code == 0, done.output
     whole = load_carriage(folder / "shuttle.yaml")
     ds = with_lives(forces_of(whole), whole)
-    with tr.open_study(folder / "results" / "shuttle-loads").data as found:
-        lives = found["pair_life_to_first_limit_hours"].values
+    results = tr.open_study(folder / "results" / "shuttle-loads")
+    lives = results.data["pair_life_to_first_limit_hours"].values
     assert np.allclose(lives, ds.case_life_hours.values.ravel(), rtol=1e-6)
+    told = CliRunner().invoke(app, ["best", "shuttle-loads"]).output
+    i, j = np.unravel_index(ds.case_life_hours.values.argmin(), ds.case_life_hours.shape)
+    assert f"load case {ds.load_case.values[i]}, roller {ds.roller.values[j]}" in " ".join(told.split())
 
 
 @pytest.fixture

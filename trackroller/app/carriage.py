@@ -54,10 +54,8 @@ def carriage_files() -> dict[str, Any]:
 
 def _is_carriage(path: Path) -> bool:
     """Return whether a file of this folder has the keys of a carriage file."""
-    if path.parts[0] in (RESULTS.name, WRITTEN.name) or not path.resolve().is_relative_to(Path.cwd().resolve()):
-        return False
     try:
-        text = read_text(path, WHAT, LONGEST)
+        text = read_text(_place(path.as_posix(), "file"), WHAT, LONGEST)
     except InputError:
         return False
     return all(head.search(text) for head in HEADS)

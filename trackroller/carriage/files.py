@@ -87,7 +87,7 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     -------
     tuple of dict and str
         The table has a row for each load case and roller that carries load. Fields in which the rollers differ are
-        columns; all others stand in the study.
+        columns; all others stand in the study, which asks about one design under all these conditions.
 
     Raises
     ------
@@ -113,6 +113,9 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     if lifted:
         text += f" Rollers that are lifted carry no load and have no row, {lifted} in all."
     study = {"name": f"{whole.name}-loads", "description": text, "base": base, "design": "table", "table": table}
+    columns = zip(heads, zip(*rows[1:], strict=True), strict=True)
+    varies = [name for name, column in columns if name not in TABLED and len({*column}) > 1]
+    study["roles"] = dict.fromkeys(varies, "condition")  # all cases are conditions of one design
     duty = {} if whole.duty is None else {"duty": dict(whole.duty)}
     given = whole.rollers[0].options
     options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}

@@ -121,12 +121,12 @@ async function start() {
     group("Profiles, friction law, bearing, catalogue, head of the sheet", el("p", { class: "soft" }, "Written as in a case file. The fields of a profile offer the CSV files of this page's folder; a drawn profile needs normal: halfspace."), more, files),
   );
 
-  const shown_ = () => (state.tab === "carriage" ? carriage : state); // whose changes are undone
-  const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => shown_().undo() }, "Undo");
-  const redo = el("button", { type: "button", title: "Ctrl+Y", onclick: () => shown_().redo() }, "Redo");
+  const edited = () => (state.tab === "carriage" ? carriage : state); // whose changes are undone
+  const undo = el("button", { type: "button", title: "Ctrl+Z", onclick: () => edited().undo() }, "Undo");
+  const redo = el("button", { type: "button", title: "Ctrl+Y", onclick: () => edited().redo() }, "Redo");
   const steps = () => {
-    undo.disabled = !shown_().canUndo();
-    redo.disabled = !shown_().canRedo();
+    undo.disabled = !edited().canUndo();
+    redo.disabled = !edited().canRedo();
   };
   const carriage = carriageView(state, { changed: steps });
   const reset = el("button", { type: "button", onclick: () => state.replace(offered.first) }, "Reset");
@@ -147,8 +147,8 @@ async function start() {
   replace(root, el("header", {}, el("h1", {}, "trackroller"), list, running, el("div", { class: "tools" }, undo, redo, reset, pin, sheet, link)), el("main", {}, panels));
   document.addEventListener("keydown", (event) => {
     if (!(event.ctrlKey || event.metaKey) || /^(TEXTAREA|INPUT)$/.test(event.target.tagName) && event.target.type !== "range") return;
-    if (event.key === "z") shown_().undo();
-    else if (event.key === "y") shown_().redo();
+    if (event.key === "z") edited().undo();
+    else if (event.key === "y") edited().redo();
     else return;
     event.preventDefault();
   });
