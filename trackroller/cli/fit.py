@@ -122,23 +122,30 @@ def fit_next(
     values: Annotated[str, typer.Option("--fit", help="what is fitted, separated by commas")] = (
         "fatigue_strength,slope,scatter"
     ),
-    within: Annotated[float, typer.Option(help="factor within which B10 is to be known")] = 2.0,
+    until: Annotated[
+        float | None,
+        typer.Option(help="factor between the ends of B10 that is wanted: how many more tests, and hours (some 20 s)"),
+    ] = None,
     longest: Annotated[float | None, typer.Option(help="travel after which a test stops [km]")] = None,
     body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
 ) -> None:
-    """Say which tests narrow B10 of a design most, how long they take, and how many more are needed."""
+    """Say which tests narrow B10 of a design most, how long they take, and with --until how many more are needed."""
     import math
 
     from trackroller.fit.bench import fit_bench as fitted
-    from trackroller.fit.next_tests import next_tests
-    from trackroller.report.pages.fit import next_rows, next_sentences
+    from trackroller.fit.next_tests import check_factor, next_tests, tests_until
+    from trackroller.report.pages.fit import next_rows, next_sentences, until_sentences
     from trackroller.report.terminal import print_table
     from trackroller.study.file.load import load_study
     from trackroller.yaml_file import read_mapping
 
+    if until is not None:
+        check_factor(until)
     made, study = fitted(table, values, body=body), load_study(candidates)
     found = next_tests(made, study.design(), read_mapping(design, "case file"), tests, longest=longest or math.inf)
     heads, rows = next_rows(found)
     print_table(heads, rows)
-    for text in next_sentences(found, within):
+    said = next_sentences(found)
+    said += until_sentences(tests_until(made, found, until), until) if until is not None else []
+    for text in said:
         print(text)
