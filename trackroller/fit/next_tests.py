@@ -20,7 +20,7 @@ from scipy.special import log_ndtr
 
 from trackroller.errors import InputError
 from trackroller.fit.bench import check_same, solved_rollers
-from trackroller.fit.fitted import Fit
+from trackroller.fit.fitted import Fit, Group
 from trackroller.fit.line import Line, Tests, Values
 from trackroller.fit.posterior import Posterior
 from trackroller.numerics.numbers import number_or_nan
@@ -92,11 +92,36 @@ def next_tests(
     if not (isinstance(tests, (int, np.integer)) and 1 <= tests <= 20):
         raise InputError("tests", tests, "a whole number from 1 to 20")
     own, body = fit.group("fatigue"), str(fit.given.get("body", "roller"))
-    line, draws = own.line, _drawn(own.posterior, seed)
     cases = _cases(candidates)
     chosen_design, options, _ = checked_case(_fields(design))
     check_same(fit.given, options, fit.name)
     stresses = _stresses([*cases, chosen_design], options, body)
+    ds = ranked(own, stresses, tests, failure_probability, longest, seed)
+    differ = [n for n in PARAMETERS if len({str(getattr(case, n)) for case in cases}) > 1]
+    ds.attrs["varied"] = differ
+    for name in differ:
+        ds[name] = ("candidate", np.array([getattr(case, name) for case in cases]), {"units": PARAMETERS[name].unit})
+    return ds
+
+
+Stresses = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def ranked(
+    own: Group, stresses: Stresses, tests: int, failure_probability: float, longest: float, seed: int
+) -> xr.Dataset:
+    """Rank candidate tests as `next_tests` does, from what the solutions of candidates and design give.
+
+    Parameters
+    ----------
+    own : Group
+        The line of fatigue so far.
+    stresses : tuple of numpy.ndarray
+        ln S, overrollings of a km, and overrollings of an hour, (n,) each; those of the design stand last.
+    tests, failure_probability, longest, seed
+        See `next_tests`.
+    """
+    line, draws = own.line, _drawn(own.posterior, seed)
     goal = np.asarray(line.log_life(draws.values, stresses[0][-1], failure_probability))
     if not np.isfinite(goal).all():
         remedy = "Give a design that is loaded above the fatigue limit."
@@ -104,14 +129,14 @@ def next_tests(
     limits = np.log(longest * stresses[1][:-1])
     rng = np.random.default_rng(seed)
     ends = [_Candidate(line, draws, x, limit) for x, limit in zip(stresses[0][:-1], limits, strict=True)]
-    ds = _ranked(ends, goal, cases, stresses, tests, rng)
+    ds = _ranked(ends, goal, stresses, tests, rng)
     return _with_design(ds, line, stresses, np.exp(limits), failure_probability)
 
 
 def _with_design(
     ds: xr.Dataset,
     line: Line,
-    stresses: tuple[np.ndarray, np.ndarray, np.ndarray],
+    stresses: Stresses,
     limits: np.ndarray,
     probability: float,
 ) -> xr.Dataset:
@@ -183,9 +208,7 @@ def _fields(design: Any) -> dict[str, Any]:
     return dict(design)
 
 
-def _stresses(
-    cases: Sequence[Case], options: Mapping[str, Any], body: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _stresses(cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Stresses:
     """Return ln S in the contact that fails first, overrollings of a km, and overrollings of an hour, (n,) each."""
     solved = solved_rollers(cases, options)
     for i, regime in enumerate(solved.regime):
@@ -215,8 +238,7 @@ def _remaining(tests: Sequence[_Candidate], goal: np.ndarray, points: np.ndarray
 def _ranked(
     candidates: Sequence[_Candidate],
     goal: np.ndarray,
-    cases: Sequence[Case],
-    stresses: tuple[np.ndarray, np.ndarray, np.ndarray],
+    stresses: Stresses,
     tests: int,
     rng: np.random.Generator,
 ) -> xr.Dataset:
@@ -237,7 +259,7 @@ def _ranked(
     ]
     cycles = np.array([one.median for one in candidates])
     words = {"units": "1", "long_name": "standard deviation of ln B10 of the design"}
-    ds = xr.Dataset(
+    return xr.Dataset(
         {
             "deviation": ("candidate", np.sqrt(alone), words),
             "hours": (
@@ -257,11 +279,6 @@ def _ranked(
             "deviation_random": ((), float(np.sqrt(np.mean(random))), words),
         }
     )
-    differ = [n for n in PARAMETERS if len({str(getattr(case, n)) for case in cases}) > 1]
-    ds.attrs["varied"] = differ
-    for name in differ:
-        ds[name] = ("candidate", np.array([getattr(case, name) for case in cases]), {"units": PARAMETERS[name].unit})
-    return ds
 
 
 def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = CAMPAIGNS, seed: int = 1) -> xr.Dataset:
