@@ -91,6 +91,8 @@ def next_tests(
     """
     if not (isinstance(tests, (int, np.integer)) and 1 <= tests <= 20):
         raise InputError("tests", tests, "a whole number from 1 to 20")
+    if not number_or_nan(longest) > 0:
+        raise InputError("longest", longest, "a travel above 0 km", "Leave it out for tests until failure.")
     own, body = fit.group("fatigue"), str(fit.given.get("body", "roller"))
     cases = _cases(candidates)
     chosen_design, options, _ = checked_case(_fields(design))
