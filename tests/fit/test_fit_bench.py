@@ -166,6 +166,8 @@ def test_the_life_of_a_design_has_an_interval(tmp_path):
         ("38.2,38.2,", "38.2,,", r"line 2: travel_to .*the roller ended"),
         ("R2,", "R1,", r"line 3: test = 'R1' stands in row 2 as well"),
         ("R4,-200", "R4,200", r"line 5: radial_force"),
+        ("R4,-200", "R4,-900000", r"line 5: radial_force.*stress of \d+ MPa, above its tensile strength"),
+        ("38.2,38.2,", "420000,420000,", r"line 2: travel_from = '420000 km'.*overrollings"),
         ("R6,-130", "R6,-20", r"line 7: radial_force = '-20 N' belongs to a roller that lifts off"),
         ("200,,none", "200,200,fatigue guide", r"line 4: end = 'fatigue guide'.*--body"),
         ("fatigue roller", "bearing", r"line 7: end = 'bearing' ends no test by fatigue"),
@@ -175,6 +177,24 @@ def test_a_bad_row_is_told_with_its_place(tmp_path, old, new, message):
     text = ROWS.replace(old, new) if new == "bearing" else ROWS.replace(old, new, 1)
     with pytest.raises(tr.InputError, match=message):
         fit(tmp_path, text)
+
+
+def test_lives_that_grow_with_the_load_are_refused(tmp_path):
+    text = "".join(f"T{i},{-140 - 15 * i},{12 * 2**i},{12 * 2**i},fatigue roller\n" for i in range(5))
+    with pytest.raises(tr.InputError, match=r"line 6: travel_from = '192 km'.*negative slope"):
+        fit(tmp_path, text)
+
+
+def test_held_values_give_a_bound_without_failures_and_a_strength_at_one_load(tmp_path):
+    whole = ROWS.replace("fatigue roller", "none").replace("30,40", "30,").replace("38.2,38.2", "38.2,")
+    whole = whole.replace("12,12", "12,").replace("15,15", "15,").replace("90,90", "90,").replace("none", "run out", 1)
+    found = fit(tmp_path, whole, slope=8, scatter_in_cycles=4)
+    low, high = found.interval("fatigue_strength")
+    assert 0 < low and high == math.inf
+    text = "".join(f"T{i},-160,{30 + i},{30 + i},fatigue roller\n" for i in range(5))
+    one = fit(tmp_path, text, slope=8)
+    assert one.material["woehler_exponent"] == 8
+    assert set(one.data.value.values) == {"fatigue_limit", "scatter_in_cycles"}
 
 
 def test_one_load_does_not_tell_the_slope(tmp_path):

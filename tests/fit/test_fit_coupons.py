@@ -123,6 +123,8 @@ def test_all_run_outs_give_a_bound_with_held_values(tmp_path):
         (GOOD.replace("yes", "no"), HEAD, r"line 7: failed = 'no'.*all specimens ran out.*Hold slope and"),
         (GOOD, "amplitude [MPa],cycles [km],failed\n", r"line 1: cycles = 'km'"),
         (GOOD.replace("90000,", "38.25,"), HEAD, r"line 2: cycles = '38.25'.*whole number.*fit bench"),
+        (GOOD.replace("0000,", ","), HEAD, r"cycles.*at least 1000 cycles in one row.*travel in km"),
+        (GOOD.replace("1000000,yes", "inf,no"), HEAD, r"line 7: cycles = 'inf'.*finite.*was stopped"),
         (GOOD + "700,1000000,yes\n", HEAD, r"line 8: cycles = '1000000' stands in row 7 as well"),
         (GOOD, "amplitde [MPa],cycles,failed\n", r"amplitde.*is not known.*'amplitude'"),
         (GOOD, "amplitude [MPa],cycles,broken\n", r"broken.*is not known.*amplitude, cycles, failed"),
@@ -139,6 +141,28 @@ def test_all_run_outs_give_a_bound_with_held_values(tmp_path):
 def test_a_bad_table_is_told_in_one_sentence_with_its_place(tmp_path, text, head, message):
     with pytest.raises(tr.InputError, match=message):
         tr.fit_sn(table(tmp_path, text, head), **UNDER)
+
+
+@pytest.mark.parametrize(
+    ("held", "message"),
+    [
+        ({"slope": -4}, "slope = -4 .*from 1 to 60"),
+        ({"scatter_in_cycles": 0.5}, "scatter = 0.5 .*Give T_N"),
+    ],
+)
+def test_a_held_value_outside_its_bounds_is_refused(tmp_path, held, message):
+    with pytest.raises(tr.InputError, match=message):
+        tr.fit_sn(table(tmp_path, GOOD), **UNDER, **held)
+
+
+def test_a_material_without_like_and_a_name_that_shares_a_file_are_refused(tmp_path):
+    file = tmp_path / "materials.yaml"
+    with pytest.raises(tr.InputError, match=r"like is missing.*--like"):
+        tr.fit_sn(table(tmp_path, GOOD), name="rail", **UNDER).write(file)
+    like = UNDER | {"like": "1.7225-normalised"}
+    tr.fit_sn(table(tmp_path, GOOD), name="rail", **like).write(file)
+    with pytest.raises(tr.InputError, match=r"name = 'Rail' has its posterior in rail.nc"):
+        tr.fit_sn(table(tmp_path, GOOD), name="Rail", **like).write(file)
 
 
 @pytest.mark.slow

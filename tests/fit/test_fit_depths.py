@@ -39,6 +39,12 @@ def test_the_depths_of_a_followed_groove_return_its_coefficient():
     assert fit.estimate("wear_coefficient") == pytest.approx(3e-5, rel=0.05)
 
 
+@pytest.mark.long
+def test_a_depth_that_no_profile_reaches_is_told_with_its_row():
+    with pytest.raises(tr.InputError, match=r"row 3, wear_depth = 30.0.*it is mm"):
+        depths.fit_wear(TABLE | {"wear_depth": [0.01, 0.02, 30.0]}, {"motor_force": 0, "accuracy": "preview"})
+
+
 @pytest.mark.parametrize(
     ("change", "message"),
     [

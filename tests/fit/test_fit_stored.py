@@ -8,22 +8,11 @@ import pytest
 import trackroller as tr
 from trackroller.fit.stored import stored_fit
 from trackroller.materials import load_database
+from trackroller.report.numbers import rounded
+from trackroller.report.pages.sheet import collect
 from trackroller.report.words.by_tests import by_tests
 
 RIG = {"motor_force": 0, "friction_coefficient": 0.1, "axial_force": 20}
-LOADS = (-200, -200, -180, -160, -160, -130)
-KM = (12.0, 15.0, 30.0, 38.0, 50.0, 90.0)
-
-
-@pytest.fixture
-def rig(tmp_path, monkeypatch):
-    """Return a fit of rollers whose material `rig steel` stands in the user's file."""
-    file = tmp_path / "materials.yaml"
-    columns = {"radial_force": LOADS, "travel_from": KM, "travel_to": KM, "end": ["fatigue roller"] * len(KM)}
-    fit = tr.fit_bench(columns, base=RIG | {"contact_model": "sliding"}, name="rig steel")
-    fit.write(file)
-    monkeypatch.setenv("TRACKROLLER_MATERIALS", str(file))
-    return fit
 
 
 def test_the_stored_fit_gives_the_intervals_of_the_fit(rig):
@@ -38,12 +27,31 @@ def test_a_material_that_was_changed_by_hand_has_no_fit(rig):
     assert stored_fit("rig steel", values | {"fatigue_strength_ratio": 0.3}) is None
 
 
-def test_the_sheet_states_the_band_and_the_extrapolation(rig):
+def test_the_sheet_states_the_band_beside_the_life_and_the_extrapolation(rig):
+    """Margins and lives carry the intervals of the fit; live page and sheet show these rows."""
     case = RIG | {"roller_material": "rig steel"}
-    near, far = (by_tests(tr.solve(case | {"radial_force": force}, contact_model="sliding")) for force in (-160, -60))
-    assert "by the 6 tests of rig steel: B50" in near[0]
-    assert len(near) == 1
-    assert "extrapolation" in far[1]
+    near, far = (
+        tr.solve(case | {"radial_force": force}, contact_model="sliding", outputs=("forces", "life", "limits"))
+        for force in (-160, -60)
+    )
+    assert by_tests(near) == []
+    (said,) = by_tests(far)
+    assert "is an extrapolation" in said
+    for ds, force, beyond in ((near, -160, False), (far, -60, True)):
+        facts = collect(ds)
+        rows = {row.words: row.value for row in facts.lives if "by the 6 tests of rig steel" in row.words}
+        assert len(rows) == 2
+        stress = float(tr.solve(case | {"radial_force": force}, contact_model="sliding").peak_stress[:, 0].max())
+        per_hour = float((ds["life_cycles"] / ds["life_hours"]).sel(body="roller").max())
+        for probability, text in zip((0.1, 0.5), rows.values(), strict=True):
+            ends = rig.interval("cycles", amplitude=stress, failure_probability=probability)
+            low, high = (end / per_hour for end in ends)
+            assert text.startswith(f"{rounded(low, 2)} to {rounded(high, 2)} h")
+            assert ("beyond the S-N data" in text) == beyond
+        fatigue = next(margin for margin in facts.margins if "fatigue" in margin.title and margin.body == "roller")
+        assert (fatigue.low, fatigue.high) == pytest.approx((low, high))  # of the median
+        assert f"{rounded(low)} to {rounded(high)} h" in facts.verdict
+        assert ("beyond the S-N data" in facts.verdict) == beyond
 
 
 def test_the_sheet_refuses_values_of_another_contact_model(rig):
@@ -88,8 +96,7 @@ def test_a_study_with_another_contact_model_is_refused(rig):
 
 
 def test_bands_widen_with_fewer_tests(rig):
-    columns = {"radial_force": LOADS * 4, "travel_from": KM * 4, "travel_to": KM * 4}
-    columns |= {"end": ["fatigue roller"] * 24, "test": [str(i) for i in range(24)]}
-    many = tr.fit_bench(columns, base=RIG | {"contact_model": "sliding"})
+    rows = [row | {"test": str(i)} for i, row in enumerate(rig.tests.rows * 4)]
+    many = tr.fit_bench(rows, base=RIG | {"contact_model": "sliding"})
     wide, narrow = (np.diff(np.log(fit.interval("fatigue_strength")))[0] for fit in (rig, many))
     assert narrow < 0.6 * wide

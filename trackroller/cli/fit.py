@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -51,9 +50,10 @@ def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
 def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
     """Print what was fitted, and write material, posterior and page."""
     from trackroller.cli.case import writable_page
+    from trackroller.fit.fitted import slug
     from trackroller.report.pages.fit import sentences
 
-    target = writable_page(page or Path(f"fit-{re.sub(r'[^a-z0-9]+', '-', made.name.lower()).strip('-')}.html"))
+    target = writable_page(page or Path(f"fit-{slug(made.name)}.html"))
     for text in sentences(made):
         print(text)
     if set(made.material) - {"name", "like"} and not made.unidentified:
@@ -78,6 +78,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
     ),
     name: Annotated[str, typer.Option("--as", help="name of the material that is made")] = "",
     body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
+    slope: Annotated[float | None, typer.Option(help="slope k that is held")] = None,
+    scatter: Annotated[float | None, typer.Option(help="scatter T_N that is held")] = None,
     like: Like = None,
     prior: Priors = None,
     file: File = OWN,
@@ -90,7 +92,9 @@ def fit_bench(  # noqa: PLR0913 - one argument for each option of the command
     """
     from trackroller.fit import bench
 
-    made = bench.fit_bench(table, values, name=name, body=body, like=like, prior=_priors(prior))
+    made = bench.fit_bench(
+        table, values, name=name, body=body, slope=slope, scatter_in_cycles=scatter, like=like, prior=_priors(prior)
+    )
     _finish(made, file, replace, report)
 
 
@@ -114,7 +118,7 @@ def fit_wear(
 
 
 @fit.command("next")
-def fit_next(
+def fit_next(  # noqa: PLR0913 - one argument for each option of the command
     table: Table,
     candidates: Annotated[Path, typer.Option(help="study file whose rows could be tested")],
     design: Annotated[Path, typer.Option("--for", help="case file of the design whose B10 matters")],
@@ -122,23 +126,33 @@ def fit_next(
     values: Annotated[str, typer.Option("--fit", help="what is fitted, separated by commas")] = (
         "fatigue_strength,slope,scatter"
     ),
-    within: Annotated[float, typer.Option(help="factor within which B10 is to be known")] = 2.0,
+    until: Annotated[
+        float | None,
+        typer.Option(help="factor between the ends of B10 that is wanted: how many more tests, and hours (some 20 s)"),
+    ] = None,
     longest: Annotated[float | None, typer.Option(help="travel after which a test stops [km]")] = None,
     body: Annotated[str | None, typer.Option(help="roller or guide; the body that failed if not given")] = None,
+    slope: Annotated[float | None, typer.Option(help="slope k that is held")] = None,
+    scatter: Annotated[float | None, typer.Option(help="scatter T_N that is held")] = None,
 ) -> None:
-    """Say which tests narrow B10 of a design most, how long they take, and how many more are needed."""
+    """Say which tests narrow B10 of a design most, how long they take, and with --until how many more are needed."""
     import math
 
     from trackroller.fit.bench import fit_bench as fitted
-    from trackroller.fit.next_tests import next_tests
-    from trackroller.report.pages.fit import next_rows, next_sentences
+    from trackroller.fit.next_tests import check_factor, next_tests, tests_until
+    from trackroller.report.pages.fit import next_rows, next_sentences, until_sentences
     from trackroller.report.terminal import print_table
     from trackroller.study.file.load import load_study
     from trackroller.yaml_file import read_mapping
 
-    made, study = fitted(table, values, body=body), load_study(candidates)
-    found = next_tests(made, study.design(), read_mapping(design, "case file"), tests, longest=longest or math.inf)
+    if until is not None:
+        check_factor(until)
+    made = fitted(table, values, body=body, slope=slope, scatter_in_cycles=scatter)
+    study, own = load_study(candidates), read_mapping(design, "case file")
+    found = next_tests(made, study.design(), own, tests, longest=math.inf if longest is None else longest)
     heads, rows = next_rows(found)
     print_table(heads, rows)
-    for text in next_sentences(found, within):
+    said = next_sentences(found)
+    said += until_sentences(tests_until(made, found, until), until) if until is not None else []
+    for text in said:
         print(text)

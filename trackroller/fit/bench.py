@@ -23,9 +23,9 @@ import numpy as np
 
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.errors import Collector, InputError, check_names
+from trackroller.errors import Collector, InputError, check_names, listing
 from trackroller.files import files_beside, find_beside
-from trackroller.fit.coupons import priors_of
+from trackroller.fit.coupons import check_falls, check_held, deviation_of, priors_of
 from trackroller.fit.fitted import Fit, Group
 from trackroller.fit.line import Line, Tests
 from trackroller.fit.posterior import ln_range
@@ -33,6 +33,7 @@ from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.materials import Material, load_database
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
@@ -47,6 +48,8 @@ OPTIONS_OF_LIFE = ("contact_model", "life_criterion", "accuracy")
 MODES = ("fatigue", *(name for name in LIMITS if name != "fatigue"), "other")
 FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)  # at which a drive force is solved
 UNIT_WEAR = 1e-6  # wear coefficient with which travels to a depth are computed [mm3/(N m)]
+LONGEST = 50_000.0  # h: nearly six years without a stop
+FLAG = {name: 1 << place for place, name in enumerate(VALIDITY)}
 FARTHEST = 1e6  # km, how far a depth is followed
 
 
@@ -73,20 +76,25 @@ class Solved:
         Overrollings of an hour [1/h].
     regime : list of str
         Regime of each roller, (n,).
+    flags : numpy.ndarray
+        Validity flags of each body, (n, body).
     """
 
     stress: np.ndarray
     per_km: np.ndarray
     per_hour: np.ndarray
     regime: list[str]
+    flags: np.ndarray
 
 
-def fit_bench(
+def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     table: Any,
     fit: Sequence[str] | str = ("fatigue_strength", "slope", "scatter"),
     *,
     name: str = "",
     body: str | None = None,
+    slope: float | None = None,
+    scatter_in_cycles: float | None = None,
     like: str | None = None,
     base: Mapping[str, Any] | None = None,
     prior: Mapping[str, Sequence[float]] | None = None,
@@ -107,6 +115,8 @@ def fit_bench(
         Name of the material that is made; by default that of the tested body with "fitted".
     body : str, optional
         Body whose values are fitted, "roller" or "guide"; by default the one that failed.
+    slope, scatter_in_cycles : float, optional
+        Slope k and scatter T_N that are held instead of fitted [1].
     like : str, optional
         Material whose other values the fitted one takes; by default the tested one.
     base : mapping, optional
@@ -139,6 +149,11 @@ def fit_bench(
     """
     wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else list(fit)
     check_names("fit", wanted, FITTED)
+    check_held(slope, scatter_in_cycles)
+    held = {"slope": slope, "scatter": scatter_in_cycles}
+    wanted = [name for name in wanted if held.get(name) is None]
+    if not wanted:
+        raise InputError("fit", fit, "at least one value that is not held", "Name fatigue_strength as well.")
     if body is not None:
         check_names("body", [body], BODIES)
     rows = read_tests(table, ("travel_from", "end"), COLUMNS, [n for n in COLUMNS if n not in ("travel_from", "end")])
@@ -146,12 +161,17 @@ def fit_bench(
     ends = [_end(rows, row) for row in rows]
     travels = [_travel(rows, row, ends[row]) for row in rows]
     cases, options = _cases(rows, base)
+    _check_hours(rows, travels, cases)
     own = body or _body_of(rows, ends, wanted)
     material = _material_of(rows, cases, own)
-    solved = _solved(rows, cases, options)
+    solved = _solved(rows, cases, options, own)
     groups = []
     if {"fatigue_strength", "slope", "scatter"} & set(wanted):
-        groups.append(_fatigue(rows, ends, travels, solved, own, material, wanted, prior))
+        held = {
+            "slope": None if "slope" in wanted else slope or material.woehler_exponent,
+            "scatter": None if "scatter" in wanted else _scatter_of(material, scatter_in_cycles),
+        }
+        groups.append(_fatigue(rows, ends, travels, solved, own, material, held, prior))
     if "wear_coefficient" in wanted:
         groups.append(_wear(rows, ends, travels, cases, options, own))
     if "friction_coefficient" in wanted:
@@ -165,6 +185,7 @@ def fit_bench(
         )
     if "friction_coefficient" in wanted and len(groups) > 1:
         notes.append("The rows were solved with the friction that they state, not with the fitted one.")
+    notes += _outside(rows, solved, own)
     return Fit("bench", name or f"{material.name} fitted", tuple(groups), rows, like or material.name, given, notes)
 
 
@@ -213,7 +234,7 @@ def _check_names_once(rows: TestTable) -> None:
 def _end(rows: TestTable, row: int) -> End:
     """Return what ended a test, from words such as 'wear roller 0.05 mm'."""
     words = rows.text(row, "end").lower().split()
-    if words in (["none"], ["run-out"], ["runout"], ["suspended"]):
+    if words in (["none"], ["run-out"], ["runout"], ["run", "out"], ["suspended"]):
         return End("none")
     allowed = f"none, or how it ended: {', '.join(MODES)}; then roller or guide, such as 'fatigue roller'"
     if not words or words[0] not in MODES:
@@ -341,7 +362,8 @@ def solved_rollers(cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
     per_km = per_hour / (KM_PER_HOUR * velocity)[:, None, None]
     shape = (len(cases), 2, 2)
     stresses = stress.transpose("case", "contact", "body").values
-    return Solved(stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime)
+    flags = ds["validity_body"].transpose("case", "body").values.astype(int)
+    return Solved(stresses, np.broadcast_to(per_km, shape), np.broadcast_to(per_hour, shape), regime, flags)
 
 
 def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[float, float]:
@@ -372,8 +394,20 @@ def _rolling_radius(case: Case) -> float:
     return float(rolling_radius(case.axis_distance, case.guide_profile_radius, np.radians(case.contact_angle)))
 
 
-def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) -> Solved:
-    """Solve the rows, and refuse one that does not roll."""
+def _check_hours(rows: TestTable, travels: Sequence[tuple[float, float]], cases: Sequence[Case]) -> None:
+    """Refuse a travel that would take years without a stop, which is rather a number of overrollings."""
+    for row, ((low, _), case) in enumerate(zip(travels, cases, strict=True)):
+        hours = low / (KM_PER_HOUR * case.velocity)
+        if hours > LONGEST:
+            speed = f"{case.velocity:g} m/min"
+            allowed = f"a travel of at most {LONGEST:g} h without a stop; this one takes {hours:.3g} h at {speed}"
+            raise rows.error(
+                row, "travel_from", allowed, "Write km, not a number of overrollings, or correct the speed."
+            )
+
+
+def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Solved:
+    """Solve the rows, and refuse one that does not roll, or whose body breaks at once."""
     solved = solved_rollers(cases, options)
     words = {"lift_off": "lifts off", "full_slip": "slips fully", "failed": "has no solution"}
     for row, regime in enumerate(solved.regime):
@@ -384,7 +418,22 @@ def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any]) 
             column = loads[0] if loads else "base"
             wrong = f"belongs to a roller that {words.get(regime, regime)}"
             raise rows.error(row, column, allowed, remedy, wrong)
+        if solved.flags[row, BODIES.index(body)] & FLAG["static"]:
+            stress = float(np.max(solved.stress[row, :, BODIES.index(body)]))
+            column = "radial_force" if "radial_force" in rows.rows[row] else "base"
+            wrong = f"gives the {body} a stress of {stress:.4g} MPa, above its tensile strength"
+            raise rows.error(row, column, "loads under which the body does not break", "Correct the loads.", wrong)
     return solved
+
+
+def _outside(rows: TestTable, solved: Solved, body: str) -> list[str]:
+    """Return notes on rows whose stresses lie outside the model."""
+    said = []
+    for name in ("half_space", "conformal"):
+        lines = [str(rows.lines[row]) for row in rows if solved.flags[row, BODIES.index(body)] & FLAG[name]]
+        if lines:
+            said.append(f"In row {listing(lines)} {VALIDITY[name].words}: the stress is an estimate.")
+    return said
 
 
 def _fatigue(
@@ -394,7 +443,7 @@ def _fatigue(
     solved: Solved,
     body: str,
     material: Material,
-    wanted: Collection[str],
+    held: Mapping[str, float | None],
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
     """Return the line of fatigue of a body."""
@@ -419,7 +468,7 @@ def _fatigue(
             origin.append(row)
     known = np.isfinite(np.array(low)) | np.isfinite(np.array(high))
     tests = Tests(np.array(stress)[known], np.array(low)[known], np.array(high)[known])
-    return _fatigue_group(rows, tests, tuple(np.array(origin)[known].tolist()), material, wanted, prior)
+    return _fatigue_group(rows, tests, tuple(np.array(origin)[known].tolist()), material, held, prior)
 
 
 def _fatigue_group(
@@ -427,19 +476,20 @@ def _fatigue_group(
     tests: Tests,
     origin: tuple[int, ...],
     material: Material,
-    wanted: Collection[str],
+    held: Mapping[str, float | None],
     prior: Mapping[str, Sequence[float]] | None,
 ) -> Group:
-    slope = None if "slope" in wanted else material.woehler_exponent
-    scatter = None if "scatter" in wanted else _scatter_of(material)
+    slope, scatter = held["slope"], held["scatter"]
     last = len(rows) - 1
     if not tests.failed.any() and (slope is None or scatter is None):
-        remedy = "Fit fatigue_strength alone for a one-sided bound, or test until a roller fails."
+        remedy = "Hold slope and scatter (--slope 8 --scatter 4) for a one-sided bound, or test until a roller fails."
         raise rows.error(last, "end", "at least one end by fatigue of the body", remedy, "ends no test by fatigue")
     if slope is None and np.ptp(tests.stress[tests.failed]) < 1e-3:
-        remedy = "Leave slope out of the fit, or test another load to failure."
+        remedy = "Hold it (--slope 8), leave slope out of the fit, or test another load to failure."
         column = "radial_force" if "radial_force" in rows.rows[last] else "base"
         raise rows.error(last, column, "failures at two loads or more, from which the slope follows", remedy)
+    if slope is None:
+        check_falls(rows, tests, "travel_from", origin)
     line = Line(tests, slope=slope, scatter=scatter)
     if len(rows) <= len(line.free):
         remedy = "Test more rollers, or fit fewer values."
@@ -447,11 +497,13 @@ def _fatigue_group(
     return Group("fatigue", line, priors_of(prior), at=material.cycles_at_fatigue_limit, rows=origin)
 
 
-def _scatter_of(material: Material) -> float:
-    """Return the standard deviation of ln N of a material."""
+def _scatter_of(material: Material, held: float | None) -> float:
+    """Return the standard deviation of ln N that is held, or that of a material."""
+    if held is not None:
+        return deviation_of(held)
     t_n, t_s = material.scatter_in_cycles, material.scatter_in_stress
     if t_n is None and t_s is None:
-        remedy = "Fit it as well, or give scatter_in_cycles with the material."
+        remedy = "Hold it with --scatter 4 (scatter_in_cycles=4), or fit it as well."
         raise InputError(
             f"material '{material.name}'.scatter_in_cycles", None, "the scatter T_N, which is held", remedy
         )

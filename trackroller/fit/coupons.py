@@ -20,7 +20,7 @@ from scipy import stats
 
 from trackroller.errors import InputError, check_names, listing
 from trackroller.fit.fitted import Fit, Group
-from trackroller.fit.line import Line, Tests
+from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
 from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.numerics.numbers import number_or_nan
@@ -37,6 +37,7 @@ LOAD_TYPES = {
 YES = ("1", "1.0", "true", "yes", "y", "failed", "failure", "fracture", "broken", "ja", "x")
 NO = ("0", "0.0", "false", "no", "n", "run-out", "runout", "run out", "survived", "suspended", "nein", "none")
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
+TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
 DEFAULT_KNEE = 2e6  # cycles at which a line without run-outs states its strength
 
 
@@ -103,12 +104,14 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         raise InputError("stress ratio", stress_ratio, "a number below 1", "Give -1 for full reversal.")
     tests = _of_group(tests, group)
     factor = LOAD_TYPES[load_type][0] if load_type else 1.0
+    check_held(slope, scatter_in_cycles)
     observed = _observed(tests, factor)
     _check_duplicates(tests)
-    _check_falls(tests, observed, slope)
+    if slope is None:
+        check_falls(tests, observed, "cycles")
     _check_identified(tests, observed, slope, scatter_in_cycles)
     meet = _limit_shows(observed) if knee is None else knee
-    held = None if scatter_in_cycles is None else math.log(scatter_in_cycles) / math.log(ln_range(1.0))
+    held = None if scatter_in_cycles is None else deviation_of(scatter_in_cycles)
     line = Line(observed, slope=slope, scatter=held, knee=meet)
     if line.size <= len(line.free):
         allowed = f"more rows than fitted values; {listing([*line.free])} are {len(line.free)} values"
@@ -171,14 +174,20 @@ def _observed(tests: TestTable, factor: float) -> Tests:
             if math.isnan(value):
                 raise tests.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")
         if cycles < FEWEST_CYCLES and not cycles.is_integer():
-            remedy = "If it is a travel in km, fit rollers with `trackroller fit bench`."
-            raise tests.error(row, "cycles", "a whole number of load cycles", remedy)
+            raise tests.error(row, "cycles", "a whole number of load cycles", TRAVEL)
+        if math.isinf(cycles):
+            remedy = "Write the cycles at which the specimen was stopped, with failed = no."
+            raise tests.error(row, "cycles", "a finite number of load cycles", remedy)
         word = tests.text(row, "failed").lower()
         if word not in (*YES, *NO):
             raise tests.error(row, "failed", "yes or no, 1 or 0, failed or run-out", "Correct the cell.")
         stress.append(math.log(factor * amplitude))
         low.append(math.log(cycles))
         high.append(math.log(cycles) if word in YES else math.inf)
+    if max(low) < math.log(FEWEST_CYCLES):
+        longest = int(np.argmax(low))
+        allowed = f"a life of at least {FEWEST_CYCLES:g} cycles in one row; this one is the longest"
+        raise tests.error(longest, "cycles", allowed, TRAVEL)
     return Tests(np.array(stress), np.array(low), np.array(high))
 
 
@@ -197,17 +206,45 @@ def _check_duplicates(tests: TestTable) -> None:
         seen[key] = row
 
 
-def _check_falls(tests: TestTable, observed: Tests, slope: float | None) -> None:
-    """Refuse lives that grow with the stress beyond chance."""
+def deviation_of(scatter_in_cycles: float) -> float:
+    """Return the standard deviation of ln N of a scatter T_N."""
+    return math.log(scatter_in_cycles) / math.log(ln_range(1.0))
+
+
+def check_held(slope: float | None, scatter_in_cycles: float | None) -> None:
+    """Refuse a slope or scatter that is held outside the bounds of a line."""
+    low, high = BOUNDS["slope"]
+    if slope is not None and not low <= number_or_nan(slope) <= high:
+        raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
+    low, high = (ln_range(math.exp(end)) for end in BOUNDS["log_scatter"])
+    if scatter_in_cycles is not None and not low <= number_or_nan(scatter_in_cycles) <= high:
+        allowed = f"a number from {low:.3g} to {high:.3g}"
+        raise InputError("scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4.")
+
+
+def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[int] | None = None) -> None:
+    """Refuse lives that grow with the stress beyond chance.
+
+    Parameters
+    ----------
+    tests : TestTable
+        The table.
+    observed : Tests
+        Stresses and lives.
+    column : str
+        Column of the lives, for the message.
+    rows : sequence of int, optional
+        Row of the table of each test; by default all rows in their order.
+    """
     own = observed.failed
-    if slope is not None or own.sum() < 3 or np.ptp(observed.stress[own]) < 1e-9:
+    if own.sum() < 3 or np.ptp(observed.stress[own]) < 1e-9:
         return
     found = stats.linregress(observed.stress[own], observed.middle[own])
     if found.slope > 0 and found.pvalue < 0.1:
-        rows = np.flatnonzero(own)
-        row = int(rows[np.argmax(observed.middle[own])])
+        place = int(np.flatnonzero(own)[np.argmax(observed.middle[own])])
         allowed = "lives that fall with the stress; these grow, as a line with a negative slope"
-        raise tests.error(row, "cycles", allowed, "Look whether columns or groups were mixed up.")
+        remedy = "Look whether columns or groups were mixed up."
+        raise tests.error(place if rows is None else rows[place], column, allowed, remedy)
 
 
 def _check_identified(tests: TestTable, observed: Tests, slope: float | None, scatter: float | None) -> None:

@@ -18,6 +18,7 @@ from trackroller.roller.wear import wear
 
 NEEDED = ("travel", "wear_depth")
 COLUMNS = (*NEEDED, "test", "note")
+REACHED = 1e-3  # share of a depth by which the last state may fall short of it
 FARTHEST = 1e9  # km, how far a groove is followed until its depth is reached
 
 
@@ -75,6 +76,9 @@ def fit_wear(
         raise InputError("tests", len(rows), "two depths or more, for a coefficient with its scatter")
     case, options, _ = checked_case(dict(base or {}))
     unit = followed(worn_alone(case, body), options, body, depth)
+    for row in np.flatnonzero(np.isnan(unit)).tolist():
+        allowed = "a depth that the followed profile reaches before it has worn through or lifted off"
+        raise rows.error(row, "wear_depth", allowed, "Check the unit: it is mm.")
     observed = np.log(travel / unit)
     group = wear_group(observed, observed, tuple(rows))
     given = {key: str(options.get(key, default)) for key, default in DEFAULTS.items() if key != "life_criterion"}
@@ -97,6 +101,11 @@ def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, d
         The body that wears.
     depths : numpy.ndarray
         Depths [mm].
+
+    Returns
+    -------
+    numpy.ndarray
+        NaN for a depth that the profile does not reach.
     """
     own = {name: value for name, value in options.items() if name not in ("normal", "outputs", "life_criterion")}
     case = {**values, "permissible_wear_depth": 1.001 * float(depths.max())}
@@ -106,4 +115,5 @@ def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, d
     # the depth grows as a power of the travel, so that logarithms are interpolated; the first part is a straight line
     known_depth, known_travel = np.log(deep[grown]), np.log(travel[grown])
     before = np.minimum(np.log(depths) - known_depth[0], 0.0)
-    return np.exp(np.interp(np.log(depths), known_depth, known_travel) + before)
+    found = np.exp(np.interp(np.log(depths), known_depth, known_travel) + before)
+    return np.where(depths > (1.0 + REACHED) * deep.max(), np.nan, found)

@@ -257,7 +257,7 @@ class Fit:
 
     def _attributes(self) -> dict[str, Any]:
         attributes: dict[str, Any] = {
-            "title": f"Values of {self.name} from tests",
+            "title": self._title,
             "kind": self.kind,
             "tests": self.tests.name,
             "sha256": self.tests.digest,
@@ -401,14 +401,32 @@ class Fit:
         if lacking:
             remedy = "Hold the slope, or test more specimens at other stresses."
             raise InputError(f"material '{self.name}'", None, "", remedy, f"lacks {listing(lacking)}: not identified")
+        if self.like is None:
+            remedy = "Name it with --like, in Python like=: a steel of the database for a steel."
+            raise InputError("like", None, "a material whose E, Poisson's ratio and R_m the new one takes", remedy)
+        place = posterior_path(file, self.name)
+        self._check_file(place)
         digest = f", sha256 {self.tests.digest[:16]}" if self.tests.digest else ""
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
         material = add_material(file, self.name, replace=replace, source=source, note=under, **entry)
-        place = posterior_path(file, self.name)
         place.parent.mkdir(exist_ok=True)
         write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
         return material
+
+    def _check_file(self, place: Path) -> None:
+        """Refuse a name whose posterior would take the place of that of another material."""
+        if not place.is_file():
+            return
+        with xr.open_dataset(place) as stored:
+            other = str(stored.attrs.get("title", ""))
+        if other != self._title:
+            wrong = f"has its posterior in {place.name}, where another material has its own ({other})"
+            raise InputError("name", self.name, "", "Choose a name that differs by a letter or digit.", wrong)
+
+    @property
+    def _title(self) -> str:
+        return f"Values of {self.name} from tests"
 
     def has(self, kind: str) -> bool:
         """Return whether the fit has a group of this kind."""
@@ -434,10 +452,14 @@ class Fit:
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")
 
 
+def slug(name: str) -> str:
+    """Return the name of a material as a part of names of files: 'rig-steel' of 'Rig steel'."""
+    return re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-") or "material"
+
+
 def posterior_path(file: Path | str, name: str) -> Path:
     """Return the file of the posterior of a fitted material, beside the user's materials file."""
-    slug = re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-")
-    return Path(file).expanduser().resolve().parent / FOLDER / f"{slug or 'material'}.nc"
+    return Path(file).expanduser().resolve().parent / FOLDER / f"{slug(name)}.nc"
 
 
 def log_life_of(ds: xr.Dataset, log_stress: np.ndarray, probability: float) -> np.ndarray:

@@ -9,6 +9,7 @@ ASSUME: a test runs until its roller fails, or until the longest travel that is 
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -19,8 +20,8 @@ from scipy.special import log_ndtr
 
 from trackroller.errors import InputError
 from trackroller.fit.bench import check_same, solved_rollers
-from trackroller.fit.fitted import Fit
-from trackroller.fit.line import Line
+from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.line import Line, Tests, Values
 from trackroller.fit.posterior import Posterior
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.parameters import BODIES, PARAMETERS
@@ -30,6 +31,8 @@ from trackroller.roller.settings import checked_case
 OUTCOMES = 200  # ends drawn for each candidate
 POINTS = 3000  # points of the posterior that are kept, drawn by their weight
 MOST_CANDIDATES = 500
+CAMPAIGNS = 100  # that are simulated for the number of tests
+MOST_TESTS = 128  # of a simulated campaign
 
 
 def next_tests(
@@ -67,6 +70,8 @@ def next_tests(
         Along `candidate`: `deviation`, the standard deviation of ln B10 that remains on average after one test, `hours`
         of that test in the median and `travel`. Along `test`: `chosen` candidates in their order and
         `deviation_after`; `deviation_now` and `deviation_random`, what as many random candidates would leave.
+        `interval_now` is the interval of B10 by the tests so far. `trackroller.fit.next_tests.tests_until` takes the
+        result and says how many tests are needed.
 
     Raises
     ------
@@ -86,12 +91,39 @@ def next_tests(
     """
     if not (isinstance(tests, (int, np.integer)) and 1 <= tests <= 20):
         raise InputError("tests", tests, "a whole number from 1 to 20")
+    if not number_or_nan(longest) > 0:
+        raise InputError("longest", longest, "a travel above 0 km", "Leave it out for tests until failure.")
     own, body = fit.group("fatigue"), str(fit.given.get("body", "roller"))
-    line, draws = own.line, _drawn(own.posterior, seed)
     cases = _cases(candidates)
     chosen_design, options, _ = checked_case(_fields(design))
     check_same(fit.given, options, fit.name)
     stresses = _stresses([*cases, chosen_design], options, body)
+    ds = ranked(own, stresses, tests, failure_probability, longest, seed)
+    differ = [n for n in PARAMETERS if len({str(getattr(case, n)) for case in cases}) > 1]
+    ds.attrs["varied"] = differ
+    for name in differ:
+        ds[name] = ("candidate", np.array([getattr(case, name) for case in cases]), {"units": PARAMETERS[name].unit})
+    return ds
+
+
+Stresses = tuple[np.ndarray, np.ndarray, np.ndarray]
+
+
+def ranked(
+    own: Group, stresses: Stresses, tests: int, failure_probability: float, longest: float, seed: int
+) -> xr.Dataset:
+    """Rank candidate tests as `next_tests` does, from what the solutions of candidates and design give.
+
+    Parameters
+    ----------
+    own : Group
+        The line of fatigue so far.
+    stresses : tuple of numpy.ndarray
+        ln S, overrollings of a km, and overrollings of an hour, (n,) each; those of the design stand last.
+    tests, failure_probability, longest, seed
+        See `next_tests`.
+    """
+    line, draws = own.line, _drawn(own.posterior, seed)
     goal = np.asarray(line.log_life(draws.values, stresses[0][-1], failure_probability))
     if not np.isfinite(goal).all():
         remedy = "Give a design that is loaded above the fatigue limit."
@@ -99,7 +131,27 @@ def next_tests(
     limits = np.log(longest * stresses[1][:-1])
     rng = np.random.default_rng(seed)
     ends = [_Candidate(line, draws, x, limit) for x, limit in zip(stresses[0][:-1], limits, strict=True)]
-    return _ranked(ends, goal, cases, stresses, tests, rng)
+    ds = _ranked(ends, goal, stresses, tests, rng)
+    return _with_design(ds, line, stresses, np.exp(limits), failure_probability)
+
+
+def _with_design(
+    ds: xr.Dataset,
+    line: Line,
+    stresses: Stresses,
+    limits: np.ndarray,
+    probability: float,
+) -> xr.Dataset:
+    """Add what is known of the design now, and what a simulated campaign needs of the candidates."""
+    log_stress, _, per_hour = stresses
+    now = [float(np.exp(end)) / per_hour[-1] for end in line.interval_of_life(float(log_stress[-1]), probability)]
+    words = "90 % interval of B10 of the design by the tests so far"
+    ds["interval_now"] = ("end", np.array(now), {"units": "h", "long_name": words})
+    ds["design_stress"] = ((), float(np.exp(log_stress[-1])), {"units": "MPa", "long_name": "stress of the design"})
+    ds["longest_cycles"] = ("candidate", limits, {"units": "1", "long_name": "overrollings at which a test stops"})
+    ds["overrollings_per_hour"] = ("candidate", per_hour[:-1], {"units": "1/h", "long_name": "overrollings of an hour"})
+    ds.attrs["failure_probability"] = probability
+    return ds
 
 
 class _Candidate:
@@ -158,9 +210,7 @@ def _fields(design: Any) -> dict[str, Any]:
     return dict(design)
 
 
-def _stresses(
-    cases: Sequence[Case], options: Mapping[str, Any], body: str
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _stresses(cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Stresses:
     """Return ln S in the contact that fails first, overrollings of a km, and overrollings of an hour, (n,) each."""
     solved = solved_rollers(cases, options)
     for i, regime in enumerate(solved.regime):
@@ -190,8 +240,7 @@ def _remaining(tests: Sequence[_Candidate], goal: np.ndarray, points: np.ndarray
 def _ranked(
     candidates: Sequence[_Candidate],
     goal: np.ndarray,
-    cases: Sequence[Case],
-    stresses: tuple[np.ndarray, np.ndarray, np.ndarray],
+    stresses: Stresses,
     tests: int,
     rng: np.random.Generator,
 ) -> xr.Dataset:
@@ -212,7 +261,7 @@ def _ranked(
     ]
     cycles = np.array([one.median for one in candidates])
     words = {"units": "1", "long_name": "standard deviation of ln B10 of the design"}
-    ds = xr.Dataset(
+    return xr.Dataset(
         {
             "deviation": ("candidate", np.sqrt(alone), words),
             "hours": (
@@ -232,35 +281,110 @@ def _ranked(
             "deviation_random": ((), float(np.sqrt(np.mean(random))), words),
         }
     )
-    differ = [n for n in PARAMETERS if len({str(getattr(case, n)) for case in cases}) > 1]
-    ds.attrs["varied"] = differ
-    for name in differ:
-        ds[name] = ("candidate", np.array([getattr(case, name) for case in cases]), {"units": PARAMETERS[name].unit})
-    return ds
 
 
-def tests_needed(ds: xr.Dataset, factor: float) -> float:
-    """Return about how many more tests narrow B10 to within a factor on both sides (90 %), by the plan.
+def tests_until(fit: Fit, plan: xr.Dataset, factor: float, *, campaigns: int = CAMPAIGNS, seed: int = 1) -> xr.Dataset:
+    """Simulate how many more tests narrow the interval of B10 of a design to a factor.
 
     Parameters
     ----------
-    ds : xarray.Dataset
-        What `next_tests` returned.
+    fit : Fit
+        The fit so far.
+    plan : xarray.Dataset
+        What `next_tests` returned for it; a campaign repeats its `chosen` tests in their order.
     factor : float
-        Ratio of B10 to the low end of its interval [1].
+        High over low end of the 90 % interval of B10 that is wanted [1].
+    campaigns : int
+        Number of simulated campaigns.
+    seed : int
+        Of the random numbers.
 
     Returns
     -------
-    float
-        Number of tests; 0 if none is needed, inf if the candidates do not narrow B10.
+    xarray.Dataset
+        Along `campaign`: `tests` and `hours` until the interval is narrow enough; inf where `most` tests do not
+        suffice.
+
+    Raises
+    ------
+    InputError
+        For a factor of 1 or less, and for a fit with a fatigue limit without a longest travel.
 
     Notes
     -----
-    The inverse variance grows by about the same with each further test; the plan tells by how much.
+    Each campaign has a line of its own, drawn from the posterior. Its tests end by that line, and the line is fitted to
+    all tests as `fit_bench` does. The number of tests is found by doubling and halving, because the width of the
+    interval falls with it but for chance.
     """
+    check_factor(factor)
+    own = fit.group("fatigue")
+    line, values = own.line, own.posterior.values
+    chosen = plan["chosen"].values
+    stress, limit, rate = (plan[name].values[chosen] for name in ("stress", "longest_cycles", "overrollings_per_hour"))
+    if line.knee and np.isinf(limit).any():
+        remedy = "Give it with --longest, in Python longest=...: a specimen below its limit never fails."
+        raise InputError("longest", None, "the travel after which a test stops", remedy)
+    design, p = math.log(float(plan["design_stress"])), float(plan.attrs["failure_probability"])
+    if _ln_width(line, design, p) <= math.log(factor):
+        zeros = np.zeros(campaigns)
+        return _campaigns(zeros, zeros)
+    rng = np.random.default_rng(seed)
+    found = []
+    for row in rng.choice(len(own.posterior.weight), campaigns, p=own.posterior.weight):
+        truth = Values(*(float(np.broadcast_to(value, own.posterior.weight.shape)[row]) for value in values))
+        place = np.arange(MOST_TESTS) % len(chosen)
+        x, limits = np.log(stress[place]), np.log(limit[place])
+        end = truth.level - truth.slope * (x - line.reference)
+        end = end + math.exp(truth.log_scatter) * rng.normal(size=MOST_TESTS)
+        if line.knee:
+            own_limit = truth.log_limit + math.exp(truth.log_limit_scatter) * rng.normal(size=MOST_TESTS)
+            end = np.where(x > own_limit, end, np.inf)
+        tests = Tests(x, np.minimum(end, limits), np.where(end < limits, end, np.inf))
+        number = _first(line, tests, design, p, math.log(factor))
+        hours = np.exp(tests.low) / rate[place]
+        found.append((number, hours[: int(number)].sum() if math.isfinite(number) else math.inf))
+    return _campaigns(*np.array(found, float).T)
+
+
+def check_factor(factor: float) -> None:
+    """Refuse a factor between the ends of an interval that is no number above 1."""
     if not number_or_nan(factor) > 1.0:
-        raise InputError("factor", factor, "a number above 1", "Give 2 for an interval from half to twice the value.")
-    goal = (math.log(factor) / 1.645) ** -2
-    now, after = float(ds["deviation_now"]) ** -2, float(ds["deviation_after"][-1]) ** -2
-    gain = (after - now) / ds.sizes["test"]
-    return 0.0 if goal <= now else math.inf if gain <= 0 else math.ceil((goal - now) / gain)
+        allowed = "a number above 1: the high over the low end of the interval"
+        raise InputError("until", factor, allowed, "Give 2 for an interval such as 100 to 200 h.")
+
+
+def _campaigns(tests: np.ndarray, hours: np.ndarray) -> xr.Dataset:
+    return xr.Dataset(
+        {
+            "tests": ("campaign", tests, {"units": "1", "long_name": "further tests"}),
+            "hours": ("campaign", hours, {"units": "h", "long_name": "hours of the further tests"}),
+        },
+        attrs={"most": MOST_TESTS},
+    )
+
+
+def _ln_width(line: Line, log_stress: float, probability: float) -> float:
+    """Return the width of the 90 % interval of ln life."""
+    low, high = line.interval_of_life(log_stress, probability)
+    return high - low
+
+
+def _first(line: Line, tests: Tests, log_stress: float, probability: float, goal: float) -> float:
+    """Return the number of further tests at which the interval is narrow enough, inf if all of them do not suffice."""
+
+    def narrow(number: int) -> bool:
+        every = [
+            np.concatenate([a, b[:number]])
+            for a, b in ((line.tests.stress, tests.stress), (line.tests.low, tests.low), (line.tests.high, tests.high))
+        ]
+        return _ln_width(dataclasses.replace(line, tests=Tests(*every)), log_stress, probability) <= goal
+
+    low, high = 0, 1
+    while not narrow(high):
+        if high >= MOST_TESTS:
+            return math.inf
+        low, high = high, min(2 * high, MOST_TESTS)
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (low, middle) if narrow(middle) else (middle, high)
+    return float(high)

@@ -13,10 +13,13 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
+from trackroller.fit.bench import DEFAULTS
 from trackroller.fit.fitted import posterior_path
 from trackroller.fit.line import Interval, Line, Tests
 from trackroller.fit.posterior import Posterior
 from trackroller.materials.file import find_user_file
+from trackroller.parameters import BODIES
+from trackroller.roller.record import materials_of
 
 SAME = 1e-6  # relative difference of values of a material and of its fit that rounding may cause
 
@@ -55,10 +58,11 @@ class StoredFit:
         found = self.line.interval_of_life(math.log(stress), probability)
         return Interval(*(float(np.exp(end)) for end in found))
 
-    def extrapolates(self, stress: float, cycles: float) -> bool:
-        """Return whether a stress [MPa] or a life lies beyond the tests."""
+    def extrapolates(self, stress: float | np.ndarray, cycles: float | np.ndarray) -> np.ndarray:
+        """Return whether stresses [MPa] or lives lie beyond the tests, of the same shape."""
         low, high, longest = self.tested
-        return not low * (1 - 1e-9) <= stress <= high * (1 + 1e-9) or cycles > longest
+        outside = (np.asarray(stress) < low * (1 - 1e-9)) | (np.asarray(stress) > high * (1 + 1e-9))
+        return np.asarray(outside | (np.asarray(cycles) > longest))
 
 
 def stored_fit(name: str, values: Mapping[str, Any]) -> StoredFit | None:
@@ -89,6 +93,33 @@ def stored_fit(name: str, values: Mapping[str, Any]) -> StoredFit | None:
     knee = values.get("cycles_at_fatigue_limit", math.nan)
     agrees = all(abs(a - b) <= SAME * abs(b) for a, b in zip((own, knee), strength, strict=True))
     return fit if agrees else None
+
+
+def fits_of_case(ds: xr.Dataset) -> tuple[dict[str, StoredFit], dict[str, str]]:
+    """Return the fits of the materials of a solved case by body, and why others do not hold for it, by material.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        Result of `trackroller.solve` for one case.
+
+    Returns
+    -------
+    tuple of dict
+        Fits by body; and for a material whose fit had other options, these options in words.
+    """
+    found, others = {}, {}
+    for body in BODIES:
+        values = materials_of(ds)[f"{body}_material"]
+        fit = stored_fit(str(values.get("name", "")), values)
+        if fit is None or "life_cycles" not in ds:
+            continue
+        other = [f"{key} {fit.given[key]}" for key in DEFAULTS if fit.given.get(key, ds.attrs[key]) != ds.attrs[key]]
+        if other:
+            others[fit.name] = " and ".join(other)
+        else:
+            found[body] = fit
+    return found, others
 
 
 @functools.lru_cache(maxsize=16)

@@ -1,9 +1,9 @@
-"""Band of the probability of targets by the tests of fitted materials (`material_scatter: fitted`).
+"""Lives over what the tests of fitted materials leave open: their posterior moves and spreads the lives of a study.
 
-Each draw from the posterior of a fitted line moves the lives of its material by the ratio of both lines at the stress
-of the case, and gives the probability of a target. The band holds 90 % of the draws.
+Each draw from the posterior of a fitted line moves the lives by fatigue of its material by the ratio of both lines at
+the stress of the case. A band holds 90 % of the draws.
 
-ASSUME: lives by fatigue move; other limits stay. The pair moves with its roller.
+ASSUME: lives by fatigue move; other limits stay. Below the fatigue limit the ratio is that of both straight lines.
 """
 
 from __future__ import annotations
@@ -11,108 +11,408 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Iterable, Mapping
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 import xarray as xr
+from scipy.special import ndtr, ndtri
 
 from trackroller.errors import InputError, listing
-from trackroller.fit.bench import check_same
+from trackroller.fit.bench import DEFAULTS, check_same
+from trackroller.fit.line import Values
+from trackroller.fit.posterior import Posterior
 from trackroller.fit.stored import StoredFit, stored_fit
+from trackroller.methods.b10 import b10
+from trackroller.parameters import BODIES
+from trackroller.results.first_limits import reached_by_body
+from trackroller.results.lives import body_lives
 from trackroller.results.results import Results
 from trackroller.results.targets import hits_of, scattering_body
-from trackroller.study.outputs import outputs
+from trackroller.roller.output_names import body_of, is_life
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.outputs import Output, of_fatigue, of_first_limit, outputs
 
-DRAWS = 200
-OF_FATIGUE = ("life_cycles", "life_hours", "roller_life_hours", "guide_life_hours", "pair_life_hours")
+PARTS = 8  # of equal weight, into which each value of a line divides its posterior
+DRAWS = PARTS**3  # one for each part of level, slope and scatter
+POSITIONS = tuple(
+    range(DRAWS // 20, DRAWS, DRAWS // 10)
+)  # draws at which candidates of the same materials are compared
+BAND = (0.05, 0.95)  # quantiles of the draws between which a life lies by the tests
 WANTED = "fitted"
 DEVIATES = math.log(10.0)
+AT_ONCE = 2_000_000  # elements of an array of cases and draws, which bounds the memory
+Shift = Callable[[str], np.ndarray]  # of ln life by body, (n,)
 
 
-def fits_of(results: Results) -> dict[str, StoredFit]:
-    """Return the fits of the materials of a study by the names of the materials.
+def materials_fitted(results: Results) -> dict[str, StoredFit]:
+    """Return the fits of the materials of a study by the names of the materials, whether they hold for it or not."""
+    stored = json.loads(str(results.data.attrs.get("materials", "{}")))
+    return {name: fit for name, values in stored.items() if (fit := stored_fit(name, values)) is not None}
+
+
+def options_of(results: Results) -> dict[str, Any]:
+    """Return the options by which the compared cases of a study were solved."""
+    held = {name: results.held_level(name) for name in results.factors if name in OPTION_FACTORS}
+    return {key: value for key, value in results.data.attrs.items() if key in DEFAULTS} | held
+
+
+def not_held(results: Results) -> dict[str, str]:
+    """Return the fitted materials of a study that was solved with other options than their fit, with these options."""
+    used, found = options_of(results), {}
+    for name, fit in materials_fitted(results).items():
+        other = [
+            f"{k} {fit.given[k]}" for k in DEFAULTS if str(used.get(k, DEFAULTS[k])) != fit.given.get(k, used.get(k))
+        ]
+        if other:
+            found[name] = listing(other)
+    return found
+
+
+def by_tests_of(results: Results) -> ByTests | None:
+    """Return the fits that hold for a study with the draws of their posteriors; None without one."""
+    other = not_held(results)
+    fits = {name: fit for name, fit in materials_fitted(results).items() if name not in other}
+    return ByTests(results, fits) if fits else None
+
+
+def required(results: Results) -> ByTests:
+    """Return the fits that hold for a study with `material_scatter: fitted`.
 
     Raises
     ------
     InputError
         If no material of the study was fitted, or the study has other options than a fit.
     """
-    stored = json.loads(str(results.data.attrs.get("materials", "{}")))
-    found = {name: fit for name, values in stored.items() if (fit := stored_fit(name, values)) is not None}
+    found = materials_fitted(results)
     if not found:
+        stored = list(json.loads(str(results.data.attrs.get("materials", "{}"))))
         allowed = "a study with a material that `trackroller fit` wrote"
-        remedy = f"Fit {listing(list(stored), 'or')} to tests, or set material_scatter to true or a number."
+        remedy = f"Fit {listing(stored, 'or')} to tests, or set material_scatter to true or a number."
         raise InputError("analysis.material_scatter", WANTED, allowed, remedy)
     for fit in found.values():
-        check_same(fit.given, results.data.attrs, fit.name)
-    return found
+        check_same(fit.given, options_of(results), fit.name)
+    return ByTests(results, found)
+
+
+@dataclasses.dataclass(frozen=True, eq=False)
+class ByTests:
+    """The fits of the materials of a study, with draws of their posteriors.
+
+    Attributes
+    ----------
+    results : the solved study
+    fits : fit of each fitted material by its name
+    """
+
+    results: Results
+    fits: Mapping[str, StoredFit]
+
+    @cached_property
+    def drawn(self) -> dict[str, Values]:
+        """Return values of the line of each material, (draws,) each.
+
+        The draws have equal weights, and those of the first material rise with the life at its mean tested stress.
+        Those of further materials are shuffled, because posteriors of different materials are independent.
+        """
+        out = {}
+        for i, (name, fit) in enumerate(self.fits.items()):
+            rows = _spread_evenly(fit.posterior)
+            rows = rows if i == 0 else np.random.default_rng(i).permutation(rows)
+            out[name] = Values(*(np.broadcast_to(v, fit.posterior.weight.shape)[rows] for v in fit.posterior.values))
+        return out
+
+    @cached_property
+    def stress(self) -> dict[str, np.ndarray]:
+        """Return the stress of each body that enters its line, at its worse contact, (n,) [MPa].
+
+        A study without stresses gives those of fitted materials by their lines, from which its lives follow.
+        """
+        out = {}
+        for body in BODIES:
+            names = (f"fatigue_stress_{body}", f"peak_stress_{body}")
+            known = next((name for name in names if self.results.has(name)), "")
+            out[body] = self.results.column(known) if known else self._by_line(body)
+        return out
+
+    def _by_line(self, body: str) -> np.ndarray:
+        """Return the stress of a body at which the line of its material gives its life, (n,) [MPa]; else NaN."""
+        names, cycles = self.results.material(body), self.results.column(f"life_cycles_{body}")
+        out = np.full(len(names), np.nan)
+        for name, fit in self.fits.items():
+            best, rows = fit.line.best, (names == name) & (cycles > 0) & np.isfinite(cycles)
+            out[rows] = np.exp(fit.line.reference + (best.level - np.log(cycles[rows])) / best.slope)
+        return out
+
+    @cached_property
+    def named(self) -> dict[str, np.ndarray]:
+        """Return the fitted material of each body in each case, (n,); '' where it was not fitted."""
+        names = {body: self.results.material(body) for body in BODIES}
+        return {b: np.where(np.isin(n, list(self.fits)) & (self.stress[b] > 0), n, "") for b, n in names.items()}
+
+    @cached_property
+    def _reached(self) -> dict[str, np.ndarray]:
+        """Return hours until each limit at each end of the ranges of placeholders, (n, limit, body)."""
+        return {end: reached_by_body(self.results, end) for end in ("", "_low", "_high")}
+
+    def beyond(self, body: str) -> np.ndarray:
+        """Return the cases whose stress or life of a body lies beyond the tests of its material, (n,)."""
+        names, stress, cycles = self.named[body], self.stress[body], self.results.column(f"life_cycles_{body}")
+        out = np.zeros(len(names), dtype=bool)
+        for name, fit in self.fits.items():
+            rows = names == name
+            out[rows] = fit.extrapolates(stress[rows], cycles[rows])
+        return out
+
+    def moved(
+        self, body: str, rows: np.ndarray, draws: Any = slice(None), probability: float = 0.5
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the shift of ln life of a body, and the deviation of log10 life of its material, (rows, draws) each.
+
+        Parameters
+        ----------
+        body : str
+            The body.
+        rows : numpy.ndarray
+            Numbers of cases.
+        draws : slice or list of int
+            Which draws.
+        probability : float
+            Failure probability of the lives [1].
+
+        Returns
+        -------
+        tuple of numpy.ndarray
+            0 and NaN where the material was not fitted.
+        """
+        names, stress = self.named[body][rows], self.stress[body][rows]
+        size = len(range(*draws.indices(DRAWS))) if isinstance(draws, slice) else len(draws)
+        shift, deviation = np.zeros((len(rows), size)), np.full((len(rows), size), np.nan)
+        deviate = float(ndtri(probability))
+        for name, fit in self.fits.items():
+            own = names == name
+            best, values = fit.line.best, Values(*(np.asarray(value)[draws] for value in self.drawn[name]))
+            away = np.log(stress[own])[:, None] - fit.line.reference
+            spread = np.exp(values.log_scatter)
+            shift[own] = (values.level - best.level) - (values.slope - best.slope) * away
+            shift[own] += deviate * (spread - math.exp(float(best.log_scatter)))
+            deviation[own] = spread / DEVIATES
+        return shift, deviation
+
+    def ends(self, body: str, probability: float = 0.5) -> np.ndarray:
+        """Return the shift of ln life of a body at both ends of the band, (2, n)."""
+        out = np.zeros((2, len(self.results.table)))
+        fitted = np.flatnonzero(self.named[body] != "")
+        step = max(AT_ONCE // DRAWS, 1)
+        for part in (fitted[i : i + step] for i in range(0, len(fitted), step)):
+            out[:, part] = np.quantile(self.moved(body, part, probability=probability)[0], BAND, axis=1)
+        return out
+
+    def reached(self, shift: Shift, end: str = "") -> np.ndarray:
+        """Return the hours until each limit when those by fatigue are moved, see `lives`, (n, limit, body) [h]."""
+        out, limits = self._reached[end].copy(), self.results.data["limit"].values.tolist()
+        for i, body in enumerate(BODIES):
+            if "fatigue" in limits:
+                out[:, limits.index("fatigue"), i] *= np.exp(shift(body))
+        return out
+
+    def lives(self, name: str, values: np.ndarray, shift: Shift, end: str = "") -> np.ndarray:
+        """Return lives of a study when those by fatigue are moved.
+
+        Parameters
+        ----------
+        name : str
+            Column of the lives; values of another column stay.
+        values : numpy.ndarray
+            The lives, (n,).
+        shift : callable
+            Returns the shift of ln life by fatigue of a body, (n,).
+        end : str
+            `_low` or `_high` for the ends of the ranges of placeholders, to which the values belong.
+        """
+        body = body_of(name)
+        if of_fatigue(name) and body:
+            return np.asarray(values * np.exp(shift(body)))
+        if of_fatigue(name):
+            own = [self.results.column(column) for column in body_lives(name).values()]
+            before, after = (
+                np.fmin.reduce([life * np.exp(s * shift(b)) for b, life in zip(BODIES, own, strict=True)])
+                for s in (0, 1)
+            )
+        elif of_first_limit(name):
+            kept = [BODIES.index(body)] if body else list(range(len(BODIES)))
+            before = self._reached[end][:, :, kept].min(axis=(1, 2))
+            after = self.reached(shift, end)[:, :, kept].min(axis=(1, 2))
+        else:
+            return values
+        known = np.isfinite(before) & (before > 0) & np.isfinite(values)
+        return np.where(known, values * after / np.where(known, before, 1.0), values)
+
+    def at(self, draw: int, rows: np.ndarray | None = None, probability: float = 0.5) -> Shift:
+        """Return the shifts of ln life of one draw by body."""
+        every = np.arange(len(self.results.table)) if rows is None else rows
+        return lambda body: self.moved(body, every, [draw], probability)[0][:, 0]
+
+    def words(self, names: Iterable[str]) -> str:
+        """Return the words for the tests of some materials: 'the 6 tests of rig steel'."""
+        return listing([f"the {self.fits[name].rows} tests of {name}" for name in names])
+
+
+def _spread_evenly(posterior: Posterior) -> np.ndarray:
+    """Return numbers of points of a posterior that stand for equal shares of its weight, (draws,).
+
+    Points are sorted by the level into parts, each of these by the slope, and each of these by the scatter; the points
+    at equal steps of the weight in this order are taken.
+    """
+    weight = posterior.weight
+    parts: list[np.ndarray] = [np.arange(len(weight))]
+    for value in (posterior.values.level, posterior.values.slope, posterior.values.log_scatter):
+        own = np.broadcast_to(value, weight.shape)
+        halves = []
+        for part in parts:
+            order = part[np.argsort(own[part], kind="stable")]
+            share = np.cumsum(weight[order])
+            cuts = np.searchsorted(share, np.arange(1, PARTS) / PARTS * share[-1]) if len(order) else []
+            halves += np.split(order, cuts)
+        parts = halves
+    order = np.concatenate(parts)
+    below = np.cumsum(weight[order])
+    return np.asarray(order[np.searchsorted(below, (np.arange(DRAWS) + 0.5) / DRAWS * below[-1])])
+
+
+def probability_of(results: Results, name: str) -> float:
+    """Return the failure probability that a life of a study belongs to [1]: lives to a limit have that of the study."""
+    return float(results.data.attrs.get("failure_probability", 0.5)) if of_first_limit(name) else 0.5
+
+
+def _drawn_lives(own: ByTests, column: Output, given: np.ndarray | None) -> tuple[np.ndarray, np.ndarray]:
+    """Return the lives of a column and the deviations of log10 life under each draw, (n, draws) each."""
+    name, n = column.name, len(column.values)
+    every, p = np.arange(n), probability_of(own.results, column.name)
+    lives = np.stack([own.lives(name, column.values, own.at(i, probability=p)) for i in range(DRAWS)], axis=1)
+    deviation = own.moved(scattering_body(name), every)[1]
+    return lives, np.where(np.isnan(deviation), 0.0 if given is None else given[:, None], deviation)
 
 
 def bands(results: Results, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
-    """Return the band of the probability of each target by the tests.
+    """Return the bands of targets and of B10 by the tests, for a study with `material_scatter: fitted`.
 
     Parameters
     ----------
     results : Results
-        Solved study with targets and `material_scatter: fitted`.
+        Solved study.
     deviations : mapping of str to numpy.ndarray
         Standard deviation of log10 life of the material of each body [1], (n,).
 
     Returns
     -------
     xarray.Dataset
-        `tests_low` and `tests_high` along `target`, over all cases; NaN for a target that is no life by fatigue. Their
-        attributes `tests` and `materials` say how many tests the band rests on, and of which materials.
+        `tests_low` and `tests_high` along `target`, over all cases; NaN for a target that is no life. For each life of
+        the study `b10_tests_low` and `b10_tests_high` along `life`, and along `point` of a design with design points,
+        beside `b10_tests`, B10 by the fitted values with the scatter of the material;
+        over the cases that roll. Their attributes `tests` and `materials` say how many tests the bands rest on, and of
+        which materials.
     """
-    wanted, fits = results.config.analysis.target, fits_of(results)
-    columns = outputs(
-        results.data, results.design.factors, list(wanted), scale="natural", unlimited=True, allowed=results.valid
-    )
-    drawn = {name: _points(fit) for name, fit in fits.items()}
+    own, wanted = required(results), results.config.analysis.target
+    words = {"tests": str(sum(fit.rows for fit in own.fits.values())), "materials": listing(list(own.fits))}
+    columns = _columns(results, list(wanted))
     found = []
     for column in columns:
-        if not column.name.startswith(OF_FATIGUE):
+        if not is_life(column.name):
             found.append((math.nan, math.nan))
             continue
-        body = scattering_body(column.name)
-        shift, scatter = _moved(results, body, fits, drawn, deviations.get(body))
-        goal, shares = wanted[column.name], []
-        for i in range(DRAWS):
-            drawn_lives = dataclasses.replace(column, values=column.values * np.exp(shift[:, i]))
-            shares.append(float(hits_of(drawn_lives, goal, scatter[:, i]).mean()))
-        found.append(tuple(np.quantile(shares, (0.05, 0.95))))
-    low, high = np.array(found, float).T
-    words = {"units": "1", "long_name": "probability over all cases, 90 % by the tests"}
-    words |= {"tests": str(sum(fit.rows for fit in fits.values())), "materials": listing(list(fits))}
-    names = [column.name for column in columns]
-    return xr.Dataset({"tests_low": ("target", low, words), "tests_high": ("target", high, words)}, {"target": names})
+        lives, scatter = _drawn_lives(own, column, deviations.get(scattering_body(column.name)))
+        goal = wanted[column.name]
+        shares = [
+            float(hits_of(dataclasses.replace(column, values=lives[:, i]), goal, scatter[:, i]).mean())
+            for i in range(DRAWS)
+        ]
+        found.append(tuple(np.quantile(shares, BAND)))
+    out = xr.Dataset()
+    if columns:
+        low, high = np.array(found, float).T
+        attrs = {"units": "1", "long_name": "probability over all cases, 90 % by the tests"} | words
+        ends = {"tests_low": ("target", low, attrs), "tests_high": ("target", high, attrs)}
+        out = xr.Dataset(ends, {"target": [column.name for column in columns]})
+    return out.merge(_b10_bands(own, deviations, words))
 
 
-def _points(fit: StoredFit) -> np.ndarray:
-    """Return points of the posterior of a fit, drawn by their weight."""
-    weight = fit.posterior.weight
-    return np.random.default_rng(1).choice(len(weight), DRAWS, p=weight)
+def _columns(results: Results, names: list[str]) -> list[Output]:
+    """Return these outputs as they are, without a limit of their number."""
+    factors = results.design.factors
+    return (
+        outputs(results.data, factors, names, scale="natural", unlimited=True, allowed=results.allowed) if names else []
+    )
 
 
-def _moved(
-    results: Results,
-    body: str,
-    fits: Mapping[str, StoredFit],
-    drawn: Mapping[str, np.ndarray],
-    deviation: np.ndarray | None,
-) -> tuple[np.ndarray, np.ndarray]:
-    """Return the shift of ln life and the deviation of log10 life of each case under each draw, (n, draws)."""
-    names = results.material(body)
-    known = f"fatigue_stress_{body}" if results.has(f"fatigue_stress_{body}") else f"peak_stress_{body}"
-    stress = results.column(known)
-    shift = np.zeros((len(names), DRAWS))
-    scatter = np.zeros(shift.shape) + (0.0 if deviation is None else deviation[:, None])
-    for name, fit in fits.items():
-        rows = np.flatnonzero((names == name) & (stress > 0))
-        values = type(fit.posterior.values)(*(np.asarray(v)[drawn[name]] for v in fit.posterior.values))
-        for row in rows:
-            x = math.log(stress[row])
-            straight = fit.line.best.level - fit.line.best.slope * (x - fit.line.reference)
-            shift[row] = values.level - values.slope * (x - fit.line.reference) - straight
-        scatter[rows] = np.exp(values.log_scatter)[None, :] / DEVIATES
-    return shift, scatter
+def _b10_bands(own: ByTests, deviations: Mapping[str, np.ndarray], words: Mapping[str, str]) -> xr.Dataset:
+    """Return B10 of each life and its band by the tests, at each design point or over all cases of a sample."""
+    results, design = own.results, own.results.design
+    lives = [name for name, _, _ in (results.life or ("", "", ""), *results.fatigue_lives) if name in results.table]
+    lives = [name for name in dict.fromkeys(lives) if is_life(name)]
+    if not (design.method.points or design.method.sampled) or not lives:
+        return xr.Dataset()
+    points: list[Any] = list(design.points) if design.method.points else [design.method.independent_rows(design)]
+    columns = _columns(results, lives)
+    values = np.full((3, len(columns), len(points)), np.nan)
+    for i, column in enumerate(columns):
+        given = deviations.get(scattering_body(column.name))
+        known = results.with_breaks(column)
+        moved, scatter = _drawn_lives(own, dataclasses.replace(column, values=known), given)
+        best = np.zeros(design.size) if given is None else given
+        for p, rows in enumerate(points):
+            kept = np.arange(design.size)[rows]
+            kept = kept[~np.isnan(known[kept])]
+            if kept.size < 2:
+                continue
+            values[0, i, p] = b10(known[kept], best[kept])[0]
+            values[1:, i, p] = np.quantile(b10_of_draws(moved[kept], scatter[kept]), BAND)
+    names = {
+        "b10_tests": "life that 90 % reach, with the scatter of the material",
+        "b10_tests_low": "its low end, 90 % by the tests",
+        "b10_tests_high": "its high end, 90 % by the tests",
+    }
+    axes = ("life", "point") if design.method.points else ("life",)
+    values = values if design.method.points else values[:, :, 0]
+    return xr.Dataset(
+        {n: (axes, v, {"long_name": names[n]} | dict(words)) for n, v in zip(names, values, strict=True)},
+        {
+            "life": [column.name for column in columns],
+            "life_name": ("life", [column.long_name for column in columns]),
+            "life_units": ("life", [column.units for column in columns]),
+        },
+    )
+
+
+def b10_of_draws(lives: np.ndarray, scatter: np.ndarray) -> np.ndarray:
+    """Return the life that 90 % reach under each draw, (draws,).
+
+    Parameters
+    ----------
+    lives : numpy.ndarray
+        Median lives at the sampled conditions, (n, draws); 0 and inf are allowed.
+    scatter : numpy.ndarray
+        Standard deviation of log10 life of the material, (n, draws) [1].
+
+    Notes
+    -----
+    The root of mean_i Phi((lg t - lg N_i) / s) = 0.1 by bisection, as `trackroller.methods.b10.b10` finds it for one
+    set of lives.
+    """
+    with np.errstate(divide="ignore"):
+        logs = np.log10(lives)
+    finite = np.isfinite(logs)
+    if not finite.any():
+        return np.asarray(np.quantile(lives, 0.1, axis=0, method="inverted_cdf"))
+    spread = np.maximum(scatter, 1e-9)
+    reach = 6.0 * float(spread.max()) + 1.0
+    low = np.full(lives.shape[1], float(logs[finite].min()) - reach)
+    high = np.full(lives.shape[1], float(logs[finite].max()) + reach)
+    with np.errstate(invalid="ignore"):
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            below = ndtr((middle - logs) / spread).mean(axis=0) < 0.1
+            low, high = np.where(below, middle, low), np.where(below, high, middle)
+    ends = np.quantile(lives, 0.1, axis=0, method="inverted_cdf")  # 0 or without end: scatter changes nothing
+    return np.asarray(np.where((ends == 0) | np.isinf(ends), ends, 10.0 ** (0.5 * (low + high))))

@@ -111,12 +111,12 @@ def reached_by_body(results: Results, end: str = "") -> np.ndarray:
     return np.asarray(np.nan_to_num(reached, nan=np.inf, posinf=np.inf))
 
 
-def first_at(results: Results, end: str) -> tuple[np.ndarray, np.ndarray]:
+def first_at(results: Results, end: str, reached: np.ndarray | None = None) -> tuple[np.ndarray, np.ndarray]:
     """Return which limit ends each case at an end of the ranges, and whether it ends the guide, shape (n,) each.
 
-    A limit has the name '' where none is reached.
+    A limit has the name '' where none is reached. `reached` holds other hours than those of `reached_by_body`.
     """
-    reached = reached_by_body(results, end)
+    reached = reached_by_body(results, end) if reached is None else reached
     flattened = reached.reshape(len(reached), -1)
     place = flattened.argmin(axis=1)
     names = np.array(results.data["limit"].values.tolist(), dtype=object)[place // reached.shape[2]]

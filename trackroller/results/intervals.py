@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10
-from trackroller.parameters import FIRST_TO_FAIL, REGIMES
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
+from trackroller.results.by_tests import POSITIONS, probability_of
 from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE, first_at, first_limit
@@ -30,6 +32,7 @@ class Cases:
     The interval is [0, 0] where a case is not met: it skids, lifts off, breaks, yields, misses a constraint, or exceeds
     a limit without hours on values that were given. It is [0, inf] where the model does not judge the case. Otherwise
     it holds the life at both ends of the ranges of the placeholders, or twice the same life where it rests on none.
+    A life by a material that was fitted to tests is a range, too: 90 % of the lives by its posterior.
 
     Attributes
     ----------
@@ -111,22 +114,84 @@ class Cases:
     @cached_property
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the goal of each case, as a life or as 1/stress, shape (n,) each."""
-        low, high = self._column("_low"), self._column("_high")
+        return self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
+
+    def _between(self, *shifted: tuple[Any, str]) -> tuple[np.ndarray, np.ndarray]:
+        """Return both ends of the goal of each case, with the lives by fatigue moved at each end."""
+        low, high = (self._column(end, shift) for shift, end in shifted)
         if not self.candidates.rising:
             low, high = 1.0 / low, 1.0 / high
         met = self.reason == ""
         return np.where(met, low, 0.0), np.where(met, high, np.where(self.judged, 0.0, np.inf))
 
-    def _column(self, end: str) -> np.ndarray:
-        """Return the goal or an end of its range, shape (n,); the goal itself where no range is stored."""
+    @cached_property
+    def positions(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """Return `ends` at each position of the posteriors of fitted materials; at the one position without them.
+
+        At a position all cases share the values of a material. `ends` holds the band over all positions.
+        """
+        if not self._moves:
+            return [self.ends]
+        own, chance = self.results.by_tests, self._probability
+        at = [own.at(draw, probability=chance) for draw in POSITIONS]
+        return [self._between((shift, "_low"), (shift, "_high")) for shift in at]
+
+    @property
+    def _moves(self) -> bool:
+        """Return whether the goal is a life by a material that was fitted to tests."""
+        return self.candidates.rising and self.results.by_tests is not None
+
+    @property
+    def _probability(self) -> float:
+        return probability_of(self.results, self.candidates.goal[0])
+
+    @cached_property
+    def _shifts(self) -> dict[str, np.ndarray]:
+        """Return the shift of ln life by fatigue of each body at both ends of the band by the tests, (2, n)."""
+        return {body: self.results.by_tests.ends(body, self._probability) for body in BODIES}
+
+    def _by_tests(self, end: int) -> Any:
+        """Return the shifts of ln life by body at an end of the band by the tests; None without fitted materials."""
+        return (lambda body: self._shifts[body][end]) if self._moves else None
+
+    @cached_property
+    def tested(self) -> dict[str, np.ndarray]:
+        """Return the cases whose range the tests of each fitted material widen, (n,) bool by its name."""
+        if not self._moves:
+            return {}
+        own = self.results.by_tests
+        ended = {end: self.at_end(end) for end in ("_low", "_high")}
+        out = {name: np.zeros(len(self.reason), dtype=bool) for name in own.fits}
+        for names, guide in ended.values():
+            body = np.where(guide, own.named["guide"], own.named["roller"])
+            for name, rows in out.items():
+                rows |= (names == "fatigue") & (body == name) & (self.reason == "")
+        return out
+
+    @cached_property
+    def beyond_tests(self) -> np.ndarray:
+        """Return the cases whose life by a fitted material lies beyond its tests, (n,)."""
+        if not self._moves:
+            return np.zeros(len(self.reason), dtype=bool)
+        own, fatigue = self.results.by_tests, self.low_end[0] == "fatigue"
+        return np.asarray(fatigue & np.where(self.low_end[1], own.beyond("guide"), own.beyond("roller")))
+
+    def _column(self, end: str, shift: Any = None) -> np.ndarray:
+        """Return the goal or an end of its range, shape (n,); the goal itself where no range is stored.
+
+        `shift` moves the lives by fatigue, see `trackroller.results.by_tests.ByTests.lives`.
+        """
         name = self.candidates.goal[0]
         value: np.ndarray = self.results.column(name)
-        if not end:
-            return value
-        if f"{name}{end}" not in self.results.data:
-            return value
-        found = flat(self.results.data, f"{name}{end}", self.results.dims).astype(float)
-        return np.asarray(np.where(np.isnan(found), value, found))
+        if end and f"{name}{end}" in self.results.data:
+            found = flat(self.results.data, f"{name}{end}", self.results.dims).astype(float)
+            value = np.where(np.isnan(found), value, found)
+        return np.asarray(value if shift is None else self.results.by_tests.lives(name, value, shift, end))
+
+    @cached_property
+    def guessed(self) -> np.ndarray:
+        """Return the cases whose range rests on placeholders, (n,)."""
+        return np.asarray(self._column("_high") > self._column("_low") * (1.0 + 1e-9))
 
     def _limits(self, state: str) -> dict[str, np.ndarray]:
         """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,) by limit."""
@@ -183,7 +248,8 @@ class Cases:
         """
         if self.candidates.goal != FIRST_LIMIT or f"life_hours_by_limit{end}" not in self.results.data:
             return self.first, self.guide
-        names, guide = first_at(self.results, end)
+        shift = self._by_tests(("_low", "_high").index(end))
+        names, guide = first_at(self.results, end, None if shift is None else self.results.by_tests.reached(shift, end))
         known = names != ""
         return np.where(known, names, self.first), np.where(known, guide, self.guide)
 

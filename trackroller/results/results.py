@@ -182,6 +182,17 @@ class Results:
         return _of("results.verdict", "verdict_of")(self)
 
     @cached_property
+    def by_tests(self) -> Any:
+        """Return the fits of the materials of the study that hold for it.
+
+        Returns
+        -------
+        ByTests or None
+            See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to tests.
+        """
+        return _of("results.by_tests", "by_tests_of")(self)
+
+    @cached_property
     def findings(self) -> dict[str, list[Any]]:
         """Return what the study shows beside its verdict, as data.
 
@@ -478,8 +489,9 @@ class Results:
     def beyond_data(self, column: str) -> np.ndarray:
         """Mark the cases in which a life lies beyond the S-N data, shape (n,); no case for another quantity.
 
-        The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. For the pair the body that
-        fails first counts, or the roller where no body is known to fail first.
+        The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. Of a material that was
+        fitted to tests, its stress or its life lies beyond the tests. For the pair the body that fails first counts,
+        or the roller where no body is known to fail first.
 
         Parameters
         ----------
@@ -501,7 +513,10 @@ class Results:
         stored = json.loads(str(self.data.attrs.get("materials", "{}")))
         knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}
         endless = np.isposinf(self.column(f"{body}_life_hours"))
-        return past_data(self.column(f"life_cycles_{body}"), names.map(knees).to_numpy(dtype=float)) | endless
+        past = past_data(self.column(f"life_cycles_{body}"), names.map(knees).to_numpy(dtype=float)) | endless
+        if self.by_tests is None:
+            return past
+        return np.where(self.by_tests.named[body] != "", self.by_tests.beyond(body), past)
 
     def with_breaks(self, column: Output) -> np.ndarray:
         """Return the values of an output, shape (n,); a fatigue life of a body above its tensile strength counts as 0.

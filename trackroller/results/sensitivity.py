@@ -76,7 +76,7 @@ def analyse(results: Results) -> xr.Dataset:
         raise InputError("design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices.")
     own = material_deviations(results)
     aims = targets(ds, design, given.target, own, results.valid) if given.target else xr.Dataset()
-    if given.material_scatter == "fitted" and given.target:
+    if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:
         return robustness(results, own).merge(aims, combine_attrs="override")

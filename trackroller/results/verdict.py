@@ -17,7 +17,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import LIMITS
-from trackroller.methods.b10 import b10
+from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
@@ -63,6 +63,9 @@ class Candidate:
     open_limits : limits without hours that are exceeded only at one end of the range of a placeholder
     unchecked : limits that were checked for other candidates only
     edges : choices that stand at the end of their levels
+    tested : fitted materials whose tests leave the range of `low` and `high` open
+    beyond_tests : whether `low` lies beyond the tests of a fitted material, by its stress or its cycles
+    guessed : whether placeholders leave this range open, too
     """
 
     number: int
@@ -86,6 +89,9 @@ class Candidate:
     open_limits: tuple[str, ...] = ()
     unchecked: tuple[str, ...] = ()
     edges: tuple[str, ...] = ()
+    tested: tuple[str, ...] = ()
+    beyond_tests: bool = False
+    guessed: bool = False
 
 
 @dataclass(frozen=True)
@@ -114,7 +120,7 @@ class Turn:
 
     Attributes
     ----------
-    what : value of a material, field of a case, or `requirement`
+    what : value of a material, field of a case, `requirement`, or `tests` of a fitted material
     of, on : its material, and the material that it runs on; '' otherwise
     value : at which the decision turns, NaN if it is not known
     until : for two candidates: from which on the other one is better for certain, NaN otherwise
@@ -240,7 +246,8 @@ def verdict_of(results: Results) -> Verdict | None:
     Candidates of the same materials are compared at equal places of the placeholders: a candidate is beaten if another
     one is nowhere worse, and better beyond the error somewhere. Other candidates are beaten if their high end lies
     below the low end of another one by more than the error. The error is the root of the squares of the errors of both
-    solutions and of the sample of conditions.
+    solutions and of the sample of conditions. The posterior of a fitted material counts as a place, too: candidates of
+    the same materials are compared at equal positions of it.
     """
     lives = (FIRST_LIMIT, *results.fatigue_lives)
     goal = results.life or next((life for life in lives if life[0] in results.table), STRESS)
@@ -318,7 +325,7 @@ class Scores:
     Attributes
     ----------
     low, high : shape (m,), as a life or as 1/stress
-    places : both ends at each place of the placeholders, shape (m, places)
+    places : both ends at each place of the placeholders and position of the posteriors, shape (m, places)
     judged : shape (m,)
     error : relative errors of the solutions, shape (m,)
     draws : logarithms of B10 of resampled conditions, shape (m, resamples); no columns without a sample
@@ -374,6 +381,7 @@ def _scores(cases: Cases, kept: np.ndarray) -> Scores:
     many, levels = len(candidates.size), int(cases.level.max()) + 1
     low, high = cases.ends
     ends = np.full((2, many, levels), np.inf)
+    positions = np.full((len(cases.positions), 2, many, levels), np.inf)
     draws = np.zeros((many, 0))
     judged = np.bincount(candidates.place[kept & ~cases.judged], minlength=many) == 0
     if cases.sampled:
@@ -385,17 +393,22 @@ def _scores(cases: Cases, kept: np.ndarray) -> Scores:
                 most = b10(high[rows])[0]
                 judged[i] |= b10(sure)[0] > 0
                 ends[:, i, level] = b10(low[rows])[0], b10(sure)[0] if judged[i] else most
+                for at, both in zip(positions, cases.positions, strict=True) if len(positions) > 1 else ():
+                    at[:, i, level] = [quantile(np.where(cases.judged, end, 0.0)[rows], 0.1) for end in both]
     else:
-        for end, values in zip(ends, (low, high), strict=True):
-            np.minimum.at(end, (candidates.place[kept], cases.level[kept]), values[kept])
-    ends[:, np.bincount(candidates.place[kept], minlength=many) == 0] = 0.0  # no condition is left
+        for out, both in zip([ends, *positions], [(low, high), *cases.positions], strict=True):
+            for end, values in zip(out, both, strict=True):
+                np.minimum.at(end, (candidates.place[kept], cases.level[kept]), values[kept])
+    empty = np.bincount(candidates.place[kept], minlength=many) == 0  # no condition is left
+    ends[:, empty] = positions[:, :, empty] = 0.0
     case = cases.worst(kept)
     error = np.where(case < 0, 0.0, cases.error[case])
     table = candidates.members
     named = [name for name in OF_MATERIALS if name in candidates.choices]
     pairs = table[named].astype(str).agg(" / ".join, axis=1).to_numpy(dtype=str) if named else np.full(many, "")
     lowest, highest = ends[0].min(axis=1), ends[1].max(axis=1)
-    return Scores(lowest, highest, np.concatenate([*ends], axis=1), judged, error, draws, pairs, case)
+    places = np.concatenate([*ends] if len(positions) == 1 else [end for at in positions for end in at], axis=1)
+    return Scores(lowest, highest, places, judged, error, draws, pairs, case)
 
 
 def _resampled(cases: Cases, kept: np.ndarray) -> np.ndarray:
@@ -609,6 +622,9 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         open_limits=tuple(name for name, there in cases.open_limits.items() if there[rows].any()),
         unchecked=_unchecked(cases, rows),
         edges=_edges(candidates, results.table.iloc[rows[0]]),
+        tested=tuple(name for name, there in cases.tested.items() if there[case]),
+        beyond_tests=bool(cases.beyond_tests[case] and met[case]),
+        guessed=bool(cases.guessed[case] and met[case]),
     )
 
 
@@ -758,6 +774,7 @@ def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
     least = found.required if np.isfinite(found.required) else other.high if other else np.nan
     until = other.low if other is not None and not np.isfinite(found.required) else np.nan
     turns = [_of_limit(cases, one, limit) for limit in one.open_limits]
+    turns += [Turn("tests", name, candidate=one.number) for name in one.tested]
     if one.ends == "wear" or not turns:
         turns.append(_of_wear(cases, one, least, until))
     return tuple(turns)

@@ -6,13 +6,14 @@ import math
 
 import numpy as np
 from matplotlib.axes import Axes
+from scipy.interpolate import PchipInterpolator
 
 from trackroller.fit.fitted import Fit, Group
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import legend
 from trackroller.report.numbers import rounded
 
-ACROSS = 13  # stresses at which the band is computed
+ACROSS, FINE = 25, 400  # stresses at which the band is computed, and at which curves are drawn
 MOST_DRAWN = 1500  # points of a posterior
 UP, DOWN = style.PAIR
 
@@ -25,16 +26,19 @@ def sn_line(fit: Fit) -> style.Drawn:
     tests, failed = line.tests, line.tests.failed
     figure, (axes,) = style.panels(f"S-N line of {fit.name}", 95)
     reach = max(np.ptp(tests.stress), 0.1)
-    stresses = np.linspace(tests.stress.min() - 0.6 * reach, tests.stress.max() + 0.2 * reach, ACROSS)
+    low, high = tests.stress.min() - 0.6 * reach, tests.stress.max() + 0.2 * reach
+    stresses, fine = np.linspace(low, high, ACROSS), np.linspace(low, high, FINE)
     entries = [("failure", {"marker": "o", "linestyle": "none", "color": "0.1"})]
     if failed.any():
         for probability, colour, dash in ((0.5, UP, "-"), (0.1, DOWN, "--")):
-            best = np.array([float(line.log_life(line.best, x, probability)) for x in stresses])
+            best = np.array([float(line.log_life(line.best, x, probability)) for x in fine])
             ends = np.array([line.interval_of_life(x, probability) for x in stresses])
             ends = np.clip(np.where(np.isfinite(ends), ends, np.sign(ends) * 60.0), -60.0, 60.0)
             known = np.isfinite(best)
-            axes.plot(np.exp(best[known]), np.exp(stresses[known]), color=colour, linestyle=dash)
-            axes.fill_betweenx(np.exp(stresses), np.exp(ends[:, 0]), np.exp(ends[:, 1]), color=colour, alpha=0.15, lw=0)
+            axes.plot(np.exp(best[known]), np.exp(fine[known]), color=colour, linestyle=dash)
+            # an end that jumps where a fatigue limit ends it must not swing, so that the curve keeps its monotony
+            band = [np.exp(PchipInterpolator(stresses, end)(fine)) for end in ends.T]
+            axes.fill_betweenx(np.exp(fine), *band, color=colour, alpha=0.15, lw=0)
             entries.append(
                 (f"{100 * probability:.0f} % fail, with its 90 % interval", {"color": colour, "linestyle": dash})
             )

@@ -11,7 +11,6 @@ import xarray as xr
 
 from trackroller.errors import listing
 from trackroller.fit.fitted import WORDS, Fit, Group
-from trackroller.fit.next_tests import tests_needed
 from trackroller.report import html
 from trackroller.report.numbers import capital, rounded, with_unit
 from trackroller.report.pages.sheet import pictures, versions_text
@@ -178,7 +177,7 @@ def next_rows(ds: xr.Dataset, most: int = 8) -> tuple[list[str], list[list[str]]
         "Stress [MPa]",
         "Hours",
         "Travel [km]",
-        "B10 known within",
+        "B10 spans",
     ]
     rows = []
     for i in np.argsort(ds["deviation"].values, kind="stable")[:most]:
@@ -187,31 +186,57 @@ def next_rows(ds: xr.Dataset, most: int = 8) -> tuple[list[str], list[list[str]]
             [
                 str(int(i) + 1),
                 *(cell(float(own[name])) for name in varied),
-                *(cell(float(own[name])) for name in ("stress", "hours", "travel")),
-                f"a factor of {cell(_factor(float(own['deviation'])))}",
+                *(rounded(float(own[name])) for name in ("stress", "hours", "travel")),
+                _factor(ds, float(own["deviation"])),
             ]
         )
     return heads, rows
 
 
-def _factor(deviation: float) -> float:
-    """Return the ratio of B10 to the end of its 90 % interval, from the deviation of its logarithm."""
-    return math.exp(1.645 * deviation)
+def _factor(ds: xr.Dataset, deviation: float) -> str:
+    """Write the high over the low end of B10 after tests that leave so much of the deviation of its logarithm.
+
+    The interval by the tests so far narrows as the deviation does.
+    """
+    low, high = np.log(ds["interval_now"].values)
+    width = high - low if math.isfinite(high - low) else 2.0 * 1.645 * float(ds["deviation_now"])
+    return f"a factor of {rounded(math.exp(min(width * deviation / float(ds['deviation_now']), 50.0)), 2)}"
 
 
-def next_sentences(ds: xr.Dataset, within: float) -> list[str]:
-    """Return sentences on the plan of `trackroller.next_tests`, and on how many more tests are needed."""
+def next_sentences(ds: xr.Dataset) -> list[str]:
+    """Return sentences on the plan of `trackroller.next_tests`."""
     chosen = [str(int(i) + 1) for i in ds["chosen"].values]
-    now, after = float(ds["deviation_now"]), float(ds["deviation_after"][-1])
+    now, after, random = (
+        _factor(ds, float(d)) for d in (ds["deviation_now"], ds["deviation_after"][-1], ds["deviation_random"])
+    )
     hours = float(ds["hours"].values[ds["chosen"].values].sum())
-    needed, random = tests_needed(ds, within), float(ds["deviation_random"])
-    said = [
-        f"B10 of the design is known within a factor of {cell(_factor(now))} (90 %).",
-        f"Test {listing([f'candidate {i}' for i in chosen])}, about {cell(hours)} h in all: then B10 is known within a "
-        f"factor of {cell(_factor(after))}. As many random candidates give {cell(_factor(random))}.",
+    low, high = ds["interval_now"].values
+    known = f"{rounded(low)} to {rounded(high)} h" if math.isfinite(high) else f"at least {rounded(low)} h"
+    return [
+        f"B10 of the design is {known} by the tests so far (90 %), {now} between both ends.",
+        f"Test {listing([f'candidate {i}' for i in chosen])}, about {rounded(hours)} h in all: on average that leaves "
+        f"{after}. As many random candidates leave {random}.",
     ]
-    if needed == 0:
-        return [*said, f"No further test is needed for a factor of {cell(within)}."]
-    if math.isinf(needed):
-        return [*said, f"These candidates do not narrow B10 to a factor of {cell(within)}."]
-    return [*said, f"For a factor of {cell(within)}, about {cell(int(needed))} such tests are needed."]
+
+
+def until_sentences(ds: xr.Dataset, factor: float) -> list[str]:
+    """Return sentences on how many more tests are needed, from the campaigns of `tests_until`."""
+    tests, hours, most = ds["tests"].values, ds["hours"].values, int(ds.attrs["most"])
+    if not tests.max() > 0:
+        return [f"The ends of B10 lie within a factor of {cell(factor)} already: no further test is needed."]
+    ends = np.quantile(tests, (0.05, 0.5, 0.95), method="inverted_cdf")
+    if math.isinf(ends[1]):
+        many = int(np.isinf(tests).sum())
+        return [
+            f"For a factor of {cell(factor)} more than {most} tests are needed, in {many} of {len(tests)} simulated "
+            "campaigns that repeat this plan. Give other candidates, or a wider factor."
+        ]
+    low, middle, high = (str(int(end)) if math.isfinite(end) else f"more than {most}" for end in ends)
+    times = np.quantile(hours, (0.05, 0.5, 0.95), method="inverted_cdf")
+    longest = f"to {rounded(times[2], 2)} h" if math.isfinite(times[2]) else "h or more"
+    return [
+        f"For a factor of {cell(factor)} about {middle} more tests are needed, {rounded(times[1], 2)} h of testing.",
+        f"That is the median of {len(tests)} simulated campaigns that repeat this plan, each by a line that the tests "
+        f"allow; nine of ten need {low} to {high} tests, {rounded(times[0], 2)} {longest}. Ask again after each "
+        "test.",
+    ]

@@ -13,10 +13,12 @@ import xarray as xr
 from trackroller.damage import LIMITS, heat, judged
 from trackroller.damage.limit import OF_GUIDE, SN_SCATTER
 from trackroller.damage.verdict import ENDS, STATES
+from trackroller.fit.stored import fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES
 from trackroller.report.numbers import between, capital, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
+from trackroller.report.words.by_tests import worst
 from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of, placeholders_of
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
@@ -159,7 +161,7 @@ def _of_limits(
     ds: xr.Dataset, inputs: Mapping[str, Any], materials: Mapping[str, Material], lifeless: Mapping[str, str]
 ) -> list[Margin]:
     """Return the margins of the limits of a result, for the bodies that they concern."""
-    out = []
+    out, (tested, _) = [], fits_of_case(ds)
     places = {dim: ds[dim].values.tolist() for dim in ("limit", "body") if dim in ds}
     rests_on = placeholders_of(ds)
     broken = {body: OVERLOADED in lifeless[body] for body in lifeless}
@@ -185,6 +187,11 @@ def _of_limits(
             texts = f"{rounded(value)} {unit}".strip(), bound
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
+            if name == "fatigue" and body in tested and math.isfinite(hours):
+                stress, median = worst(ds, body, tested[body])
+                beyond = bool(tested[body].extrapolates(stress, median))
+                ends = tested[body].cycles(stress, float(ds.attrs["failure_probability"]))
+                low, high = (end / overrollings(inputs, body) for end in ends)
             # both bodies share the heat of a contact
             of = [one.material for one in rests_on if one.limit == name]
             guessed = bool(of) if limit is heat.LIMIT else materials[body].name in of

@@ -11,13 +11,16 @@ import xarray as xr
 
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.sn_curve import PROBABILITIES, SNCurve
+from trackroller.fit.stored import StoredFit, fits_of_case
 from trackroller.materials import Material
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import BEYOND, hour_unit, lasting, number, rounded
 from trackroller.report.tables.inputs import Row
+from trackroller.report.words.by_tests import worst
 from trackroller.results.lives import past_data
 from trackroller.roller.geometry import rolling_radius
 
+MOST = 1e15  # above which the high end of an interval is no number
 UNKNOWN = {"guide": "not known: give guide_overrollings_per_hour", "roller": "not defined in this regime"}
 
 
@@ -49,13 +52,15 @@ def life_rows(
     """
     if "pair_life_hours" not in ds:
         return []
-    rows = []
+    rows, (tested, _) = [], fits_of_case(ds)
     for body in BODIES:
         rate = overrollings(inputs, body)
         if math.isfinite(rate):
             rows.append(Row(f"{body}, overrollings of a point", number(rate), "1/h"))
     for body in BODIES:
         rows += _of_body(ds, body, inputs, materials[body], lifeless[body])
+        if body in tested and not lifeless[body]:
+            rows += _by_tests(ds, body, inputs, tested[body])
     return [*rows, _of_pair(ds, inputs, lifeless, materials)]
 
 
@@ -75,6 +80,23 @@ def _of_body(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], material: Mat
         Row(f"{body}, until {100 * p:.0f} % have failed", _life(float(np.min(cycles)), body, inputs, material))
         for p, cycles in zip(PROBABILITIES, lives, strict=True)
     ]
+
+
+def _by_tests(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], fit: StoredFit) -> list[Row]:
+    """Return the 90 % intervals of the lives of a body by the tests of its material."""
+    stress, cycles = worst(ds, body, fit)
+    if not (stress > 0 and math.isfinite(cycles)):
+        return []
+    rate = overrollings(inputs, body)
+    scale, unit = (1.0, "overrollings") if math.isnan(rate) else (rate, "h")
+    remark = f" ({BEYOND})" if fit.extrapolates(stress, cycles) else ""
+    rows = []
+    for probability in (0.1, 0.5):
+        low, high = (end / scale for end in fit.cycles(stress, probability))
+        upper = f"to {rounded(high, 2)} {unit}" if high < MOST else f"{unit} or more"
+        words = f"{body}, 90 % by the {fit.rows} tests of {fit.name}, until {100 * probability:.0f} % have failed"
+        rows.append(Row(words, f"{rounded(low, 2)} {upper}{remark}"))
+    return rows
 
 
 def _life(cycles: float, body: str, inputs: Mapping[str, Any], material: Material) -> str:

@@ -18,6 +18,7 @@ from trackroller.report.numbers import (
     count,
     head_unit,
     lasting,
+    listing,
     long_name,
     part_of,
     percent,
@@ -130,8 +131,13 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
 
     rows = []
     if rising and candidates.drawn:
-        rows.append(row_of("b10", "Nine of ten reach"))
+        known = _of_verdict(candidates, best)
+        tested = any(one is not None and one.tested for one in known)
+        rows.append(row_of("b10", f"Nine of ten reach{', low end by the tests' * tested}"))
         rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
+        if tested:
+            cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
+            rows.append(["Nine of ten reach, 90 % by the tests", *cells])
     places = {"worst": "worst condition" if rising else "largest", "median": "median"}
     places = places if candidates.conditions else {"worst": ""}
     known = _of_verdict(candidates, best) if rising else []
@@ -175,12 +181,13 @@ def _spans(candidates: Candidates, known: list[Candidate | None]) -> list[str]:
 
 
 def span_words(one: Candidate, unit: str) -> str:
-    """Write both ends of a life by the values that nobody has measured, or the one life where it rests on none."""
+    """Write both ends of a life by unmeasured values and by tests, or the one life where it rests on neither."""
+    beyond = f"beyond the tests of {listing(one.tested)}" if one.beyond_tests and one.tested else BEYOND * one.beyond
     if math.isinf(one.low) or one.high <= one.low * (1 + SAME):
         return lasting(one.low, unit, one.beyond)
     text = f"{rounded(one.low)} to {quantity(one.high, unit)}"
     text = text if math.isfinite(one.high) else f"at least {quantity(one.low, unit)}"
-    return text + f" ({BEYOND})" * one.beyond
+    return text + f" ({beyond})" * bool(beyond)
 
 
 def ends_words(one: Candidate) -> str:

@@ -10,7 +10,7 @@ from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.samples import grown, samples
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.targets import target
+from trackroller.report.words.targets import b10_by_tests, target
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.pareto import given_pareto
 from trackroller.results.ranking import main_lives, robust_design
@@ -34,7 +34,14 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
     told = {place: [sentence_of(results, one) for one in found] for place, found in results.findings.items()}
     lines: list[tuple[str, list[Sentence | None]]] = [
         ("Best" if search else "Verdict", [*(search or verdict_sentences(results))]),
-        ("Decide", [_target(results), None if front is None else pareto_sentence(front, results)]),
+        (
+            "Decide",
+            [
+                _target(results),
+                None if results.analysis is None else b10_by_tests(results.analysis),
+                None if front is None else pareto_sentence(front, results),
+            ],
+        ),
         ("Why", [*told["why"], _enough(results)]),
         ("Where it ends", [valid_cases(results), stopped(results), *told["ends"], silent_drive(results)]),
         (

@@ -92,6 +92,19 @@ def _by_tests(table: xr.Dataset, number: int) -> str:
     return f"over all cases {low} to {high} % by the {words['tests']} tests of {words['materials']}"
 
 
+def b10_by_tests(table: xr.Dataset) -> Sentence | None:
+    """State the life that 90 % of all cases of a sample reach, with its band by the tests; None without."""
+    if "b10_tests" not in table or "point" in table["b10_tests"].dims:
+        return None
+    part = table.isel(life=0)
+    low, middle, high = (float(part[name]) for name in ("b10_tests_low", "b10_tests", "b10_tests_high"))
+    if not 0.0 < low <= high < np.inf:
+        return None
+    words = {"name": str(part["life_name"].item()), **part["b10_tests"].attrs}
+    unit = str(part["life_units"].item())
+    return say("targets", "b10_by_tests", **words, middle=quantity(middle, unit), low=rounded(low), high=rounded(high))
+
+
 def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:
     estimates = estimate(part, f"{kind}_probability")
     return chance(*(estimates if place is None else estimates[:, place]))
@@ -215,6 +228,9 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table | None]:
         b10, low, high = map(float, estimate(part, "b10")[:, p])
         row = {"Design point": capital(point_words(table, p)), "B10": life_at(part, p, b10)}
         row["B10, 95 % interval"] = f"{rounded(low)} to {rounded(high)}" if np.isfinite(high) else "–"
+        if "b10_tests_low" in table and output in table["life"].values:
+            ends = [float(table[f"b10_tests_{end}"].sel(life=output)[p]) for end in ("low", "high")]
+            row[f"B10, 90 % by the {table['b10_tests'].attrs['tests']} tests"] = " to ".join(map(rounded, ends))
         row["B10, other cases as life 0"] = life_at(part, p, float(part["b10_safe"][p]))
         for regime in seen:
             chances = estimate(table.sel(regime=regime), "probability")[:, p]

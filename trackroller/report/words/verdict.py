@@ -26,6 +26,7 @@ from trackroller.report.words.designs import (
     unanswered,
 )
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
@@ -62,7 +63,16 @@ def verdict_sentences(results: Results) -> list[Sentence]:
     if found is None:
         return [] if results.config.method.proposes else [say("verdict", "no_goal")]
     words = _Words(results, found)
-    said = [words.head(), *words.reasons(), words.without(), words.models(), words.aside(), words.open_limits()]
+    said = [
+        words.head(),
+        *words.reasons(),
+        words.tested(),
+        words.not_held(),
+        words.without(),
+        words.models(),
+        words.aside(),
+        words.open_limits(),
+    ]
     said.append(words.unchecked())
     return _fitting([sentence for sentence in said if sentence is not None])
 
@@ -233,7 +243,7 @@ class _Words:
         found = self.found
         shown = [(self.name(one), self.span(one), ends_words(one)) for one in found.best[:MOST]]
         first = found.best[0]
-        ranged, places = any(one.high > one.low for one in found.best), {self.where(one) for one in found.best[:MOST]}
+        ranged, places = any(one.guessed for one in found.best), {self.where(one) for one in found.best[:MOST]}
         worn = any("wear" in (one.ends, one.ends_high) for one in found.best[:MOST] if one.high > one.low)
         values = {"ranged": ranged, "worn": worn, "shown": shown, "left": len(found.best) - len(shown)}
         values |= {"limit": ends_words(first), "alike": len({limit for _, _, limit in shown}) == 1}
@@ -245,6 +255,30 @@ class _Words:
             where=places.pop() if len(places) == 1 else "",
             body=first.body,
         )
+
+    def tested(self) -> Sentence | None:
+        """Say which tests leave the life of the first candidates open, and whether it is an extrapolation of them."""
+        found = self.found if self.found.rest is None else self.found.rest
+        own = self.results.by_tests
+        shown = [*found.best[:MOST], *([] if found.next is None else [found.next])]
+        named = list(dict.fromkeys(name for one in shown for name in one.tested))
+        if not named or not found.goal_rises:
+            return None
+        far = next((one for one in shown if one.beyond_tests and one.tested), None)
+        values = {"tests": own.words(named), "far": "", "stress": ""}
+        if far is not None:
+            fit, stress = own.fits[far.tested[0]], float(own.stress[far.body][far.case])
+            cycles = float(self.results.column(f"life_cycles_{far.body}")[far.case])
+            low, high, longest = fit.tested
+            values |= {"far": self.name(far) if len(shown) > 1 else "", "stress": quantity(stress, "MPa")}
+            values |= {"cycles": rounded(cycles, 2), "longest": rounded(longest, 2)}
+            values |= {"tested": f"{rounded(low)} to {quantity(high, 'MPa')}"}
+        return say("verdict", "tested", **values, next=found.kind == "measure")
+
+    def not_held(self) -> Sentence | None:
+        """Name the fitted materials whose values do not hold for the options of the study."""
+        found = not_held(self.results) if self.found.goal_rises else {}
+        return say("verdict", "not_held", materials=list(found.items())) if found else None
 
     def turn(self, turn: Turn) -> Sentence | None:
         """Say at which value the decision turns."""
@@ -336,6 +370,8 @@ def _what(turn: Turn) -> str:
     """Name what to measure or to give."""
     if turn.what == "requirement":
         return "a requirement"
+    if turn.what == "tests":
+        return f"the S-N line of {turn.of} with more tests"
     if turn.what in PARAMETERS and not turn.of:
         return f"the {long_name(turn.what)}"
     if turn.what in ("placeholder_position", "placeholder"):
