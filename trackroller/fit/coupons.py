@@ -16,7 +16,6 @@ from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from scipy import stats
 
 from trackroller.errors import InputError, check_names, listing
 from trackroller.fit.fitted import Fit, Group
@@ -239,6 +238,8 @@ def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[i
     own = observed.failed
     if own.sum() < 3 or np.ptp(observed.stress[own]) < 1e-9:
         return
+    from scipy import stats  # heavy, and a sheet of a fitted material needs no regression
+
     found = stats.linregress(observed.stress[own], observed.middle[own])
     if found.slope > 0 and found.pvalue < 0.1:
         place = int(np.flatnonzero(own)[np.argmax(observed.middle[own])])

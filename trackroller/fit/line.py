@@ -30,8 +30,8 @@ from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
-from scipy import optimize, stats
-from scipy.special import log_ndtr, ndtr, ndtri
+from scipy import optimize
+from scipy.special import log_ndtr, ndtr, ndtri, stdtrit
 
 # bounds of the values; an estimate at a bound says that the tests do not identify the value
 BOUNDS = {
@@ -266,7 +266,7 @@ class Line:
             Share of intervals that hold the true value, such as 0.9.
         """
         left = max(self.size - len(self.free), 1)
-        square = float(stats.t.ppf(0.5 + 0.5 * confidence, left)) ** 2
+        square = float(stdtrit(left, 0.5 + 0.5 * confidence)) ** 2
         # with one or two tests more than values, t^2/2 would be far too wide: the mean of complete data has this form
         return min(0.5 * square, 0.5 * self.size * math.log1p(square / left))
 

@@ -15,9 +15,7 @@ from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from scipy import stats
-from scipy.special import ndtri
-from scipy.stats import qmc
+from scipy.special import gammaincinv, ndtri
 
 from trackroller.fit.line import NAMES, Line, Values, expanded
 
@@ -163,9 +161,11 @@ def posterior(line: Line, priors: Mapping[str, Normal] | None = None, at: float 
 @functools.cache
 def _standard_points(p: int, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Return Sobol points under the standard t distribution (count, p), and ln of its density (count,)."""
+    from scipy.stats import qmc  # heavy, and a stored posterior is not drawn again
+
     uniform = qmc.Sobol(p + 1, rng=1).random(count)
     uniform = np.clip(uniform, 1e-9, 1.0 - 1e-9)
-    radius = np.sqrt(FREEDOM / stats.chi2.ppf(uniform[:, -1], FREEDOM))
+    radius = np.sqrt(FREEDOM / (2.0 * gammaincinv(FREEDOM / 2, uniform[:, -1])))
     points = ndtri(uniform[:, :-1]) * radius[:, None]
     return points, -0.5 * (FREEDOM + p) * np.log1p((points**2).sum(axis=1) / FREEDOM)
 
@@ -182,4 +182,4 @@ def _factor(line: Line) -> np.ndarray:
 
 def ln_range(deviation: float) -> float:
     """Return the range from 10 to 90 % of a log-normal value, T = exp(2.563 s), from the deviation of its logarithm."""
-    return math.exp(2.0 * float(stats.norm.ppf(0.9)) * deviation)
+    return math.exp(2.0 * float(ndtri(0.9)) * deviation)
