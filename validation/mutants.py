@@ -27,6 +27,9 @@ STORE = ("study/test_resume.py", "study/test_two_runs.py")
 ANALYSED = (BORDERS, "results/test_sensitivity.py", "results/test_robustness.py", "report/test_report.py")
 PLANNED = (BORDERS, "study/test_levels.py", "study/test_resume.py")
 SAMPLED = (BORDERS, "study/test_sampling.py")
+CARRIAGE = ("carriage/test_carriage_statics.py",)
+VEHICLE = ("study/test_carriage_study.py",)
+FITS = ("fit/test_fit_line.py",)
 FORMULAS = {
     "profile-slip eq. (20)": ("halfspace/rigid_slip.py", "return -np.minimum(deep", "return np.minimum(deep", SLIP),
     "rolling-slip eq. (21)": (
@@ -106,6 +109,27 @@ FORMULAS = {
         "self.low[others] > self.high[i]",
         "self.high[others] > self.high[i]",
         VERDICT,
+    ),
+    "carriage-curve": ("carriage/loads.py", "inward, 0.0])", "-inward, 0.0])", CARRIAGE),
+    "carriage-moment": ("carriage/loads.py", "np.cross(at, force)", "np.cross(force, at)", CARRIAGE),
+    "carriage-life Miner": (
+        "carriage/lives.py",
+        "hours[self.first], share / speed",
+        "hours[self.first], share * speed",
+        VEHICLE,
+    ),
+    "carriage-worst-roller": ("carriage/lives.py", "-worst.astype(float), np", "worst + 1e9, np", VEHICLE),
+    "carriage-wheelbase": (
+        "carriage/fields.py",
+        "(places - middle) * value / distance",
+        "(places - middle) * value",
+        VEHICLE,
+    ),
+    "fit-t-interval": (
+        "fit/line.py",
+        "stdtrit(left, 0.5 + 0.5 * confidence)) ** 2",
+        "stdtrit(left, confidence)) ** 2",
+        FITS,
     ),
 }
 # borders, signs and orders in study, analysis, report and command line

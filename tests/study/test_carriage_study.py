@@ -184,3 +184,15 @@ def test_a_study_of_a_carriage_needs_no_other_file_when_it_is_read_again(tmp_pat
 def test_what_does_not_fit_is_refused(keys, words):
     with pytest.raises(InputError, match="(?s)" + words.replace("(", r"\(")):
         tr.load_study(study(rolled()) | keys)
+
+
+def test_a_roller_that_does_not_roll_is_the_worst_one():
+    """With little preload one contact of a roller lifts off: the row is not judged by its other rollers."""
+    checked = tr.load_study(study(rolled(), factors={"carriage_preload": {"values": [250, 500, 1000]}}))
+    ds, cases = tr.run(checked, progress=False).data, checked.design()
+    solved = tr.solve(cases, accuracy="preview", contact_model="sliding")
+    regime, row = solved["regime"].values, cases["design_row"].values
+    lifted = [regime[row == r].max() for r in range(3)]
+    assert ds["regime"].values.tolist() == lifted and lifted[0] == 2 and lifted[2] == 0
+    some = solved[LIFE].values[(row == 0) & (regime == 0)]
+    assert len(some) and np.isfinite(some).all() and np.isnan(ds[LIFE].values[0])
