@@ -40,6 +40,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "design": "methods.method.Design",
     "ledger": "study.store.ledger.Ledger",
     "spectrum": "study.spectrum.file.Spectrum",
+    "carriage": "carriage.file.Carriage",
     "fit": "fit.fitted.Fit",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
