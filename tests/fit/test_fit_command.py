@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+import re
+from pathlib import Path
+
 import pytest
 from typer.testing import CliRunner
 
 from trackroller.cli.main import app
 from trackroller.errors import InputError
+from trackroller.fit.examples import FILES
 
 COUPONS = (
     "amplitude [MPa],cycles,failed\n900,90000,yes\n900,130000,yes\n800,200000,yes\n800,350000,yes\n700,800000,yes\n"
@@ -43,3 +47,30 @@ def test_a_wrong_row_is_told_by_file_and_line(place):
     done = CliRunner().invoke(app, SN)
     assert isinstance(done.exception, InputError)
     assert str(done.exception).startswith("coupons.csv, line 2: failed = 'perhaps'")
+
+
+PAGES = ("tests.md", "tutorial/from-bench-to-life.md")
+
+
+def test_the_examples_are_the_files_that_the_pages_show(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["fit", "example", "new"])
+    assert done.exit_code == 0, done.output
+    assert sorted(path.name for path in (tmp_path / "new").iterdir()) == sorted(FILES)
+    docs = Path(__file__).parents[2] / "docs"
+    shown = [
+        hit
+        for page in PAGES
+        for hit in re.findall(r"<!-- file: (\S+) -->\n```\w+\n(.*?)```", (docs / page).read_text(), re.S)
+    ]
+    assert len(shown) == 6
+    for name, text in shown:
+        assert (tmp_path / "new" / name).read_text() == text, name
+
+
+def test_an_example_does_not_replace_a_file_of_the_user(tmp_path):
+    (tmp_path / "rig.yaml").write_text("motor_force: 3\n")
+    done = CliRunner().invoke(app, ["fit", "example", str(tmp_path)])
+    assert isinstance(done.exception, InputError)
+    assert "holds another rig.yaml" in str(done.exception)
+    assert [path.name for path in tmp_path.iterdir()] == ["rig.yaml"]

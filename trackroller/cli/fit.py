@@ -117,6 +117,19 @@ def fit_wear(
     _finish(fitted(table, values, body=body, name=name, like=like), file, replace, report)
 
 
+@fit.command("example")
+def fit_example(
+    folder: Annotated[Path, typer.Argument(help="folder for the files", show_default=False)] = Path(),
+) -> None:
+    """Write example tests, which are synthetic, with their case files; the tutorial takes them."""
+    from trackroller.errors import listing
+    from trackroller.fit.examples import write_examples
+
+    written = write_examples(folder)
+    print(f"wrote {listing([path.name for path in written])}")
+    print("Next: trackroller fit bench bench-synthetic.csv --as 'rig steel'")
+
+
 @fit.command("next")
 def fit_next(  # noqa: PLR0913 - one argument for each option of the command
     table: Table,

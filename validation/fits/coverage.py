@@ -1,8 +1,5 @@
 """Simulate benches with a known line, fit them, and count how often intervals hold the truth.
 
-Run it: `python -m validation.fits.coverage [BENCHES]`; it writes docs/data/fits.json. 500 benches a size take some ten
-minutes on one core.
-
 A bench has three load levels. 30 % of its rollers are stopped before they fail, and half of the others are inspected
 only, so that their lives are known to an interval. The lives asked for, B50 and B10, lie below the tested loads.
 
@@ -11,10 +8,6 @@ posterior: over many benches the ranks are uniform (Cook, Gelman, Rubin 2006).
 """
 
 from __future__ import annotations
-
-import json
-import sys
-from pathlib import Path
 
 import numpy as np
 from scipy import stats
@@ -28,7 +21,6 @@ LOADS = np.log(np.array([900.0, 1000.0, 1100.0]))
 MIDDLE = float(LOADS.mean())
 STOPPED = 0.742  # standard deviations by which stops lie above the median life: 30 % of the tests are stopped
 BELOW = float(np.log(800.0))
-OUT = Path(__file__).parents[2] / "docs" / "data" / "fits.json"
 
 
 def bench(rng: np.random.Generator, n: int, level: float, slope: float, scatter: float) -> Tests:
@@ -108,14 +100,3 @@ def measure(benches: int) -> dict[str, object]:
             "deciles": np.histogram(found, bins=10, range=(0.0, 1.0))[0].tolist(),
         },
     }
-
-
-def main() -> None:
-    """Measure, and write docs/data/fits.json."""
-    found = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 500)
-    OUT.write_text(json.dumps(found, indent=1) + "\n", encoding="utf-8")
-    print(json.dumps(found, indent=1))
-
-
-if __name__ == "__main__":
-    main()

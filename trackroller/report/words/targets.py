@@ -102,7 +102,9 @@ def b10_by_tests(table: xr.Dataset) -> Sentence | None:
         return None
     words = {"name": str(part["life_name"].item()), **part["b10_tests"].attrs}
     unit = str(part["life_units"].item())
-    return say("targets", "b10_by_tests", **words, middle=quantity(middle, unit), low=rounded(low), high=rounded(high))
+    return say(
+        "targets", "b10_by_tests", **words, middle=quantity(middle, unit), low=rounded(low), high=quantity(high, unit)
+    )
 
 
 def _cell(part: xr.Dataset, kind: str, place: int | None) -> str:
