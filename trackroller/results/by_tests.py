@@ -19,7 +19,7 @@ import xarray as xr
 from trackroller.errors import InputError, listing
 from trackroller.fit.bench import check_same
 from trackroller.fit.stored import StoredFit, stored_fit
-from trackroller.results.results import Results
+from trackroller.results.results import SAME_ENDS, Results
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.study.outputs import outputs
 
@@ -71,7 +71,9 @@ def bands(results: Results, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
     drawn = {name: _points(fit) for name, fit in fits.items()}
     found = []
     for column in columns:
-        if not column.name.startswith(OF_FATIGUE):
+        judged = results.judged_targets.get(column.name)
+        sooner = judged is not None and bool((results.valid & (judged < column.values * (1 - SAME_ENDS))).any())
+        if not column.name.startswith(OF_FATIGUE) or sooner:
             found.append((math.nan, math.nan))
             continue
         body = scattering_body(column.name)
