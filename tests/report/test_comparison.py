@@ -282,6 +282,11 @@ def test_the_table_of_the_exact_theory_is_compared_like_any_other_model(tmp_path
     factors = {"friction_coefficient": {"values": [0.1, 0.3]}, "axial_force": {"values": [0, 10, 200]}}
     ds = xr.load_dataset(study(tmp_path, factors, {"motor_force": 0}, ["sliding", "kalker_table", "kalker"]))
     paired = ladder.pairs(results_of(ds))
+    assert paired.attrs["same"] == ("kalker_table",)  # at preview
+    said = " ".join(sentences(paired))
+    assert "kalker solved these cases by kalker_table itself" in said and "The table of the exact theory" not in said
+    ds["contact_model_used"].loc[{"contact_model": "kalker"}] = 1  # as at standard
+    paired = ladder.pairs(results_of(ds))
     rolls = int(((ds["regime"] == 0).all("contact_model")).sum())
     said = " ".join(sentences(paired))
     assert f"{rolls} with sliding and {rolls} with kalker_table" in said and 0 < rolls < paired.sizes["design"]

@@ -23,6 +23,7 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 BEYOND = "beyond the S-N data"
 NO_FAILURE = "no failure"
+LEAST_CHANCE = 1e-4  # a probability nearer to 0 or 1 is written as a bound
 GUIDE_UNKNOWN = (
     "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
 )
@@ -309,10 +310,17 @@ def _pair(label: str) -> str:
     return f"{parts[0]} on itself" if len(parts) == 2 and parts[0] == parts[1] else " on ".join(parts)
 
 
+def _bounded(part: int, whole: int) -> str:
+    """Write a probability as a share; nearer to 0 or 1 than `LEAST_CHANCE`, as a bound."""
+    if 0 < whole - part < LEAST_CHANCE * whole:
+        return f"over {100 * (1 - LEAST_CHANCE):g} %"
+    return f"below {100 * LEAST_CHANCE:g} %" if 0 < part < LEAST_CHANCE * whole else share(part, whole)
+
+
 def chance(value: float, low: float = math.nan, high: float = math.nan, words: str = "") -> str:
     """Write a probability: '97 %' or '97 % (95 % to 98 %)', with more figures near 0 (never) and 100 % (always)."""
     whole = 10**9
     if math.isnan(value):
         return "–"
-    text, *ends = (share(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
+    text, *ends = (_bounded(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
     return f"{text} ({words}{' to '.join(ends)})" if ends else text

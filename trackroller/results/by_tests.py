@@ -28,7 +28,7 @@ from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES
 from trackroller.results.first_limits import reached_by_body
 from trackroller.results.lives import body_lives
-from trackroller.results.results import Results
+from trackroller.results.results import SAME_ENDS, Results
 from trackroller.results.targets import hits_of, scattering_body
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -319,7 +319,9 @@ def bands(results: Results, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
     columns = _columns(results, list(wanted))
     found = []
     for column in columns:
-        if not is_life(column.name):
+        judged = results.judged_targets.get(column.name)
+        sooner = judged is not None and bool((results.valid & (judged < column.values * (1 - SAME_ENDS))).any())
+        if not is_life(column.name) or sooner:
             found.append((math.nan, math.nan))
             continue
         lives, scatter = _drawn_lives(own, column, deviations.get(scattering_body(column.name)))

@@ -35,7 +35,8 @@ def pairs(results: Results) -> xr.Dataset | None:
     for the model are one design. The data set holds the designs that the reference and at least one other model
     solved. Variables: the results that are compared, NaN (regime -1) where a design lacks a model, with `life`, the
     life that the study shows. Coordinates: the inputs that vary, and the friction coefficient as a number. Attributes:
-    `reference`, `left` (number of cases without a partner) and `factors` (the other factors).
+    `reference`, `left` (number of cases without a partner), `factors` (the other factors), and `same`: the cheaper
+    models whose cases the reference solved in the same way, as `kalker` does by its table at accuracy preview.
     """
     ds = results.data
     if MODEL not in ds.variables or "regime" not in ds:
@@ -59,8 +60,17 @@ def pairs(results: Results) -> xr.Dataset | None:
     coords = {str(name): ("design", inputs[name].to_numpy()) for name in inputs}
     coords |= {name: (name, ds[name].values) for name in ("contact", "body") if name in ds}
     attrs = {"reference": models[-1], "left": int(len(table) - (rows >= 0).sum())}
-    attrs |= {"factors": tuple(f for f in results.factors if f != MODEL)}
+    attrs |= {"factors": tuple(f for f in results.factors if f != MODEL), "same": _same(results, rows, models)}
     return xr.Dataset(data, coords | {MODEL: models}, attrs)
+
+
+def _same(results: Results, rows: np.ndarray, models: list[str]) -> tuple[str, ...]:
+    """Return the cheaper models that solved each of their cases as the reference did."""
+    if "contact_model_used" not in results.data:
+        return ()
+    used = flat(results.data, "contact_model_used", results.dims)[rows]
+    alike = [((used[i] == used[-1]) | (rows[i] < 0)).all() for i in range(len(models) - 1)]
+    return tuple(model for model, equal in zip(models[:-1], alike, strict=True) if equal and rows.size)
 
 
 def designs(paired: xr.Dataset) -> pd.DataFrame:

@@ -235,6 +235,12 @@ class Cases:
         return np.asarray(self.results.beyond_data(self.candidates.goal[0]))
 
     @cached_property
+    def beyond_at_high(self) -> np.ndarray:
+        """Return the cases whose life at the high end of its range ends by fatigue beyond the S-N data, shape (n,)."""
+        fatigue = next((life[0] for life in self.results.fatigue_lives if life[0] in self.results.table), "")
+        return np.asarray((self.high_end == "fatigue") & self.results.beyond_data(fatigue))
+
+    @cached_property
     def first(self) -> np.ndarray:
         """Return the limit that ends each case, shape (n,); '' where it is not known."""
         if self.candidates.goal == FIRST_LIMIT:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 from dataclasses import dataclass
 
@@ -11,6 +12,10 @@ import xarray as xr
 from trackroller.roller.dataset import NOTES
 
 GUESSES = ": placeholders of material"  # in a note on a limit that rests on values without a source
+OF_SN_LINE = (
+    *("fatigue_limit", "fatigue_strength_ratio", "cycles_at_fatigue_limit", "cycles_at_tensile_strength"),
+    *("woehler_exponent", "second_exponent"),
+)
 # each value in such a note, see `trackroller.roller.stages.outcome.notes_on_limits`
 _VALUE = re.compile(
     r"(?P<name>\w+) \((?:on (?P<on>[^,]+), )?[^()]*?"
@@ -64,3 +69,13 @@ def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
             named = limit, material.strip("'"), one["name"], one["on"] or ""
             out.append(Placeholder(*named, low, high, one["units"] or ""))
     return out
+
+
+def guessed_lines(ds: xr.Dataset) -> dict[str, list[str]]:
+    """Return the materials whose S-N line rests on guesses without a source, with the names of these values.
+
+    Such values have no range, so that a life by fatigue stays one number, and the notes on limits do not name them.
+    """
+    stored = json.loads(str(ds.attrs.get("materials", "{}")))
+    own = {name: [n for n in values.get("guesses", ()) if n in OF_SN_LINE] for name, values in stored.items()}
+    return {name: guesses for name, guesses in own.items() if guesses}

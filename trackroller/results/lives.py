@@ -15,6 +15,7 @@ LIVES = (
     ("life_cycles_guide", "life of the guide", "overrollings"),
 )
 FIRST_LIMIT = ("pair_life_to_first_limit_hours", "life to the first limit", "h")
+OF_PAIR = (FIRST_LIMIT[0], "pair_life_hours", "roller_life_hours")  # lives that a target in hours may name
 DATA_END = 1e8  # overrollings; no S-N curve of the database was measured beyond
 
 

@@ -22,7 +22,7 @@ from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS
 from trackroller.results import groups
 from trackroller.results.columns import base_values, case_columns, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
-from trackroller.results.lives import FIRST_LIMIT, LIVES, body_lives, past_data
+from trackroller.results.lives import FIRST_LIMIT, LIVES, OF_PAIR, body_lives, past_data
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -32,6 +32,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.outputs import Output, case_dims, of_fatigue, of_first_limit
 
 log = logging.getLogger("trackroller")
+SAME_ENDS = 1e-6  # relative difference of the two ends of a life below which it is one number
 OUTSIDE = ("half_space", "yield", "static", "conformal", "steep_friction")  # flags of designs outside the model
 
 
@@ -471,9 +472,38 @@ class Results:
         return np.asarray(self.inside & self.counted)
 
     def meets(self, target: str) -> np.ndarray:
-        """Return the cases that meet a target of the study, shape (n,), whether they are valid or not."""
-        values, ends = self.quantity(target)[0].astype(float), self.config.analysis.target[target]
+        """Return the cases that meet a target of the study, shape (n,), whether they are valid or not.
+
+        A life that is a range has to meet it with its low end.
+        """
+        ends, judged = self.config.analysis.target[target], self.judged_targets
+        values = judged[target] if target in judged else self.quantity(target)[0].astype(float)
         return np.asarray((values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+
+    @cached_property
+    def judged_targets(self) -> dict[str, np.ndarray]:
+        """Return the life that judges a target on the life of a pair or a roller, shape (n,) each [h].
+
+        It is the low end of the life to the first limit, as in the verdict: a longer life by one limit is of no use if
+        another limit comes first. Other targets are judged by the result that they name, and so are all of a study
+        without the life to the first limit.
+        """
+        name = FIRST_LIMIT[0]
+        if self.life != FIRST_LIMIT:
+            return {}
+        value = self.column(name)
+        low = self.quantity(f"{name}_low")[0].astype(float) if f"{name}_low" in self.data else value
+        judged = np.where(np.isnan(low), value, low)
+        return {n: judged for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}}
+
+    @cached_property
+    def ranged(self) -> bool:
+        """Return whether a life to the first limit of a valid case is a range, by placeholders or bounds of wear."""
+        ends = [f"{FIRST_LIMIT[0]}{end}" for end in ("_low", "_high")]
+        if self.life != FIRST_LIMIT or not all(end in self.data for end in ends):
+            return False
+        low, high = (self.quantity(end)[0].astype(float) for end in ends)
+        return bool((self.valid & (high > low * (1 + SAME_ENDS))).any())
 
     def first_failing(self, goal: str) -> np.ndarray:
         """Return the number in `FIRST_TO_FAIL` of the body that fails first in every case, shape (n,).
@@ -491,7 +521,8 @@ class Results:
 
         The body stays below its fatigue limit, or lasts more than `DATA_END` overrollings. Of a material that was
         fitted to tests, its stress or its life lies beyond the tests. For the pair the body that fails first counts,
-        or the roller where no body is known to fail first.
+        or the roller where no body is known to fail first. A life to the first limit that wear or the bearing ends
+        rests on no S-N data.
 
         Parameters
         ----------
@@ -506,9 +537,7 @@ class Results:
             return np.where(guide, *(self.beyond_data(own[body]) for body in ("guide", "roller")))
         if of_first_limit(column):
             fatigue = self.column(f"limiting_mechanism_{body}") == self.limits.index("fatigue")
-            rate = self.column(f"life_cycles_{body}") / self.column(f"{body}_life_hours")  # overrollings an hour
-            by_fatigue = fatigue & self.beyond_data(f"{body}_life_hours")
-            return np.asarray(by_fatigue | past_data(self.column(column) * rate))
+            return np.asarray(fatigue & self.beyond_data(f"{body}_life_hours"))
         names = pd.Series(self.material(body))
         stored = json.loads(str(self.data.attrs.get("materials", "{}")))
         knees = {n: float(stored.get(n, {}).get("cycles_at_fatigue_limit", np.inf)) for n in names.unique()}

@@ -87,6 +87,7 @@ def robustness(
         out[f"probability{end}"] = (("regime", "point"), value.T, attrs)
     largest = max((float(own.max()) for own in log_life_scatter.values()), default=0.0)
     out.attrs = _attributes(design, largest) | {"study": results.study.merged()}
+    out.attrs["least_log_life_scatter"] = min((float(own.min()) for own in log_life_scatter.values()), default=0.0)
     out.attrs["outputs_named"] = int(config.analysis.outputs is not None)
     return out
 

@@ -75,7 +75,8 @@ def analyse(results: Results) -> xr.Dataset:
         allowed = "a design that draws its rows evenly: a search prefers good designs"
         raise InputError("design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices.")
     own = material_deviations(results)
-    aims = targets(ds, design, given.target, own, results.valid) if given.target else xr.Dataset()
+    judged = results.judged_targets
+    aims = targets(ds, design, given.target, own, results.valid, judged) if given.target else xr.Dataset()
     if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:

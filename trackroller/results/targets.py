@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from types import MappingProxyType
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +16,7 @@ from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.factor import Factor
 from trackroller.methods.probability import probabilities
 from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import estimate
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.levels import in_words
@@ -48,6 +51,7 @@ def targets(
     wanted: Mapping[str, Mapping[str, float]],
     deviations: Mapping[str, np.ndarray],
     allowed: np.ndarray | None = None,
+    judged: Mapping[str, np.ndarray] = MappingProxyType({}),
 ) -> xr.Dataset:
     """Estimate the probability of meeting each target, and of meeting all.
 
@@ -58,6 +62,7 @@ def targets(
     wanted : output -> `min`, `max` or both, in the unit of the output
     deviations : body -> standard deviation of log10 life of its material [1], shape (n,), see `material_deviations`
     allowed : cases that count, such as the valid ones, shape (n,)
+    judged : life to the first limit by the targets that it judges, see `Results.judged_targets`, shape (n,) each
 
     Returns
     -------
@@ -72,6 +77,7 @@ def targets(
     If these have different numbers of samples, the bounds are the means of their bounds.
     """
     columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
+    columns = [_judged(c, judged[c.name], allowed) if c.name in judged else c for c in columns]
     hits = np.stack([hits_of(c, wanted[c.name], deviations.get(scattering_body(c.name))) for c in columns], axis=1)
     names = [c.name for c in columns]
     if len(names) > 1:
@@ -84,6 +90,12 @@ def targets(
     for end, part in zip(ENDS, zip(*estimates[1:], strict=True), strict=False):
         out[f"level_probability{end}"] = (("target", "target_level"), np.stack(part, axis=1), {"units": "1"})
     return out
+
+
+def _judged(column: Output, life: np.ndarray, allowed: np.ndarray | None) -> Output:
+    """Return the life to the first limit in the place of the life that a target names."""
+    values = life if allowed is None else np.where(allowed, life, np.nan)
+    return replace(column, values=values, long_name=FIRST_LIMIT[1])
 
 
 def scattering_body(output: str) -> str:

@@ -23,14 +23,13 @@ from trackroller.results.candidates import STRESS, TIED, Candidates
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
 from trackroller.results.limit_notes import Placeholder, placeholders_of
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
 from trackroller.roller.record import names_not_given
 from trackroller.study.outputs import flat
 
-OF_PAIR = (FIRST_LIMIT[0], "pair_life_hours", "roller_life_hours")  # lives that a target in hours may name
 OF_MATERIALS = ("material_pair", *MATERIAL_FIELDS)
 CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}  # input that brings a condition out of reach
 MANY = 0.5  # share of conditions out of reach by an input that was not given, from which on the input is asked for
@@ -52,14 +51,14 @@ class Candidate:
         end at the best one [goal's unit]
     error : relative error of `low` by the solution [1]
     interval : 95 % interval of `low` where it is the life that nine of ten sampled conditions reach, else NaN
-    case : row of the worst condition
+    case, case_high : row of the worst condition, for the low and for the high end
     ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; and the body
     ends_high : what ends it there at the high end of the ranges of the placeholders
     met, conditions : number of conditions that it meets, and of all conditions that count
     status : `met`, `open` or `missed` of the target; '' without a target
     judged : whether the model judges it in all conditions
     holds : life at the worst condition if the model held outside its range; equals `low` where it is judged
-    beyond : whether `low` lies beyond the S-N data
+    beyond : whether an end of its life lies beyond the S-N data
     open_limits : limits without hours that are exceeded only at one end of the range of a placeholder
     unchecked : limits that were checked for other candidates only
     edges : choices that stand at the end of their levels
@@ -92,6 +91,7 @@ class Candidate:
     tested: tuple[str, ...] = ()
     beyond_tests: bool = False
     guessed: bool = False
+    case_high: int = -1
 
 
 @dataclass(frozen=True)
@@ -599,6 +599,7 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
     known = goal[rows[(met | ~judged)[rows] & ~np.isnan(goal[rows])]]
     never = 0.0 if candidates.rising else np.inf
     middle = np.where(met, goal, never)[rows[judged[rows]]]
+    highest = _worst_high(cases, rows, case)
     interval = b10(cases.ends[0][rows])[1:] if cases.sampled else (np.nan, np.nan)
     return Candidate(
         number=i,
@@ -611,21 +612,34 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         interval=(float(interval[0]), float(interval[1])),
         case=case,
         ends=str(cases.reason[case] or cases.low_end[0][case]),
-        ends_high=str(cases.reason[case] or cases.high_end[case]),
+        ends_high=str(cases.reason[highest] or cases.high_end[highest]),
         body="guide" if cases.low_end[1][case] else "roller",
         met=int(facts["met"][i]),
         conditions=int(facts["conditions"][i]),
         status=str(facts["status"][i]),
         judged=bool(scores.judged[i]),
         holds=float(known.min() if candidates.rising else known.max()) if known.size else np.nan,
-        beyond=bool(cases.beyond[case] and met[case]),
+        beyond=bool(met[case] and (cases.beyond[case] or cases.beyond_at_high[highest])),
         open_limits=tuple(name for name, there in cases.open_limits.items() if there[rows].any()),
         unchecked=_unchecked(cases, rows),
         edges=_edges(candidates, results.table.iloc[rows[0]]),
         tested=tuple(name for name, there in cases.tested.items() if there[case]),
         beyond_tests=bool(cases.beyond_tests[case] and met[case]),
         guessed=bool(cases.guessed[case] and met[case]),
+        case_high=highest,
     )
+
+
+def _worst_high(cases: Cases, rows: np.ndarray, case: int) -> int:
+    """Return the row of a candidate with the smallest high end: `case` if none is smaller there, or of a sample."""
+    high = cases.ends[1]
+    if cases.sampled:
+        return case
+    groups = [rows[cases.level[rows] == level] for level in np.unique(cases.level[rows])]
+    best = max(groups, key=lambda own: high[own].min())
+    least = int(best[np.argmin(high[best])])
+    alike = best[cases.use[best] == cases.use[case]]
+    return case if len(alike) and high[alike].min() <= high[least] * (1 + TIED) else least
 
 
 def _as_goal(candidates: Candidates, score: float) -> float:

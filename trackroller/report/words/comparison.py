@@ -34,12 +34,18 @@ IN_SHORT = ("normal_force", "friction_force", "friction_energy", "peak_stress", 
 FEWEST = 3  # smallest number of cases, rolling in both models, for a sentence
 
 
+def _others(deviations: xr.Dataset) -> list[str]:
+    """Return the cheaper models that did not solve their cases as the reference did."""
+    return [str(m) for m in deviations["contact_model"].values if m not in deviations.attrs.get("same", ())]
+
+
 def overview(paired: xr.Dataset) -> str:
     """Say how the models were compared, or why they cannot be compared."""
     reference, rolls = paired.attrs["reference"], paired["regime"] == 0
-    cheaper = map(str, paired["contact_model"].values[:-1]) if paired.sizes["design"] else ()
+    same = list(paired.attrs.get("same", ()))
+    cheaper = [m for m in map(str, paired["contact_model"].values[:-1]) if m not in same and paired.sizes["design"]]
     both = [(model, int((rolls.sel(contact_model=model) & rolls[-1]).sum())) for model in cheaper]
-    values = {"reference": reference, "both": both, "left": paired.attrs["left"]}
+    values = {"reference": reference, "both": both, "left": paired.attrs["left"], "same": same}
     return phrase("comparison", "overview", **values, number=paired.sizes["design"], good=GOOD)
 
 
@@ -49,7 +55,7 @@ def short(paired: xr.Dataset) -> list[str]:
         return [overview(paired)]
     deviations, said = errors(paired), []
     exact = paired["regime"].sel(contact_model=paired.attrs["reference"]).values
-    for model in map(str, deviations["contact_model"].values):
+    for model in _others(deviations):
         one, own = deviations.sel(contact_model=model), paired["regime"].sel(contact_model=model).values
         shown = [q for q in measured(one) if q.name in IN_SHORT]
         values = {"name": NAMES[model], "rolling": compared(one), "few": compared(one) < FEWEST}
@@ -66,7 +72,7 @@ def details(paired: xr.Dataset) -> list[str]:
         return []
     deviations, along = errors(paired), groups(table, FRICTION)
     said = []
-    for model in map(str, deviations["contact_model"].values):
+    for model in _others(deviations):
         one = deviations.sel(contact_model=model)
         for text, rows in by_drive(table) if compared(one) >= FEWEST else ():
             head = f"{NAMES[model]}{f', {text}' if text else ''}"
@@ -96,7 +102,7 @@ def report_section(results: Results) -> dict[str, Any]:
 
 def _table(paired: xr.Dataset) -> Table | None:
     deviations, rows = errors(paired), []
-    for model, q in product(map(str, deviations["contact_model"].values), measured(deviations)):
+    for model, q in product(_others(deviations), measured(deviations)):
         e = known(deviations[q.name].sel(contact_model=model))
         if e.size:
             row = {"Model, quantity": f"{model}: {q.words}", f"cases within {percent(GOOD)}": percent(good_share(e))}

@@ -31,11 +31,12 @@ from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, Candidates, factor_roles
 from trackroller.results.first_limits import UNSURE
+from trackroller.results.limit_notes import placeholders_of
+from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
 
 BEST = 5  # designs that stand side by side
-SAME = 1e-6  # relative difference of the two ends of a life below which it is one number
 
 
 def design_words(candidates: Candidates, row: Mapping[Any, Any] | pd.Series) -> str:
@@ -52,6 +53,22 @@ def condition_words(candidates: Candidates, case: int) -> str:
     names = [n for n in candidates.conditions if n not in UNSURE]
     varied = [n for n in names if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
     return ", ".join(setting(name, table[name].iloc[case]) for name in varied or names)
+
+
+def worst_words(candidates: Candidates, one: Candidate) -> str:
+    """Name the condition in which a candidate lasts shortest; of a range that of each end, where they differ."""
+    low, high = (condition_words(candidates, case) for case in (one.case, one.case_high))
+    return low if low == high else f"{low} at the low end, {high} at the high end"
+
+
+def within_words(results: Results) -> str:
+    """Say where in the ranges of lives a number within them stands."""
+    parts = []
+    if not set(UNSURE) & set(results.factors) and any(p.low < p.high for p in placeholders_of(results.data)):
+        parts.append("placeholders at their values")
+    if "wear" not in (results.verdict.not_checked if results.verdict is not None else ()):
+        parts.append("the wear life at the mean of its bounds")
+    return " and ".join(parts)
 
 
 def alone(candidates: Candidates) -> bool:
@@ -105,12 +122,23 @@ def best_table(results: Results) -> Table | None:
         rows.append(["Valid in", *(part_of(row["valid"], row["cases"]) for row in best)])
     if met is not None:
         places = candidates.table.index[: len(best)]
-        rows.append(["Meets the targets in", *(part_of(met[i], candidates.size[i]) for i in places)])
+        ranged = results.ranged and bool(results.judged_targets)
+        cells = [part_of(met[i], candidates.size[i]) for i in places]
+        if ranged:  # what meets the target at the high end only is neither met nor missed
+            known = _of_verdict(candidates, best) or [None] * len(best)
+            cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
+        rows.append([f"Meets the targets{' for certain' * ranged} in", *cells])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Candidate {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
     title = "Candidates" if candidates.choices else "Life of the design"
     model = results.held_level("contact_model") if "contact_model" in results.factors else ""
     facts = {"several": several, "drawn": candidates.drawn, "rising": candidates.rising, "goal": candidates.goal[1]}
+    facts |= {
+        "within": within_words(results) if results.ranged else "",
+        "shown": {row[0] for row in rows},
+        "many": len(best),
+    }
+    facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
 
@@ -145,11 +173,18 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if spans:  # the ends of the range say more than a value within it
         rows.append([f"{capital(candidates.goal[1])}, worst condition", *spans])
         places.pop("worst")
+    if candidates.results.ranged and "median" in places:
+        places["median"] = "median, within the ranges"
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
-        rows.append(["Worst condition", *(condition_words(candidates, int(row["worst_case"])) for row in best)])
+        worst = [condition_words(candidates, int(row["worst_case"])) for row in best]
+        if spans:
+            worst = [
+                text if one is None else worst_words(candidates, one) for text, one in zip(worst, known, strict=True)
+            ]
+        rows.append(["Worst condition", *worst])
     return rows
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
 from trackroller.report.words.cases import silent_drive, valid_cases
+from trackroller.report.words.designs import within_words
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.limits import guesses, worn
 from trackroller.report.words.optimum import optimum_sentences
@@ -42,7 +43,7 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
                 None if front is None else pareto_sentence(front, results),
             ],
         ),
-        ("Why", [*told["why"], _enough(results)]),
+        ("Why", [*told["why"], _within(results, told["why"]), _enough(results)]),
         ("Where it ends", [valid_cases(results), stopped(results), *told["ends"], silent_drive(results)]),
         (
             "How sure",
@@ -54,6 +55,11 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
         ),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
+
+
+def _within(results: Results, told: list[Sentence]) -> Sentence | None:
+    """Say that the findings hold at the values of the placeholders, where lives are ranges."""
+    return say("limits", "within", ends=within_words(results)) if told and results.ranged else None
 
 
 def _enough(results: Results) -> Sentence | None:

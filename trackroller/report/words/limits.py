@@ -7,11 +7,11 @@ import numpy as np
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.report.numbers import capital, count, level_text, long_name, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import design_words, limit_title
+from trackroller.report.words.designs import design_words, limit_title, within_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.findings import Finding
 from trackroller.results.first_limits import COEFFICIENT, POSITION, deciding, first_limit
-from trackroller.results.limit_notes import guessed_values
+from trackroller.results.limit_notes import guessed_lines, guessed_values
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
 
@@ -30,6 +30,8 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
 def guesses(results: Results) -> Sentence | None:
     """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
     placed: dict[str, dict[str, None]] = {}
+    if lines := guessed_lines(results.data):
+        placed[limit_title("fatigue")] = dict.fromkeys(lines)
     for limit, material, _ in guessed_values(results.data):
         placed.setdefault(limit_title(limit), {})[material.strip("'")] = None
     return say("limits", "guesses", placed={limit: list(own) for limit, own in placed.items()}) if placed else None
@@ -80,6 +82,8 @@ def first_limit_table(results: Results) -> Table | None:
         counts = {head: _counts(names[own & rows_there]) for head, rows_there in across.items()}
         rows.append({heading(first): factor_cell(first, level)} | counts)
     note = "Number of valid cases that each limit of the pair ends first."
+    if results.ranged:
+        note += f" Counted with {within_words(results)}; at the ends of the ranges another limit may come first."
     if others:
         note += f" {capital(long_name(others[0]))} across."
     return Table.of("first_limits", "Which limit comes first", rows, note)

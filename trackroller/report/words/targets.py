@@ -150,6 +150,8 @@ def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
     sure = "share of the cases" if _whole(table) else "95 % interval"
     heads = [f"{capital(target_words(table, t))} ({sure})" for t in targets]
     said = ["A case that is not valid, or has no value, misses every target."]
+    if results.ranged and results.judged_targets:
+        said.append("A life that is a range counts by its low end.")
     if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
         said.append("Lives hold the material's own scatter.")
     apart = not results.config.method.observed and not set(OPTION_FACTORS) & set(results.factors)
@@ -240,7 +242,13 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table | None]:
         rows.append(row)
     never = [r for r in OTHERS if r not in seen]
     highest = float(table["probability_high"].sel(regime=never).max()) if never else 0.0
-    values = {"spread": 10 ** (DEVIATES_10_TO_90 * scatter), "never": [OTHERS[r] for r in never], "highest": highest}
+    least = float(table.attrs.get("least_log_life_scatter", scatter))
+    values = {
+        "spread": 10 ** (DEVIATES_10_TO_90 * scatter),
+        "least": 10 ** (DEVIATES_10_TO_90 * least),
+        "never": [OTHERS[r] for r in never],
+        "highest": highest,
+    }
     note = phrase("targets", "b10_note", **values, left=table.sizes["point"] - MAX_POINTS)
     name, unit = capital(str(part["output_name"].item())), head_unit(str(part["output_units"].item()))
     first = Table.of(f"b10_{output}", f"{name}: B10 [{unit}], best design points first", rows, note)

@@ -17,17 +17,18 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.words.designs import (
     SAME,
-    condition_words,
     design_words,
     ended_by,
     ends_words,
     lasting_one,
     span_words,
     unanswered,
+    worst_words,
 )
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
+from trackroller.results.limit_notes import guessed_lines
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 
@@ -38,6 +39,7 @@ LEAST_NEEDED = (
     "next",
     "not_judged",
     "turn",
+    "guessed",
     "out",
 )  # kinds of sentences that also stand below, the first one least
 SHORT = {"bearing": "bearing", "shakedown": "shakedown", "guide": "guide (give `guide_overrollings_per_hour`)"}
@@ -72,8 +74,9 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.models(),
         words.aside(),
         words.open_limits(),
+        words.guessed(),
+        words.unchecked(),
     ]
-    said.append(words.unchecked())
     return _fitting([sentence for sentence in said if sentence is not None])
 
 
@@ -173,7 +176,7 @@ class _Words:
 
     def where(self, one: Candidate) -> str:
         """Name the worst condition of a candidate."""
-        return condition_words(self.candidates, one.case) if self.candidates.conditions else ""
+        return worst_words(self.candidates, one) if self.candidates.conditions else ""
 
     def target(self) -> str:
         """Write the targets of the study."""
@@ -196,6 +199,7 @@ class _Words:
         if any(math.isclose(c.low, one.low, rel_tol=SAME) and c.met == one.met for c in others):
             return None  # of several alike none is the next
         values = {"candidate": one, "name": self.name(one), "lives": self.span(one), "holds": one.met == one.conditions}
+        values["ranged"] = bool(found.target) and one.high > one.low
         return say("verdict", "next", **values)
 
     def out(self, misses: Misses | None) -> Sentence | None:
@@ -358,6 +362,14 @@ class _Words:
         if not names:
             return None
         return say("verdict", "open", limits=[ended_by(name) for name in names])
+
+    def guessed(self) -> Sentence | None:
+        """Say that fatigue ends the first candidate by an S-N line that rests on guesses."""
+        found = self.found if self.found.rest is None else self.found.rest
+        if not found.best or "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
+            return None
+        material = str(self.results.material(found.best[0].body)[found.best[0].case])
+        return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
