@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result
+from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result, write_spectrum_file
 from trackroller.errors import InputError
-from trackroller.files import write_text
-from trackroller.yaml_file import write_yaml
 
 
 def run_carriage(
@@ -32,9 +30,9 @@ def run_carriage(
     else:
         ds = solve_carriage(whole, lives=spectrum is None or page is not None)
     if target is not None and spectrum is not None:
-        write_text(target, write_yaml(spectrum_of(whole, ds, spectrum)))
+        write_spectrum_file(target, spectrum_of(whole, ds, spectrum))
     elif target is not None and study:
-        write_text(target, write_yaml(study_of(whole, ds)))
+        write_spectrum_file(target, study_of(whole, ds))
     elif target is not None:
         write_result(ds, target)
     if page is not None:
