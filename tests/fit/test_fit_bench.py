@@ -197,6 +197,22 @@ def test_held_values_give_a_bound_without_failures_and_a_strength_at_one_load(tm
     assert set(one.data.value.values) == {"fatigue_limit", "scatter_in_cycles"}
 
 
+def test_an_empty_cell_is_never_the_load_of_the_example(tmp_path):
+    """A cell that nothing fills is refused; a value of the base fills it."""
+    text = ROWS.replace("R1,-160", "R1,")
+    with pytest.raises(tr.InputError, match=r"bench\.csv, line 2: radial_force = ''.*the cell is empty. Fill the cell"):
+        fit(tmp_path, text)
+    path = table(tmp_path, text)
+    assert tr.fit_bench(path, base=RIG | {"radial_force": -160}).tests.lines[0] == 2
+
+
+def test_what_is_taken_from_the_example_is_told(tmp_path):
+    given = {name: value for name, value in RIG.items() if name != "axial_force"}
+    (told,) = tr.fit_bench(table(tmp_path), base=given).not_given
+    assert told.startswith("Not given, taken from the paper's example: ")
+    assert "axial_force 30 N" in told and "radial_force" not in told
+
+
 def test_one_load_does_not_tell_the_slope(tmp_path):
     text = "".join(f"T{i},-160,{30 + i},{30 + i},fatigue roller\n" for i in range(5))
     with pytest.raises(tr.InputError, match=r"line 6: radial_force.*failures at two loads"):

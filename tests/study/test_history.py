@@ -10,7 +10,7 @@ import trackroller as tr
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.study.spectrum.file import Spectrum, load_spectrum
-from trackroller.study.spectrum.history import levels, spectrum_of_log
+from trackroller.study.spectrum.history import levels, read_log, spectrum_of_log
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import write_yaml
 
@@ -49,6 +49,30 @@ def test_travel_at_each_level(tmp_path):
     assert [block["distance"] for block in blocks] == pytest.approx([59.0, 29.5])
     assert [block["velocity"] for block in blocks] == pytest.approx([120, 60])
     assert notes[0].startswith("60 lines of log.csv in 2 levels")
+
+
+@pytest.mark.parametrize(
+    ("head", "units", "cells"),
+    [
+        ("time;speed;radial_force;axial_force", "ms;mm/s;kN;N", "{0}000;1000;-0,2;20"),
+        ("time [s];speed [m/s];radial_force [N];axial_force [N]", "", "{0},00;1,0;-200,0;20,0"),
+        ("time [min];speed;radial_force;axial_force", "min;m/s;N;N", "{1:.4f};1;-200;20"),
+    ],
+)
+def test_units_and_decimal_commas_of_time_and_speed(head, units, cells, tmp_path):
+    lines = [head, *filter(None, [units]), *(cells.format(i, i / 60) for i in range(0, 5))]
+    (tmp_path / "log.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
+    found = read_log(tmp_path / "log.csv", 60.0)
+    assert found.travel.sum() == pytest.approx(4.0, rel=1e-3)  # m in 4 s
+    assert 3600 * found.hours.sum() == pytest.approx(4.0, rel=1e-3)
+    assert found.radial.tolist() == [-200.0] * 5
+
+
+def test_two_columns_that_say_the_speed_are_refused(tmp_path):
+    text = "time,speed,velocity,radial_force\n0,1,30,-200\n1,1,30,-200\n"
+    (tmp_path / "log.csv").write_text(text, encoding="utf-8")
+    with pytest.raises(InputError, match=r"line 1: columns = 'speed, velocity'.*Remove one of the columns"):
+        read_log(tmp_path / "log.csv", 60.0)
 
 
 def test_a_log_over_distance(tmp_path):

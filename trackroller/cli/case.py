@@ -28,7 +28,12 @@ COMPLETE = ("forces", "contact", "peak_stress", "life")
 WORKBOOK = "A name that ends in .xlsx writes a workbook."
 PRINTED = " --json prints the result as text, and --report writes a page."
 # the first bytes of a file, by the end of its name
-KINDS = {".html": b"<", ".htm": b"<", ".pdf": b"%PDF", ".xlsx": b"PK", ".csv": b"", ".yaml": b"", ".yml": b""}
+BY_US = "# Written by trackroller, which may replace this file. Remove this line if you change it."
+KINDS = {".html": b"<!doctype html>", ".htm": b"<!doctype html>", ".pdf": b"%PDF", ".xlsx": b"PK"}
+KINDS |= dict.fromkeys((".yaml", ".yml"), BY_US.encode())
+MADE = b"trackroller"  # stands in what this program writes
+MARKS = {".html": b'<meta name="generator" content="trackroller">', ".pdf": b""}
+MARKS[".htm"] = MARKS[".html"]
 YAML = (".yaml", ".yml")
 SHEET_OUTPUTS = (*COMPLETE, "friction_work", "tractions", "subsurface")
 
@@ -115,19 +120,22 @@ def solve_case(case: Case, options: Mapping[str, Any], beside: Mapping[str, Any]
 def writable(out: Path) -> Path:
     """Return the file to write for the path that a user gave.
 
-    The target of a symbolic link is written, and the link stays. A file of the same kind is replaced.
+    The target of a symbolic link is written, and the link stays. A file that this program wrote is replaced; a PDF by
+    any other PDF, because a printed page has no mark.
 
     Raises
     ------
     InputError
-        If the folder is missing, or `out` is there and is not a regular file, or a file of another kind.
+        If the folder is missing, or `out` is there and is not a regular file, or a file of somebody else, which may be
+        the very file that the command reads.
     """
     target = Path(os.path.realpath(out))
     if target.exists() and not target.is_file():
         raise InputError("--out", str(out), "the path of a regular file", "Give the name of a file to write.")
-    if target.is_file() and not _same_kind(target, out.suffix.lower()):
-        allowed = "a new file, or one of the kind that is written"
-        raise InputError("--out", str(out), allowed, "Give another name.", "is a file of another kind")
+    if target.is_file() and not _is_ours(target, out.suffix.lower()):
+        allowed = "a new file, or one of its kind that trackroller wrote"
+        remedy = "Give another name, or move the file away."
+        raise InputError("--out", str(out), allowed, remedy, "is a file that trackroller did not write")
     if not target.parent.is_dir():
         wrong = "stands in a folder that does not exist"
         raise InputError("--out", str(out), "a file in a folder", f"Create the folder {target.parent}.", wrong)
@@ -146,11 +154,23 @@ def writable_data(out: Path, otherwise: str = "") -> Path:
     return writable(out)
 
 
-def _same_kind(path: Path, suffix: str) -> bool:
-    """Return whether a file is empty, or of the kind that a suffix stands for; netCDF is the default."""
-    with open(path, "rb") as stream:
-        head = stream.read(16).removeprefix(b"\xef\xbb\xbf").lstrip()
-    return not head or head.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF")))
+def _is_ours(path: Path, suffix: str) -> bool:
+    """Return whether a file is empty, or of the kind that a suffix stands for and written by this program.
+
+    netCDF is the default. It names the program in its history; a CSV file has columns that no table of a user may have.
+    """
+    content = path.read_bytes()
+    if suffix == ".csv":
+        return not content or {b"regime", b"validity"} <= {*content.partition(b"\n")[0].split(b",")}
+    head = content[:4096] if suffix in (".html", ".htm") else content
+    return not content or (
+        content.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF"))) and MARKS.get(suffix, MADE) in head
+    )
+
+
+def write_spectrum_file(target: Path, values: Mapping[str, Any]) -> None:
+    """Write a spectrum or study file as YAML, with the mark by which `writable` knows it; `target` comes from there."""
+    write_text(target, f"{BY_US}\n{write_yaml(values)}")
 
 
 def free_for_page(page: Path) -> None:
@@ -308,7 +328,7 @@ def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> 
     if roller is not None:
         case_of(roller, None)  # refuses wrong values before the log is read
     spectrum, notes = spectrum_of_log(log, given)
-    write_text(target, write_yaml(spectrum))
+    write_spectrum_file(target, spectrum)
     for note in notes:
         print(note)
 

@@ -33,6 +33,7 @@ from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.materials import Material, load_database
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, PARAMETERS, REGIMES
+from trackroller.parameters.example import not_given_text
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import FIELDS, Case
@@ -186,7 +187,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     if "friction_coefficient" in wanted and len(groups) > 1:
         notes.append("The rows were solved with the friction that they state, not with the fitted one.")
     notes += _outside(rows, solved, own)
-    return Fit("bench", name or f"{material.name} fitted", tuple(groups), rows, like or material.name, given, notes)
+    name = name or f"{material.name} fitted"
+    return Fit("bench", name, tuple(groups), rows, like or material.name, given, notes, not_given_notes(cases))
 
 
 DEFAULTS = {"contact_model": "kalker", "life_criterion": "von_mises_peak", "accuracy": "standard"}
@@ -295,6 +297,7 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
                         read[file] = dict(read_mapping(find_beside(file, "base"), "case file"))
                     values = overridden(read.get(file, {}) | dict(base or {}), own)
                     case, one, _ = checked_case({k: v for k, v in values.items() if k not in ("duty", "sheet")})
+                    _check_empty(rows, row, case)
             except InputError as error:
                 place = error.field if error.field in rows.rows[row] else "base" if file else "case"
                 raise (
@@ -314,6 +317,20 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
         remedy = "Fit the line with life_rule elementary; a case may take another rule afterwards."
         raise InputError("life_rule", rule, "elementary, because the fitted line is straight", remedy)
     return cases, options[0]
+
+
+def _check_empty(rows: TestTable, row: int, case: Case) -> None:
+    """Refuse empty cells of parameters that nothing else gives: they would be those of the paper's example."""
+    for name in rows.rows[row]:
+        if name in case.not_given:
+            remedy = "Fill the cell, or give the value in the file of the column base."
+            raise InputError(name, "", "a value; the cell is empty", remedy)
+
+
+def not_given_notes(cases: Sequence[Case]) -> list[str]:
+    """Return the sentence on parameters of which neither the tests nor their base give a value."""
+    text = not_given_text({name: getattr(case, name) for case in cases for name in case.not_given})
+    return [f"{text[0].upper()}{text[1:]}."] if text else []
 
 
 def _body_of(rows: TestTable, ends: Sequence[End], wanted: Collection[str]) -> str:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.fit.bench import DEFAULTS, wear_group, worn_alone
+from trackroller.fit.bench import DEFAULTS, not_given_notes, wear_group, worn_alone
 from trackroller.fit.fitted import Fit
 from trackroller.fit.table import LEAST, read_tests
 from trackroller.parameters import BODIES
@@ -85,7 +85,9 @@ def fit_wear(
     notes = [f"The profile of the {body} was followed; the other body kept its profile."]
     own = case.roller_material if body == "roller" else case.guide_material
     base_name = own if isinstance(own, str) else getattr(own, "name", "material")
-    return Fit("wear", name or f"{base_name} worn", (group,), rows, like or base_name, given | {"body": body}, notes)
+    given |= {"body": body}
+    told = not_given_notes([case])
+    return Fit("wear", name or f"{base_name} worn", (group,), rows, like or base_name, given, notes, told)
 
 
 def followed(values: Mapping[str, Any], options: Mapping[str, Any], body: str, depths: np.ndarray) -> np.ndarray:

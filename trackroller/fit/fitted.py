@@ -167,6 +167,8 @@ class Fit:
         Under what the values hold, such as the contact model of the fit.
     notes : list of str
         Sentences on how the values enter a life.
+    not_given : list of str
+        The sentence on parameters that are those of the paper's example, if there are any.
     """
 
     kind: str
@@ -176,6 +178,7 @@ class Fit:
     like: str | None = None
     given: Mapping[str, str] = field(default_factory=dict)
     notes: list[str] = field(default_factory=list)
+    not_given: list[str] = field(default_factory=list)
 
     def group(self, kind: str) -> Group:
         """Return the group of a kind of end.

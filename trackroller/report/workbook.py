@@ -195,6 +195,7 @@ def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
     for i, table in enumerate(tables, 1):
         parts[f"xl/worksheets/sheet{i}.xml"] = "sheet", [table.heads, *table.rows]
     with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED) as file:
+        file.comment = b"trackroller"  # which other programs drop as they save the workbook
         for name, (part, rows) in parts.items():
             widths = [min(max(len(str(value)) + 3, 9), 40) for value in rows[0]] if rows else []
             span = f"A{heads}:{_letters(len(widths))}{max(len(rows), heads)}"

@@ -28,14 +28,29 @@ def blocks(text, folder):
 
 @pytest.mark.parametrize(
     "total",
-    ["Sum;13000;;", "Summe:;13000;-140;20", "Grand total;13000;-140;20", "Σ;13000;;", "mean;6500;-70;10", ";13000;;20"],
+    [
+        *("Sum;13000;;", "Summe:;13000;-140;20", "Grand total;13000;-140;20", "Σ;13000;;", "mean;6500;-70;10"),
+        *(";13000;;20", "Итого;13000;-140;20", "合计;13000;;", "Gesamtweg;13000;-80;10", "Arithm. Mittel;6500;-70;10"),
+    ],
 )
 def test_a_line_that_sums_up_is_no_block(total, tmp_path):
     with pytest.raises(tr.InputError, match=r"b\.csv, line 4: .*this line sums up the lines above.*Remove the line"):
         blocks(f"{SHIFT}{total}\n", tmp_path)
 
 
-@pytest.mark.parametrize("label", ["max", "mean", "sum-free", "summer", "totally full"])
+def test_a_name_that_is_a_quantity_is_no_statistic(tmp_path):
+    text = "name;distance;radial_force;axial_force\n5 min;1000;-60;10\n10 min;3000;-80;20\n15 min;2000;-70;15\n"
+    assert [block[0] for block in blocks(text, tmp_path)] == ["5 min", "10 min", "15 min"]
+
+
+def test_totals_above_the_blocks_are_refused(tmp_path):
+    head, *lines = SHIFT.splitlines()
+    with pytest.raises(tr.InputError, match=r"b\.csv, line 2: .*this line sums up the lines below"):
+        blocks("\n".join([head, "Total;13000;-80;10", *lines]) + "\n", tmp_path)
+    assert len(blocks("\n".join([head, "Total;7000;-300;20", *lines]) + "\n", tmp_path)) == 3
+
+
+@pytest.mark.parametrize("label", ["max", "mean", "sum-free", "summer", "totally full", "Gesamtlast", "max load"])
 def test_a_block_may_have_a_name_like_a_statistic(label, tmp_path):
     assert len(blocks(f"{SHIFT}{label};70;-500;90\n", tmp_path)) == 3
 

@@ -190,11 +190,15 @@ def test_formulas_without_values_are_refused(tmp_path):
         "=AVERAGE(A2,A3)",
         "=ROUND(SUM(A2:A3)/2,0)",
         '=IF(A2<0,A2+A3,"A4")',
+        '=SUMIF(B2:B3,"a",A2:A3)',
+        "=SUMPRODUCT(A2:A3,B2:B3)/SUM(B2:B3)",
+        "=SUM(Sheet!A2:A3)",
+        "=MIN('Sheet'!$A$2:$A$3)",
     ],
 )
 def test_a_formula_that_sums_up_its_column_is_no_case(text, tmp_path):
     rows = [["radial_force", "part"], [-100, "a"], [-150, "b"], [text, "c"]]
-    with pytest.raises(tr.InputError, match=r"line 4: radial_force = '=.*sums up the lines above"):
+    with pytest.raises(tr.InputError, match=r"line 4: radial_force = .=.*sums up the lines above"):
         read(rows, tmp_path, patch=formula(b"<v>-250</v>"))
 
 
@@ -304,6 +308,7 @@ def test_a_number_is_what_the_format_of_its_cell_shows(value, code, shown, tmp_p
     ("value", "code", "shown"),
     [
         (123, "00000", "00123"),
+        (7, '"P-"000', "P-007"),
         (0.5, "0%", "50 %"),
         (3e5, "0E+0", 3e5),
         ("00123", "General", "00123"),

@@ -99,7 +99,7 @@ def cannot_tell(fit: Fit) -> list[str]:
         said.append(f"The tests do not identify the {_short(name)}: its estimate lies at a bound, and is no number.")
     if fit.has("fatigue"):
         said += _of_fatigue(fit.group("fatigue"), fit.knee if "fatigue_limit" in fit.material else math.nan)
-    return [*said, *fit.notes]
+    return [*said, *fit.notes, *fit.not_given]
 
 
 def _of_fatigue(own: Group, knee: float) -> list[str]:

@@ -13,10 +13,11 @@ import re
 import statistics
 import unicodedata
 from collections import Counter
-from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 
 from trackroller.errors import Collector, InputError, listing, raise_all
 from trackroller.files import MAX_BYTES, read_bytes, text_of
@@ -57,7 +58,7 @@ Lines = Iterable[tuple[int, list[str]]]
 
 _SUMS = (
     "sums? totals? sub-?totals? summen? gesamt gesamtsumme zwischensumme insgesamt ergebnis gesamtergebnis somme "
-    "totale suma Σ ∑"
+    "totale totaux suma summa totaal totalt razem celkem toplam итого всего сумма 合计 总计 合計 総計 Σ ∑"
 )
 _SUM = re.compile(
     r"\W*(?:{0})(?![\w-]).*|.*(?<!\w)(?:{0})\W*".format("|".join(_SUMS.split())), re.IGNORECASE | re.DOTALL
@@ -67,7 +68,11 @@ _STATISTICS = (
     "stdev stddev standardabweichung count anzahl p05 p5 p10 p25 p50 p75 p90 p95 p99 perzentil percentile quantil "
     "quantile"
 )
-_STATISTIC = re.compile(r"\W*(?:{})\W*".format("|".join(_STATISTICS.split())), re.IGNORECASE)
+# a statistic with further words, such as 'arithm. Mittel', or a compound such as 'Gesamtweg'
+_STATISTIC = re.compile(
+    r"(?:.*(?<!\w))?(?:(?:{})(?!\w)|(?:gesamt|summen)\w).*".format("|".join(_STATISTICS.split())),
+    re.IGNORECASE | re.DOTALL,
+)
 _EXCEL_ERROR = re.compile(r"#(?:DIV/0!|N/A|NAME\?|NULL!|NUM!|REF!|VALUE!|#+)", re.IGNORECASE)
 _STATED_UNIT = re.compile(
     r"\[([^\[\]]{1,20})\]|\(([^()]{1,20})\)|\b(?:in|units?|einheit|einheiten)\b(?: is| =|:|=)? *([^\s,;:]{1,20})",
@@ -83,12 +88,14 @@ class UserTable:
     """A table of a user: names of the columns, number of their line, and the cells of each further line by number.
 
     Numbers of known columns have a decimal point, no thousands signs, and their unit behind them. Cells of further
-    columns that hold numbers only are `Stored`; cells of other columns stay as they are.
+    columns that hold numbers only are `Stored`; cells of other columns stay as they are. `known` holds the units of the
+    known columns.
     """
 
     names: list[str]
     head: int
     lines: dict[int, list[str]]
+    known: Mapping[str, str] = field(default_factory=lambda: UNITS)
 
     def column(self, j: int) -> list[str]:
         """Return the cells of a column."""
@@ -107,6 +114,7 @@ def read_table(
     most: float = MAX_BYTES,
     used: Collection[str] = (),
     optional: Collection[str] = (),
+    further: Mapping[str, str] = MappingProxyType({}),
 ) -> UserTable:
     """Read a CSV file, or the sheet of a workbook whose name ends in .xlsx or .xlsm.
 
@@ -129,6 +137,8 @@ def read_table(
         Names of further columns that expressions use.
     optional : collection of str
         Names of columns whose cells may be empty.
+    further : mapping
+        Units of further columns of numbers by their names.
 
     Raises
     ------
@@ -147,13 +157,14 @@ def read_table(
     if not found:
         wrong.check()
     with _in_line(path, head):
-        names, units = _names(_without_unnamed(heads, found, field), field, used)
-    table = UserTable(names, head, found)
+        known = {**UNITS, **further}
+        names, units = _names(_without_unnamed(heads, found, field), field, used, known)
+    table = UserTable(names, head, found, known)
     _read_units(table, units, used, path)
     if not found:
         wrong.check()
         raise InputError(field, str(path), f"a table with at least one {what} below the units", "Add a line.")
-    numbers = [j for j, name in enumerate(names) if name in UNITS or (name in used and table.all(j, is_number))]
+    numbers = [j for j, name in enumerate(names) if name in known or (name in used and table.all(j, is_number))]
     _read_numbers(table, numbers, units)
     _check_remarks(table, {n: text for n, text in remarks.items() if n != head and n not in found}, path, field)
     _check_totals(table, numbers, path, field, what, wrong)
@@ -167,7 +178,7 @@ def column_names(path: Path, field: str) -> list[str]:
     lines, _ = _lines(path, field, "case", math.inf, HEAD_ROWS)
     number, heads, _ = _split(_until_names(lines))
     with _in_line(path, number):
-        return _names([head for head in heads if head], field, ())[0]
+        return _names([head for head in heads if head], field, (), UNITS)[0]
 
 
 def is_workbook(path: Path) -> bool:
@@ -303,7 +314,9 @@ def _in_line(path: Path, number: int) -> Iterator[None]:
         raise_all(one.at(path, number) for one in error.errors)
 
 
-def _names(heads: list[str], field: str, used: Collection[str]) -> tuple[list[str], list[str]]:
+def _names(
+    heads: list[str], field: str, used: Collection[str], known: Mapping[str, str]
+) -> tuple[list[str], list[str]]:
     """Return the names of the columns and their units; '' for a column without unit.
 
     A column that is no number of the program keeps the unit as a part of its name, because no number is converted.
@@ -317,14 +330,14 @@ def _names(heads: list[str], field: str, used: Collection[str]) -> tuple[list[st
         with wrong.part():
             if isinstance(head, Refused):
                 raise InputError(field, head, *head.message)
-            if name in used and name not in UNITS and unit not in PLAIN:
+            if name in used and name not in known and unit not in PLAIN:
                 allowed = f"a column without a unit, because an expression uses {name} and knows no units"
                 remedy = f"Convert the numbers to the unit that the expression needs, and name the column {name}."
                 raise InputError("column", head, allowed, remedy)
-            if name in UNITS and unit:
-                _check_unit(name, unit)
-        names.append(name if name in UNITS or unit in PLAIN else unicodedata.normalize("NFC", head))
-        units.append("" if name not in UNITS or unit in PLAIN else unit)
+            if name in known and unit:
+                _check_unit(name, unit, known)
+        names.append(name if name in known or unit in PLAIN else unicodedata.normalize("NFC", head))
+        units.append("" if name not in known or unit in PLAIN else unit)
     wrong.check()
     counts = Counter(names)
     if doubled := [name for name in names if counts[name] > 1]:
@@ -332,30 +345,30 @@ def _names(heads: list[str], field: str, used: Collection[str]) -> tuple[list[st
     return names, units
 
 
-def _check_unit(name: str, unit: str) -> None:
+def _check_unit(name: str, unit: str, known: Mapping[str, str]) -> None:
     """Refuse a unit that measures something else than the column."""
-    if unit != UNITS[name] and not (unit in PLAIN and UNITS[name] in PLAIN):
-        in_unit(1.0, unit, UNITS[name], name)
+    if unit != known[name] and not (unit in PLAIN and known[name] in PLAIN):
+        in_unit(1.0, unit, known[name], name)
 
 
 def _read_units(table: UserTable, units: list[str], used: Collection[str], path: Path) -> None:
     """Take a line of units below the names out of the table, if there is one, and complete `units`."""
     number, line = next(iter(table.lines.items()), (0, []))
-    below = {name: unbracketed(cell) for name, cell in zip(table.names, line, strict=True) if name in UNITS}
+    below = {name: unbracketed(cell) for name, cell in zip(table.names, line, strict=True) if name in table.known}
     known = {cell for name, cell in zip(table.names, line, strict=True) if name in KNOWN}
-    stated = any(_is_unit(name, unit) for name, unit in below.items()) or known == {"-"}  # pure numbers and names
-    if any(map(is_number, below.values())) or not stated:
+    stated = any(_is_unit(name, unit, table.known) for name, unit in below.items())
+    if any(map(is_number, below.values())) or not (stated or known == {"-"}):  # of pure numbers and names
         return
     wrong = Collector()
     for j, (name, cell) in enumerate(zip(table.names, line, strict=True)):
         with wrong.part():
             unit = below.get(name, "")
             if unit and not units[j]:
-                _check_unit(name, unit)
+                _check_unit(name, unit, table.known)
                 units[j] = "" if unit in PLAIN else unit
             elif unit not in ("", units[j]):
                 raise InputError(name, cell, f"the unit at the head of the column, {units[j]}", "Remove one of them.")
-            elif name in used and name not in UNITS and unbracketed(cell) not in PLAIN:
+            elif name in used and name not in table.known and unbracketed(cell) not in PLAIN:
                 allowed = "no unit, because an expression uses this column and knows no units"
                 raise InputError(name, cell, allowed, "Convert the numbers to the unit that the expression needs.")
     for error in wrong.errors:
@@ -366,15 +379,15 @@ def _read_units(table: UserTable, units: list[str], used: Collection[str], path:
 
 def _check_remarks(table: UserTable, remarks: dict[int, str], path: Path, field: str) -> None:
     """Refuse a comment that states another unit for numbers of which neither the head nor the cells state one."""
-    names = [name for name in table.names if name in UNITS]
+    names = [name for name in table.names if name in table.known]
     bare = [name for name in names if not any(map(_with_unit, table.column(table.names.index(name))))]
     for number, text in itertools.islice(remarks.items(), HEAD_ROWS):
         for unit in _units_of(text):
-            meant = [name for name in bare if unit != UNITS[name] and _is_unit(name, unit)]
-            meant = [name for name in meant if in_unit(1.0, unit, UNITS[name], name) != 1.0]
+            meant = [name for name in bare if unit != table.known[name] and _is_unit(name, unit, table.known)]
+            meant = [name for name in meant if in_unit(1.0, unit, table.known[name], name) != 1.0]
             if meant:
                 allowed = "units at the heads of the columns"
-                remedy = f"Write {meant[0]} [{unit}] or {meant[0]} [{UNITS[meant[0]]}], or remove this line."
+                remedy = f"Write {meant[0]} [{unit}] or {meant[0]} [{table.known[meant[0]]}], or remove this line."
                 wrong = f"names the unit {unit}, and {listing(meant)} stand{'s' * (len(meant) == 1)} without a unit"
                 raise InputError(field, text, allowed, remedy, wrong).at(path, number)
 
@@ -387,12 +400,12 @@ def _units_of(text: str) -> list[str]:
     return [*stated, *(word for word in others if re.search(r"[A-ZµμΩ/%°]", word[1:]) or word in _BARE_UNITS)]
 
 
-def _is_unit(name: str, text: str) -> bool:
+def _is_unit(name: str, text: str, known: Mapping[str, str]) -> bool:
     """Return whether a text is a unit of a column's numbers."""
     if text in PLAIN or split_quantity(f"1 {text}") is None:
         return False
     try:
-        in_unit(1.0, text, UNITS[name], name)
+        in_unit(1.0, text, known[name], name)
     except InputError:
         return False
     return True
@@ -406,9 +419,9 @@ def _read_numbers(table: UserTable, numbers: list[int], units: list[str]) -> Non
         read = plain_column(cells, signs) if j in numbers else plain_labels(cells, signs)
         if unit := units[j]:
             read = [f"{cell} {unit}" if _without_unit(cell) else cell for cell in read]
-        elif table.names[j] in UNITS and UNITS[table.names[j]] not in PLAIN and any(map(_with_unit, read)):
-            read = [_beside_units(cell, UNITS[table.names[j]]) for cell in read]
-        if j in numbers and table.names[j] not in UNITS:
+        elif table.names[j] in table.known and table.known[table.names[j]] not in PLAIN and any(map(_with_unit, read)):
+            read = [_beside_units(cell, table.known[table.names[j]]) for cell in read]
+        if j in numbers and table.names[j] not in table.known:
             read = [cell if isinstance(cell, Refused) else Stored(cell) for cell in read]
         if read is not cells:
             for line, cell in zip(table.lines.values(), read, strict=True):
@@ -433,20 +446,24 @@ def _with_unit(cell: str) -> bool:
 
 def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, what: str, wrong: Collector) -> None:
     """Move lines that sum up the lines above to the errors."""
-    labels = [j for j, name in enumerate(table.names) if name not in UNITS and j not in numbers]
+    labels = [j for j, name in enumerate(table.names) if name not in table.known and j not in numbers]
     above: list[list[str]] = []
     last = next(reversed(table.lines), None)
     for number, line in list(table.lines.items()):
-        words = [line[j] for j in labels] or line[:1]
+        own = [line[j] for j in labels] or line[:1]
+        words = [word for word in own if math.isnan(_value(word))]  # '5 min' is no minimum
         sums = any(_SUM.fullmatch(word) for word in words)
         if not sums and any(_STATISTIC.fullmatch(word) for word in words):
             sums = _sums_up(above, line, numbers)
         if not sums and number == last:
-            sums = _sums_up(above, line, numbers, surely=bool(not labels or any(words)), one=True)
-        if above and sums:
+            sums = _sums_up(above, line, numbers, surely=bool(not labels or any(own)), one=True)
+        if not above and sums:  # totals may stand above what they sum up
+            below = [other for place, other in table.lines.items() if place != number]
+            sums = _sums_up(below, line, numbers, one=True)
+        if sums:
             del table.lines[number]
-            allowed = f"one {what} a line; this line sums up the lines above"
-            remedy = f"Remove the line; if it is a {what}, " + ("rename it." if any(words) else "put it further up.")
+            allowed = f"one {what} a line; this line sums up the lines {'above' if above else 'below'}"
+            remedy = f"Remove the line; if it is a {what}, " + ("rename it." if any(own) else "put it further up.")
             wrong.errors.append(InputError(field, ", ".join(line), allowed, remedy).at(path, number))
         else:
             above.append(line)
@@ -486,7 +503,12 @@ def _value(cell: str) -> float:
 def _refuse_mixtures(table: UserTable, numbers: list[int], used: Collection[str]) -> None:
     """Refuse words and units in a column of numbers that an expression uses."""
     for j, name in enumerate(table.names):
-        if name not in used or name in UNITS or j in numbers or all(math.isnan(_value(c)) for c in table.column(j)):
+        if (
+            name not in used
+            or name in table.known
+            or j in numbers
+            or all(math.isnan(_value(c)) for c in table.column(j))
+        ):
             continue
         for line in table.lines.values():
             if line[j] and not isinstance(line[j], Refused) and not is_number(line[j]):

@@ -60,14 +60,14 @@ class _Formula:
             return Refused(text, allowed, "Remove the line, or put it into another sheet.")
         return shown
 
-    def takes_several_above(self, place: tuple[int, int]) -> bool:
-        """Return whether the formula refers to several cells of its own column above it, and to nothing else."""
-        text, rows = re.sub(r'"[^"]*"', '""', self.text), set[int]()
+    def takes_several_above(self, place: tuple[int, int], sheet: str = "") -> bool:
+        """Return whether the formula refers to several cells of its own column above it, and to others above only."""
+        text, own, others = re.sub(r'"[^"]*"', '""', self.text), set[int](), {0}
+        text = re.sub(rf"(?:'{re.escape(sheet)}'|(?<![\w'.]){re.escape(sheet)})!", "", text) if sheet else text
         for first, start, last, end in _CELLS.findall(text):
-            if {first.upper(), (last or first).upper()} != {_letter(place[1])}:
-                return False
-            rows |= {int(start), int(end or start)}
-        return len(rows) > 1 and max(rows) < place[0] and not _WORD.search(_CELLS.sub("", text))
+            columns = {first.upper(), (last or first).upper()}
+            (own if columns == {_letter(place[1])} else others).update((int(start), int(end or start)))
+        return len(own) > 1 and max(own | others) < place[0] and not _WORD.search(_CELLS.sub("", text))
 
     def continues(self, above: _Formula | None, place: tuple[int, int]) -> bool:
         """Return whether the formula is that of the cell above moved down by one row, as in a column of levels."""
@@ -91,6 +91,7 @@ class _Facts:
     merged: list[str] = field(default_factory=list)
     formulas: dict[tuple[int, int], _Formula] = field(default_factory=dict)
     computed_on_load: bool = False
+    title: str = ""
 
     def sums_up(self, place: tuple[int, int]) -> bool:
         """Return whether the formula of a cell sums up cells above it: a statistic of them, or any formula at the end.
@@ -98,7 +99,7 @@ class _Facts:
         Below the last row no further case can follow from a formula, unless it continues the formulas above it.
         """
         formula = self.formulas[place]
-        several, statistic = formula.takes_several_above(place), _STATISTIC.fullmatch(formula.text)
+        several, statistic = formula.takes_several_above(place, self.title), _STATISTIC.fullmatch(formula.text)
         if several and statistic:
             return True
         if place[0] != self.last or not (several or (statistic and _WHOLE_COLUMN.search(formula.text))):
@@ -194,6 +195,7 @@ def sheet_lines(content: bytes, path: Path, field: str, what: str, most_rows: in
             parts = {sheet.name: relation.target for sheet, relation in reader.parser.find_sheets()}
             with reader.archive.open(parts[sheet.title]) as stream:
                 facts = _facts_of(stream)
+            facts.title = sheet.title
             facts.check(path, field)
             _check_struck(sheet, facts, path, field)
             facts.computed_on_load = b'fullCalcOnLoad="1"' in reader.archive.read(reader.parser.workbook_part_name)
@@ -368,5 +370,8 @@ def _formatted(value: float, code: str) -> str:
     if "%" in bare:
         return f"{100 * value:.15g} %"
     if words := words.strip(" -+()") or re.sub(r"[Ee][-+]|General|Standard|[^A-Za-z€$£°µ]", "", bare):
-        return f"{number} {words}" if re.search("[0#?]", section.split('"')[0]) else f"{words} {number}"
+        if re.match(r'[^"\\]*(?:[0#?@]|General|Standard)', section):
+            return f"{number} {words}"
+        zeros = re.fullmatch(r'"([^"]*)"(0+)', section)  # a label such as P-007
+        return f"{zeros[1]}{int(value):0{len(zeros[2])}d}" if zeros and value == int(value) else f"{words} {number}"
     return f"{int(value):0{len(bare)}d}" if re.fullmatch("0{2,}", bare) and value == int(value) else number

@@ -16,9 +16,8 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import Collector, InputError, listing
-from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.units import PLAIN, in_unit, split_quantity
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.aliases import renamed
 from trackroller.roller.settings import LOADS, parts_for_spectrum
@@ -101,7 +100,7 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
 def read_log(path: Path, velocity: float) -> Log:
     """Read a log; see `spectrum_of_log`. `velocity` [m/min] is that of a log without a column of speeds."""
     wrong = Collector()
-    table = read_table(path, "--from", "line", wrong)
+    table = read_table(path, "--from", "line", wrong, further=COLUMNS)
     wrong.check()
     notes: list[str] = []
     columns = _columns(table, path, notes)
@@ -115,6 +114,9 @@ def read_log(path: Path, velocity: float) -> Log:
     if "axial_force" not in columns:
         notes.append("No column axial_force: the axial force counts as 0 N.")
         columns["axial_force"] = np.zeros(len(table.lines))
+    if {"speed", "velocity"} <= set(columns):
+        allowed = "one of them, because both say how fast the roller moves"
+        raise InputError("columns", "speed, velocity", allowed, "Remove one of the columns.").at(path, table.head)
     pace = columns["velocity"] if "velocity" in columns else 60 * columns["speed"] if "speed" in columns else None
     steps = np.diff(columns[axis])
     if axis == "time" and (steps <= 0).any():
@@ -149,19 +151,16 @@ def _halves(steps: np.ndarray) -> np.ndarray:
 def _columns(table: UserTable, path: Path, notes: list[str]) -> dict[str, np.ndarray]:
     """Return the known columns of a log in their units; a unit that is not stated is told."""
     found, bare = {}, []
-    for j, head in enumerate(table.names):
-        name, unit = split_head(head)
+    for j, name in enumerate(table.names):
         if name not in COLUMNS:
             continue
         wanted, cells = COLUMNS[name], table.column(j)
-        values = np.array([number_or_nan(cell, wanted, name) for cell in cells])  # the reader has put known units there
+        values = np.array([number_or_nan(cell, wanted, name) for cell in cells])  # the reader has put the units there
         if np.isnan(values).any():
             k = int(np.argmax(np.isnan(values)))
             error = InputError(name, cells[k], f"a number [{wanted}]", "Mend the cell, or remove its line.")
             raise error.at(path, list(table.lines)[k])
-        if unit not in PLAIN:
-            values = np.array([in_unit(float(value), unit, wanted, name) for value in values])
-        elif split_quantity(cells[0]) is None:
+        if split_quantity(cells[0]) is None:
             bare.append(f"{name} in {wanted}")
         found[name] = values
     if bare:
