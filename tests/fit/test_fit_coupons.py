@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from importlib.resources import files
 
 import numpy as np
 import pytest
@@ -172,3 +173,18 @@ def test_the_prior_stands_beside_the_posterior(tmp_path):
     assert 5.6 < low < high < 6.6
     fit.report(tmp_path / "fit.html")
     assert "6 ± 0.2" in (tmp_path / "fit.html").read_text()
+
+
+@pytest.mark.slow
+def test_below_a_fatigue_limit_the_interval_reaches_from_finite_lives_to_none(tmp_path):
+    """The posterior tells which ends are finite: both hold lines whose limit lies below the stress, and above it."""
+    fit = tr.fit_sn(files("trackroller.fit.examples") / "coupons-synthetic.csv", **UNDER)
+    own = fit.groups[0]
+    assert own.line.knee
+    for stress in (430.0, 380.0, 365.0, 355.0, 345.0):
+        low, high = fit.interval("cycles", amplitude=stress)
+        lives = own.line.log_life(own.posterior.values, math.log(stress), 0.5)
+        below, above = np.exp(own.posterior.quantile(lives, np.array([0.05, 0.95])))
+        assert low == pytest.approx(below, rel=0.2)
+        assert math.isinf(high) == math.isinf(above)
+        assert math.isinf(high) or high == pytest.approx(above, rel=0.2)

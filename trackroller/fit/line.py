@@ -51,6 +51,9 @@ TOLERANCE = 1e-9  # fall of ln L by a step below which a maximum counts as found
 MOST_STEPS = 60
 AT_ONCE = 2_000_000  # elements of an array of points and tests, which bounds the memory
 Solved = Callable[[float, np.ndarray], np.ndarray]
+Profile = Callable[[float, np.ndarray], tuple[float, np.ndarray]]
+NEAR = 0.02  # in ln S, how far below a stress a fatigue limit is tried first
+STEPS = np.arange(-2.0, 6.1, 0.5).tolist()  # of ln N, at which finite lives are tried below a fatigue limit
 
 
 class Values(NamedTuple):
@@ -316,9 +319,31 @@ class Line:
             return value - self._life_at_level_0(others, log_stress, probability)
 
         best = float(self.log_life(self.best, log_stress, probability))
-        if not math.isfinite(best):
-            best = float(self.best.level - self.best.slope * (log_stress - self.reference))
-        return self._ends(best, 0, level, confidence)
+        if not (self.knee and self.tests.failed.any()):
+            return self._ends(best, 0, level, confidence)
+        goal = self.largest - self.cut_off(confidence)
+        if not math.isfinite(best):  # the interval reaches down to the finite lives that are likely enough
+            straight = float(self.best.level - self.best.slope * (log_stress - self.reference))
+            start = self.estimate.copy()
+            start[self.free.index("log_limit")] = log_stress - math.exp(start[-1]) * float(ndtri(probability)) - NEAR
+            profile = self._profile(0, level)
+            likely, step = max((profile(straight + step, start[1:])[0], step) for step in STEPS)
+            if likely < goal:
+                return Interval(math.inf, math.inf)
+            return Interval(self._ends(straight + step, 0, level, confidence, start).low, math.inf)
+        low, high = self._ends(best, 0, level, confidence)
+        return Interval(low, math.inf if self._endless(log_stress, probability) >= goal else high)
+
+    def _endless(self, log_stress: float, probability: float) -> float:
+        """Return the largest ln L of lines whose fatigue limit at a failure probability is a stress."""
+        place = self.free.index("log_limit")
+
+        def loss(rest: np.ndarray) -> np.ndarray:
+            limit = log_stress - np.exp(rest[..., -1]) * float(ndtri(probability))
+            inside = (limit >= self.limits[place, 0]) & (limit <= self.limits[place, 1])
+            return np.where(inside, -self.log_likelihood(np.insert(rest, place, limit, axis=-1)), LARGE)
+
+        return -least(loss, np.delete(self.estimate, place), np.delete(self.limits, place, axis=0))[1]
 
     def interval_of_strength(self, log_cycles: float, probability: float, confidence: float = 0.9) -> Interval:
         """Return the interval of ln S at which a share of specimens has failed after so many cycles.
@@ -350,7 +375,9 @@ class Line:
         open_low, open_high = found.low <= low, found.high >= high
         return Interval(low if open_low else found.low, high if open_high else found.high)
 
-    def _ends(self, best: float, place: int, solved: Solved, confidence: float) -> Interval:
+    def _ends(
+        self, best: float, place: int, solved: Solved, confidence: float, start: np.ndarray | None = None
+    ) -> Interval:
         """Return where the profile of a value falls to the cut-off on both sides of its estimate.
 
         `solved` returns the free value at `place` from the value in question and the other free values.
@@ -358,7 +385,13 @@ class Line:
         if not self.tests.failed.any():
             return self._without_failures(place, solved, confidence)
         goal = self.largest - self.cut_off(confidence)
-        others = np.delete(self.estimate, place)
+        bounds = self.limits[place] if place else (-math.inf, math.inf)
+        profile = self._profile(place, solved)
+        others = np.delete(self.estimate if start is None else start, place)
+        return Interval(*(_end(profile, best, others, goal, side, bounds) for side in (-1.0, 1.0)))
+
+    def _profile(self, place: int, solved: Solved) -> Profile:
+        """Return the function of a value and a start that gives the largest ln L with that value, and its place."""
         limits = np.delete(self.limits, place, axis=0)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
@@ -372,8 +405,7 @@ class Line:
             place_of_least, value_there = least(loss, start, limits)
             return -value_there, place_of_least
 
-        bounds = self.limits[place] if place else (-math.inf, math.inf)
-        return Interval(*(_end(profile, best, others, goal, side, bounds) for side in (-1.0, 1.0)))
+        return profile
 
     def _without_failures(self, place: int, solved: Solved, confidence: float) -> Interval:
         """Return the one-sided bound of a level that no failure has bounded from above."""
@@ -445,7 +477,7 @@ def _between(low: np.ndarray, high: np.ndarray) -> np.ndarray:
 
 
 def _end(
-    profile: Callable[[float, np.ndarray], tuple[float, np.ndarray]],
+    profile: Profile,
     best: float,
     others: np.ndarray,
     goal: float,

@@ -211,7 +211,13 @@ def next_sentences(ds: xr.Dataset) -> list[str]:
     )
     hours = float(ds["hours"].values[ds["chosen"].values].sum())
     low, high = ds["interval_now"].values
-    known = f"{rounded(low)} to {rounded(high)} h" if math.isfinite(high) else f"at least {rounded(low)} h"
+    known = (
+        "without end"
+        if math.isinf(low)
+        else f"{rounded(low)} to {rounded(high)} h"
+        if math.isfinite(high)
+        else f"at least {rounded(low)} h"
+    )
     return [
         f"B10 of the design is {known} by the tests so far (90 %), {now} between both ends.",
         f"Test {listing([f'candidate {i}' for i in chosen])}, about {rounded(hours)} h in all: on average that leaves "

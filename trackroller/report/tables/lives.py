@@ -95,7 +95,7 @@ def _by_tests(ds: xr.Dataset, body: str, inputs: Mapping[str, Any], fit: StoredF
         low, high = (end / scale for end in fit.cycles(stress, probability))
         upper = f"to {rounded(high, 2)} {unit}" if high < MOST else f"{unit} or more"
         words = f"{body}, 90 % by the {fit.rows} tests of {fit.name}, until {100 * probability:.0f} % have failed"
-        rows.append(Row(words, f"{rounded(low, 2)} {upper}{remark}"))
+        rows.append(Row(words, f"{rounded(low, 2)} {upper}{remark}" if low < MOST else lasting(math.inf)))
     return rows
 
 
