@@ -129,6 +129,26 @@ def mirrored(values):
     return out
 
 
+def test_cant_balances_a_curve():
+    """Where tan(cant) = v^2/(g R), nothing presses sideways, and the rollers carry m sqrt(g^2 + (v^2/R)^2)."""
+    speed, radius = 3.0, 2.0  # m/s, m
+    sideways = speed**2 / radius
+    curve = {"name": "curve", "speed": speed, "curve_radius": f"{radius} m", "cant": f"{100 * sideways / G} %"}
+    ds = solved(cart(cases=[curve], mass={"value": 40, "at": [0, 0, 0]}))
+    assert np.allclose(ds.radial_force, -10 * math.hypot(G, sideways), rtol=1e-12)
+    assert np.allclose(ds.axial_force, 0, atol=1e-9)
+
+
+def test_a_tilted_mass_has_its_horizontal_radius():
+    """A mass 500 mm above the origin moves inward by 500 sin(cant)."""
+    curve = {"name": "curve", "speed": 1, "curve_radius": "2 m", "cant": "30 deg", "share": 1}
+    whole = load_carriage(cart(cases=[curve], mass={"value": 1, "at": [0, 0, 500]}))
+    force = loads_of(whole, whole.cases[0]).all[:3]
+    sideways = (2 - 0.25) / 2**2
+    across, up = G / 2 - sideways * math.cos(math.pi / 6), -G * math.cos(math.pi / 6) - sideways / 2
+    assert force == pytest.approx([0, across, up], abs=1e-12)
+
+
 def test_a_mirrored_vehicle_has_mirrored_loads():
     values = shuttle(payloads=[{"value": 60, "at": [80, 15, 150]}])
     here, there = solved(values), solved(mirrored(values))

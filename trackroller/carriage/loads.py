@@ -29,14 +29,16 @@ def force_on(mass: PointMass, case: LoadCase) -> np.ndarray:
     mass : PointMass
         The mass.
     case : LoadCase
-        Its motion. A curve accelerates each mass by omega^2 times its own radius, omega = v/R at the origin.
+        Its motion. A curve is level: it accelerates each mass horizontally by omega^2 times its own horizontal
+        radius, omega = v/R at the origin. On a canted track this acceleration has a part along z.
     """
     up, tilt = case.gradient, case.cant
     weight = GRAVITY * np.array([-np.sin(up), np.sin(tilt) * np.cos(up), -np.cos(tilt) * np.cos(up)])
+    left = np.array([0.0, np.cos(tilt), np.sin(tilt)])  # horizontal, across the track
     inward = 0.0
     if np.isfinite(case.curve_radius) and case.speed is not None:
-        inward = case.speed**2 * (case.curve_radius - mass.at[1]) / case.curve_radius**2 * 1e3  # m/s2, radii in mm
-    return mass.value * (weight - np.array([case.acceleration, inward, 0.0]))
+        inward = case.speed**2 * (case.curve_radius - mass.at @ left) / case.curve_radius**2 * 1e3  # m/s2, radii in mm
+    return mass.value * (weight - np.array([case.acceleration, 0.0, 0.0]) - inward * left)
 
 
 @dataclass(frozen=True)

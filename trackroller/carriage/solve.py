@@ -42,7 +42,8 @@ LIFE = "pair_life_to_first_limit_hours"
 CONVENTIONS = (
     "radial_force < 0 presses the roller on its rail; axial_force acts on the roller along its own x_R",
     "a rigid carriage and small displacements; the drive holds the carriage along the track, where it acts",
-    "lateral acceleration (v/R)^2 times each mass's own radius; v and R belong to the origin",
+    "forces of a roller act at its point `at`, the middle of the rail section, where the normals of its contacts meet",
+    "horizontal acceleration (v/R)^2 times each mass's own radius; v and R belong to the origin",
     "preload is the force between the pair with no other load",
     "a lifted roller carries no load; a locating roller carries axial load both ways while it carries radial load",
     "contacts without friction give the stiffness: Hertz's approach at the load of each roller",
