@@ -791,7 +791,11 @@ def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
     turns += [Turn("tests", name, candidate=one.number) for name in one.tested]
     if one.ends == "wear" or not turns:
         turns.append(_of_wear(cases, one, least, until))
-    return tuple(turns)
+        alone = np.isfinite([turns[-1].value, turns[-1].until]).any() or np.isfinite(found.required)
+        if other is not None and other.ends == "wear" and not alone:  # one coefficient does not decide
+            turns.append(_of_wear(cases, other, np.nan, np.nan))
+    first = {(turn.what, turn.of, turn.on): turn for turn in reversed(turns)}
+    return tuple(turn for turn in turns if first[turn.what, turn.of, turn.on] is turn)
 
 
 def _bodies(cases: Cases, one: Candidate) -> tuple[str, str]:

@@ -21,7 +21,7 @@ from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import friction_error
 from trackroller.report.words.cases import reason_table, regime_table, validity_table
 from trackroller.report.words.comparison import report_section
-from trackroller.report.words.designs import best_table, size_words
+from trackroller.report.words.designs import best_table, rows_table, size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import index_table, measure_table, part_tables
 from trackroller.report.words.limits import first_limit_table
@@ -83,7 +83,8 @@ def write_report(results: Results, figures_dir: Path, out_html: Path) -> Path:
 
 def page_text(results: Results, content: dict[str, Any], figures_dir: Path) -> str:
     """Return the report as HTML from its `contents`, its figures and its explorer."""
-    shown = content | {"figures": figures(Path(figures_dir)), "explorer": explorer(results)}
+    without = () if content["said"]["why"] else ("why",)  # a figure without a finding says nothing
+    shown = content | {"figures": figures(Path(figures_dir), without), "explorer": explorer(results)}
     return secured(render("report.html.j2", shown, cell=cell))
 
 
@@ -130,7 +131,8 @@ def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     sens, error = results.analysis, friction_error(results)
     summary = in_short(results, models.get("short", []))
     said = {key: [s for head, listed in summary if head in heads for s in listed] for key, heads in HEADS.items()}
-    decide: list[Table | None] = [optima_table(results) or best_table(results), first_limit_table(results)]
+    decide: list[Table | None] = [optima_table(results) or best_table(results), rows_table(results)]
+    decide.append(first_limit_table(results))
     front = given_pareto(results)
     if front is not None:
         decide.append(pareto_table(front, results, error))
@@ -207,10 +209,10 @@ def _finite(ds: xr.Dataset, name: str) -> np.ndarray:
     return values[np.isfinite(values)]
 
 
-def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:
+def figures(folder: Path, without: tuple[str, ...] = ()) -> dict[str, list[dict[str, Any]]]:
     """Return the figures that `index.json` of a folder lists, as data URIs with their texts, by section of the page.
 
-    They are numbered in the order of the page.
+    They are numbered in the order of the page; the sections `without` have none.
     """
     listed: list[dict[str, Any]] = []
     if (folder / "index.json").is_file():
@@ -218,7 +220,7 @@ def figures(folder: Path) -> dict[str, list[dict[str, Any]]]:
     placed: dict[str, list[dict[str, Any]]] = {key: [] for key in PLACES}
     for section, starts in SECTIONS.items():
         found = [item for start in starts for item in listed if item["name"].startswith(start)]
-        for item in found if section == "models" else found[:1]:
+        for item in [] if section in without else found if section == "models" else found[:1]:
             drawn = folder / f"{item['name']}.svg"
             drawn = drawn if drawn.stat().st_size <= MAX_SVG else drawn.with_suffix(".png")
             placed[section].append(item | {"source": data_uri(drawn)})

@@ -17,6 +17,7 @@ from trackroller.roller.record import friction_records
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 SLIDING_WEAR = "Full sliding errs in friction energy, and so in wear, by 41 % in the median of 92 designs."
+LARGE_ERROR = 0.1  # of the life in the verdict, from which on it is stated
 KNOWN_ERROR = 0.05  # a larger median error of the model is stated beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy_per_distance", "friction_energy_balance")
 
@@ -76,6 +77,15 @@ def accuracy(results: Results) -> list[Sentence]:
     if cases := int((results.flagged("split_pole") & results.rolling).sum()):
         said.append(say("accuracy", "singular", count=cases))
     return said
+
+
+def life_error(results: Results) -> Sentence | None:
+    """State the error by the solution of the life that the verdict names first, where it exceeds `LARGE_ERROR`."""
+    found = results.verdict
+    ranked = found if found is None or found.rest is None else found.rest
+    if ranked is None or not ranked.best or not ranked.goal_rises or ranked.best[0].error <= LARGE_ERROR:
+        return None
+    return say("accuracy", "life", error=ranked.best[0].error, many=len(ranked.candidates) > 1)
 
 
 _ROLLING = REGIMES.index("rolling")

@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import LIMITS
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
     Life,
@@ -31,11 +31,13 @@ from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, Candidates, factor_roles
 from trackroller.results.first_limits import UNSURE
+from trackroller.results.intervals import Cases
 from trackroller.results.limit_notes import placeholders_of
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
 
+MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
 
 
@@ -100,6 +102,7 @@ def unanswered(candidates: Candidates) -> Sentence:
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     method = plain(candidates.results.config.design)
+    values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
 
@@ -141,6 +144,29 @@ def best_table(results: Results) -> Table | None:
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
+
+
+def rows_table(results: Results) -> Table | None:
+    """List the life of each row of a table of own cases, such as measured loads; None for a long table."""
+    goal = results.life
+    if not results.config.method.observed or goal is None or not 1 < len(results.table) <= MOST_ROWS:
+        return None
+    cases = Cases(Candidates.grouped(results, goal))
+    (low, high), (names, guide), fatigue = cases.ends, cases.low_end, cases.beyond | cases.beyond_at_high
+    rows = []
+    for i, case in results.table.iterrows():
+        at = int(str(i))
+        row: dict[str, Any] = {heading(name): factor_cell(name, case[name]) for name in results.factors}
+        ends = (float(low[at]), float(high[at]), BEYOND * bool(fatigue[at]))
+        row[capital(goal[1])] = plain_reason(cases.reason[at]) or ends_text(*ends, goal[2])
+        row["Ends it"] = "–" if cases.reason[at] else f"{ended_by(str(names[at]))}, {BODIES[int(guide[at])]}"
+        rows.append(row)
+    return Table.of("rows", "Life of each row of the table", rows)
+
+
+def plain_reason(reason: str) -> str:
+    """Write why a case is not met or not judged; '' where it is met."""
+    return f"exceeds the limit of {ended_by(reason.removeprefix('limit '))}" if reason.startswith("limit ") else reason
 
 
 def compared(name: str, title: str, heads: list[str], rows: list[list[Any]], note: str) -> Table:
@@ -220,8 +246,15 @@ def span_words(one: Candidate, unit: str) -> str:
     beyond = f"beyond the tests of {listing(one.tested)}" if one.beyond_tests and one.tested else BEYOND * one.beyond
     if math.isinf(one.low) or one.high <= one.low * (1 + SAME):
         return lasting(one.low, unit, one.beyond)
-    text = f"{rounded(one.low)} to {quantity(one.high, unit)}"
-    text = text if math.isfinite(one.high) else f"at least {quantity(one.low, unit)}"
+    return ends_text(one.low, one.high, beyond, unit)
+
+
+def ends_text(low: float, high: float, beyond: str, unit: str) -> str:
+    """Write a life as its two ends, or as one number where they are the same; `beyond` says what it lies beyond."""
+    if math.isinf(low) or high <= low * (1 + SAME):
+        return lasting(low, unit, bool(beyond))
+    text = f"{rounded(low)} to {quantity(high, unit)}"
+    text = text if math.isfinite(high) else f"at least {quantity(low, unit)}"
     return text + f" ({beyond})" * bool(beyond)
 
 

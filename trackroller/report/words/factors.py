@@ -69,8 +69,11 @@ def _of_pairs(results: Results, finding: Finding, words: str) -> dict[str, Any]:
     """Return the words of the median change of cases that differ in one factor only."""
     values = finding.values
     changed = [long_name(name) for name in values["changed"]]
+    follow = "follows" if len(changed) == 1 else "follow"
+    if results.study.carriage is not None and changed:
+        changed, follow = ["loads of the rollers"], "follow"  # a row holds those of one roller in one load case
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
-    pairs += f" than the {listing(changed)} that follow{'s' * (len(changed) == 1)} from it" if changed else ""
+    pairs += f" than the {listing(changed)} that {follow} from it" if changed else ""
     medians = _within(values["apart"], words)
     return {"span": _span(results, values["effect"]), "pairs": pairs, "medians": medians}
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
+from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors, life_error
 from trackroller.report.words.cases import silent_drive, valid_cases
 from trackroller.report.words.designs import within_words
 from trackroller.report.words.findings import sentence_of
@@ -18,6 +18,9 @@ from trackroller.results.ranking import main_lives, robust_design
 from trackroller.results.results import Results
 
 Line = tuple[str, list[Sentence]]
+
+
+SETTLED = ("lasts", "none")  # verdicts on a target that the interval of the sample bears out
 
 
 def in_short(results: Results, models: list[str]) -> list[Line]:
@@ -49,7 +52,7 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
             "How sure",
             [
                 *(friction_guess(results), guesses(results), worn(results)),
-                *(*known_errors(results), *accuracy(results)),
+                *(*known_errors(results), *accuracy(results), life_error(results)),
                 *(Sentence("models", text) for text in models),
             ],
         ),
@@ -71,7 +74,10 @@ def _enough(results: Results) -> Sentence | None:
     told = [one.values["output"] for one in results.findings["why"] if one.kind == "index"]
     lives = main_lives(sens) if robust_design(sens) else []
     about = next(iter([*told, *lives]), None)
-    return None if about is None else samples(sens, results.config.samples, about)
+    found = results.verdict
+    kinds = ("build", *SETTLED) if found is not None and found.target else ("build",)
+    settled = found is not None and found.sampled and found.kind in kinds
+    return None if about is None else samples(sens, results.config.samples, about, settled)
 
 
 def _target(results: Results) -> Sentence | None:

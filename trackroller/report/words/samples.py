@@ -25,7 +25,7 @@ HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval
 FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
-def samples(sens: xr.Dataset, asked: int, about: str = "") -> Sentence | None:
+def samples(sens: xr.Dataset, asked: int, about: str = "", settled: bool = False) -> Sentence | None:
     """Say whether the samples suffice, and if not, which number to write into the study file.
 
     Parameters
@@ -33,6 +33,7 @@ def samples(sens: xr.Dataset, asked: int, about: str = "") -> Sentence | None:
     sens : analysis
     asked : `samples` of the study file, for an analysis that does not state its number of samples
     about : output that counts beside the targets; all of them if not given
+    settled : whether the samples suffice for the verdict of the study, so that more of them only narrow intervals
 
     Returns
     -------
@@ -45,7 +46,7 @@ def samples(sens: xr.Dataset, asked: int, about: str = "") -> Sentence | None:
     """
     method, asked = METHODS[str(sens.attrs["method"])], int(sens.attrs.get("samples", asked))
     if method.points:
-        return _of_points(sens, asked, about)
+        return _of_points(sens, asked, about, settled)
     if not method.judged or "take_times" not in sens:
         return None
     needed = {str(o): float(sens["take_times"].sel(output=o)) for o in sens["output"].values if str(o) not in REGIMES}
@@ -56,13 +57,13 @@ def samples(sens: xr.Dataset, asked: int, about: str = "") -> Sentence | None:
     half, times = float(sens["half_width"].sel(output=worst)), needed[worst]
     number = int(times * asked)
     values = {"point": False, "too_few": False, "output": worst, "what": f"the indices of {of_output(sens, worst)}"}
-    values |= {"table": method.observed}
+    values |= {"table": method.observed, "settled": settled}
     values |= {"share": "the largest effect" if method.effects else "the variance", "half": half}
     values |= {"take_times": times, "number": number, "predicted": half / math.sqrt(times)}
     return say("samples", "enough" if times <= 1 else "more", **values)
 
 
-def _of_points(sens: xr.Dataset, asked: int, about: str) -> Sentence | None:
+def _of_points(sens: xr.Dataset, asked: int, about: str, settled: bool) -> Sentence | None:
     """Judge B10 of each life at its best design point, and the probability of each target at all design points."""
     widths = []
     for output in (str(n) for n in sens["output"].values if is_life(str(n)) and about in ("", str(n))):
@@ -80,6 +81,7 @@ def _of_points(sens: xr.Dataset, asked: int, about: str) -> Sentence | None:
         return None
     half, wanted, what = max(widths, key=lambda item: item[0] / item[1])
     values = {"point": True, "table": False, "what": what, "half": half, "wanted": wanted, "asked": asked}
+    values["settled"] = settled
     lives = any(limit == HALF_B10 for _, limit, _ in widths)
     if half <= wanted and (asked >= FEWEST or not lives):
         return say("samples", "enough", **values)

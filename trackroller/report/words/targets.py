@@ -67,7 +67,8 @@ def target(table: xr.Dataset, number: int) -> Sentence:
     share, low, high = np.atleast_2d(estimate(part, "target_probability").T).T
     order = [int(np.argmax(share)), int(np.argmin(share))]
     robust = "point" in part["target_probability"].dims
-    most = most_apart(part)
+    method = method_of(table)
+    most = None if method is not None and method.observed else most_apart(part)  # columns of a table go together
     return say(
         "targets",
         "target",
