@@ -169,6 +169,7 @@ def _statistics(
         if good.size < 2:
             continue
         out["percentile_value"][p] = quantile(good, np.array(PERCENTILES) / 100)
+        out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)  # as in the table of candidates
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:
