@@ -122,3 +122,10 @@ def test_a_chance_has_no_figures_that_no_sample_shows():
         and chance(0.0) == "0 %"
         and chance(0.9994) == "99.94 %"
     )
+
+
+def test_the_known_error_of_wear_by_sliding_is_told_where_wear_is_a_limit(solved):
+    """The limits hold the life by wear, whether the group wear is an output or not."""
+    assert "run_in_distance" not in solved.data
+    said = {head: " ".join(one.text for one in sentences) for head, sentences in in_short(solved, [])}
+    assert "and so in wear, by 41 %" in said["How sure"]

@@ -293,3 +293,23 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
 def test_a_wrong_search_is_refused(keys, says):
     with pytest.raises(InputError, match=says.replace("(", r"\(")):
         changed(**keys).design()
+
+
+def test_no_thirds_of_a_search_are_compared():
+    """A search draws where designs are good, so that the thirds of its rows say nothing of a factor alone."""
+    study = {
+        "name": "thirds",
+        "base": {"motor_force": 0, "axial_force": 5, "contact_angle": 40},
+        "factors": {
+            "axis_distance": {"uniform": [16, 28]},
+            "profile_ratio": {"uniform": [1.05, 1.3]},
+            "roller_profile_radius": {"expression": "-profile_ratio * guide_profile_radius"},
+            "radial_force": {"values": [-80, -160]},
+        },
+        "design": "optimise",
+        "goals": {"pair_life_to_first_limit_hours": "max", "axis_distance": "min"},
+        "budget": {"designs": 48},
+        "contact_model": "sliding",
+    }
+    found = tr.run(study, progress=False).findings["why"]
+    assert {one.kind for one in found} and not any(one.kind.startswith("classes") for one in found)

@@ -5,6 +5,7 @@ import pytest
 from scipy import stats
 from synthetic_results import results_of
 
+import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.methods.b10 import b10, log_b10
 from trackroller.results.robustness import robustness
@@ -139,3 +140,54 @@ def test_the_interval_of_a_b10_of_0_is_known_or_unbounded(scatter):
     assert log_b10(np.where(np.arange(400) % 5 == 0, 0.0, lives), deviations, member, 4) == (-np.inf, 0.0)
     value, wide = log_b10(np.where(np.arange(400) % 12 == 0, 0.0, lives), deviations, member, 4)
     assert np.isfinite(value) and wide == np.inf
+
+
+def test_the_median_of_a_design_point_is_that_of_its_candidate():
+    """Of an even number of samples both take the middle between the two lives in the middle."""
+    study = {
+        "name": "middle",
+        "base": {"motor_force": 0, "axial_force": 5, "contact_angle": 40},
+        "factors": {
+            "roller_profile_radius": {"values": [-6.5, -7]},
+            "radial_force": {"uniform": [-200, -60]},
+        },
+        "design": "inner_outer",
+        "samples": 20,
+        "contact_model": "sliding",
+    }
+    results = tr.run(study, progress=False)
+    name = results.life[0]
+    medians = results.robustness()["percentile_value"].sel(output=name, percentile=50).values
+    by_hand = [np.median(results.column(name)[rows]) for rows in results.design.points]
+    np.testing.assert_allclose(medians, by_hand, rtol=1e-12)
+    np.testing.assert_allclose(sorted(results.candidates().table["median"]), sorted(medians), rtol=1e-12)
+
+
+def test_the_scatter_of_a_material_is_not_that_of_a_life_by_wear():
+    """T_N widens the lives that fatigue ends; the bearing and wear have no S-N line."""
+    study = {
+        "name": "worn",
+        "base": {"motor_force": 0, "axial_force": 5, "contact_angle": 40, "guide_overrollings_per_hour": 60},
+        "factors": {
+            "roller_profile_radius": {"values": [-6.3, -8]},
+            "radial_force": {"uniform": [-200, -100]},
+        },
+        "design": "inner_outer",
+        "samples": 20,
+        "contact_model": "sliding",
+        "analysis": {"material_scatter": 5, "target": {"min": 100}},
+    }
+    study["base"]["permissible_wear_depth"] = 0.01
+    results = tr.run(study, progress=False)
+    name, ends = results.life[0], results.ended_by_fatigue()
+    found = results.robustness()
+    assert not ends.all()
+    for place, rows in enumerate(results.design.points):
+        lives = results.column(name)[rows]
+        scatter = np.where(ends[rows], np.log10(5) / (2 * stats.norm.ppf(0.9)), 0.0)
+        np.testing.assert_allclose(found["b10"].sel(output=name).values[place], b10(lives, scatter)[0], rtol=1e-9)
+        if not ends[rows].any():
+            assert (
+                found["target_probability"].values[0, place]
+                == (results.judged_targets["pair_life_hours"][rows] >= 100).mean()
+            )

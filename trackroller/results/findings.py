@@ -347,6 +347,8 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
     effect = effects.paired_effect(results, column, factor, rows)
     if effect is not None:
         return _of_pairs(results, column, effect, rows)
+    if results.config.method.proposes:  # a search prefers good designs: its thirds are no samples
+        return None
     effect = effects.class_effect(results, column, factor, rows)
     if effect is None or not effects.comparable(results, effect, column, rows) or not cut_evenly(results, factor):
         return None

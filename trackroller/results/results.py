@@ -496,6 +496,11 @@ class Results:
         judged = np.where(np.isnan(low), value, low)
         return {n: judged for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}}
 
+    def ended_by_fatigue(self, body: str = "roller") -> np.ndarray:
+        """Return the cases in which fatigue is the first limit of a body, shape (n,), so that its material scatters."""
+        name = f"limiting_mechanism_{body}"
+        return np.asarray(self.column(name) == self.limits.index("fatigue") if name in self.table else True)
+
     @cached_property
     def ranged(self) -> bool:
         """Return whether a life to the first limit of a valid case is a range, by placeholders or bounds of wear."""

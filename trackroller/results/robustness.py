@@ -24,10 +24,10 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS, REGIMES
 from trackroller.results.labels import output_labels
 from trackroller.results.results import Results
 from trackroller.results.targets import at_points, scattering_body
-from trackroller.roller.output_names import is_life
+from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.goals import statistic
-from trackroller.study.outputs import Output, default_names, flat, outputs, regimes
+from trackroller.study.outputs import Output, default_names, flat, of_first_limit, outputs, regimes
 
 PERCENTILES = (1.0, 5.0, 10.0, 50.0, 90.0, 95.0, 99.0)
 
@@ -73,6 +73,8 @@ def robustness(
     by_output = []
     for column in columns:
         scatter = log_life_scatter.get(scattering_body(column.name), np.zeros(design.size))
+        if of_first_limit(column.name):  # a life that wear or the bearing ends has no scatter of an S-N line
+            scatter = np.where(results.ended_by_fatigue(body_of(column.name) or "roller"), scatter, 0.0)
         values = results.with_breaks(column)
         by_output.append(_statistics(values, regime, is_life(column.name), scatter, design.points))
         beyond = np.where(results.beyond_data(column.name), column.values, np.nan)
@@ -169,6 +171,7 @@ def _statistics(
         if good.size < 2:
             continue
         out["percentile_value"][p] = quantile(good, np.array(PERCENTILES) / 100)
+        out["percentile_value"][p, PERCENTILES.index(50.0)] = np.median(good)  # as in the table of candidates
         if np.isfinite(good).all():
             out["mean"][p], out["standard_deviation"][p] = good.mean(), good.std(ddof=1)
         if life:

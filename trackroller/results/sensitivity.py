@@ -76,7 +76,8 @@ def analyse(results: Results) -> xr.Dataset:
         raise InputError("design", design.method.name, allowed, "Take design saltelli, sobol or lhs for indices.")
     own = material_deviations(results)
     judged = results.judged_targets
-    aims = targets(ds, design, given.target, own, results.valid, judged) if given.target else xr.Dataset()
+    scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
+    aims = targets(ds, design, given.target, own | scatter, results.valid, judged) if given.target else xr.Dataset()
     if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:

@@ -60,7 +60,8 @@ def targets(
     ds : gathered study
     design : its design
     wanted : output -> `min`, `max` or both, in the unit of the output
-    deviations : body -> standard deviation of log10 life of its material [1], shape (n,), see `material_deviations`
+    deviations : body, or target -> standard deviation of log10 life of its material [1], shape (n,), see
+        `material_deviations`
     allowed : cases that count, such as the valid ones, shape (n,)
     judged : life to the first limit by the targets that it judges, see `Results.judged_targets`, shape (n,) each
 
@@ -78,7 +79,10 @@ def targets(
     """
     columns = outputs(ds, design.factors, list(wanted), scale="natural", unlimited=True, allowed=allowed)
     columns = [_judged(c, judged[c.name], allowed) if c.name in judged else c for c in columns]
-    hits = np.stack([hits_of(c, wanted[c.name], deviations.get(scattering_body(c.name))) for c in columns], axis=1)
+    hits = np.stack(
+        [hits_of(c, wanted[c.name], deviations.get(c.name, deviations.get(scattering_body(c.name)))) for c in columns],
+        axis=1,
+    )
     names = [c.name for c in columns]
     if len(names) > 1:
         hits, names = np.column_stack([hits, _all(hits, names)]), [*names, "all"]

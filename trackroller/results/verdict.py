@@ -19,7 +19,7 @@ import pandas as pd
 from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
-from trackroller.results.candidates import STRESS, TIED, Candidates
+from trackroller.results.candidates import STRESS, TIED, Candidates, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
 from trackroller.results.limit_notes import Placeholder, placeholders_of
@@ -735,12 +735,14 @@ def _given(cases: Cases, reach: np.ndarray) -> tuple[Turn, ...]:
     """Return the inputs that were not given and that bring conditions out of reach of every candidate.
 
     With a target each such condition counts, because no candidate can meet it. Without one the verdict turns on the
-    input if it takes at least half of the conditions.
+    input if it takes at least half of the conditions. A case whose drive exceeds what friction transmits skids under
+    any axial force, so that this force is no remedy there.
     """
     results = cases.results
     turns = []
+    skids = slip_margin(results) < 0
     for cause, name in CAUSES.items():
-        by_it = cases.own & (cases.reason == cause)
+        by_it = cases.own & (cases.reason == cause) & ~(skids & (name != "motor_force"))
         hopeless = by_it & reach
         wanted = bool(results.config.analysis.target) and hopeless.any()
         share = hopeless.sum() if cases.candidates.matched and cases.conditions else by_it.sum()

@@ -11,6 +11,7 @@ from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import capital, level_text, number, percent
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
@@ -58,7 +59,9 @@ def full_sliding(results: Results) -> Sentence | None:
 
 def wear_of_sliding(results: Results) -> Sentence | None:
     """State the known error of the wear that full sliding computes; None for other models and without wear."""
-    worn = (_slid(results) & np.isfinite(results.column("run_in_distance"))).any()
+    found = results.verdict
+    checked = found is not None and found.goal == FIRST_LIMIT and "wear" not in found.not_checked
+    worn = (_slid(results) & (checked | np.isfinite(results.column("run_in_distance")))).any()
     return say("accuracy", "wear_of_sliding", known=SLIDING_WEAR) if worn else None
 
 
