@@ -14,6 +14,7 @@ from trackroller.carriage.file import load_carriage
 from trackroller.carriage.loads import GRAVITY, loads_of
 from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
 from trackroller.carriage.statics import equilibrium
+from trackroller.errors import InputError
 from trackroller.report.pages.carriage import margin_table
 from trackroller.report.words.carriage import sentences
 
@@ -147,6 +148,30 @@ def test_a_tilted_mass_has_its_horizontal_radius():
     sideways = (2 - 0.25) / 2**2
     across, up = G / 2 - sideways * math.cos(math.pi / 6), -G * math.cos(math.pi / 6) - sideways / 2
     assert force == pytest.approx([0, across, up], abs=1e-12)
+
+
+def test_a_missing_stiffness_may_decide_which_roller_lifts():
+    """Three loaded rollers are determinate, but a soft roller in a corner makes the opposite one lift."""
+    rollers = rollers_below()
+    for name in ("FR", "RR"):
+        rollers[name]["kind"] = "floating"
+    del rollers["FL"]["roller"]
+    with pytest.raises(InputError, match=r"rollers\.FL\.roller is missing"):
+        solved(cart(rollers=rollers, mass={"value": 40, "at": [10, 5, 60]}))
+
+
+def test_a_counter_roller_that_lifts_needs_no_stiffness():
+    down, up = {"pushes": [0, 0, -1], "x_R": [0, 1, 0]}, {"pushes": [0, 0, 1], "x_R": [0, 1, 0], "kind": "floating"}
+    places = {"A": [200, 50, 0], "B": [200, -50, 0], "C": [-100, 0, 0]}
+    rollers = {n: {"at": at, **down, "kind": "floating" if n == "B" else "locating"} for n, at in places.items()}
+    ds = solved(cart(mass={"value": 60, "at": [50, 10, 70]}, rollers=rollers | {"D": {"at": [50, 10, -40], **up}}))
+    assert float(ds.radial_force.sel(roller="D")[0]) == 0
+    assert -float(ds.radial_force.sel(roller="C")[0]) == pytest.approx(30 * G, rel=1e-12)
+
+
+def test_an_axial_force_of_rounding_is_none():
+    ds = solved(cart(mass={"value": 40, "at": [30, 10, 60]}))
+    assert np.all(ds.axial_force == 0)
 
 
 def test_a_mirrored_vehicle_has_mirrored_loads():
@@ -302,6 +327,23 @@ def test_play_leaves_a_roller_without_load():
     ds = solved(values)
     assert np.all(ds.radial_force.sel(roller=["FL", "FR", "RL", "RR"]) == 0)
     assert float(ds.approach.sel(load_case="run", roller="FL")) == pytest.approx(-0.25, abs=1e-3)
+
+
+def test_a_roller_without_load_is_told_with_its_cause():
+    """Only a roller of a pair with play is told that its play is larger than the deflection."""
+    values = shuttle(
+        rollers=rollers_between(stiffness=1e4) | {"D" + n: r for n, r in rollers_below(stiffness=1e4).items()}
+    )
+    values["preload"] = [{"pair": ["FL", "FR"], "play": 0.5}]
+    texts = [str(one) for one in sentences(solve_carriage(values, lives=False))]
+    (of_pair,) = [text for text in texts if text.startswith("Roller FL carries no load")]
+    assert "its play is larger than the deflection" in of_pair
+    rollers = {"FL": [200, 50, 0], "FR": [200, -50, 0], "RL": [-200, 50, 0], "up": [0, 0, -40]}
+    made = {n: {"at": at, "pushes": [0, 0, -1], "x_R": [0, 1, 0], "stiffness": 1e4} for n, at in rollers.items()}
+    made["up"]["pushes"] = [0, 0, 1]
+    values = cart(rollers=made, mass={"value": 40, "at": [60, 10, 60]})
+    texts = [str(one) for one in sentences(solve_carriage(values, lives=False))]
+    assert any(text.startswith("Roller up carries no load in any case: the others") for text in texts)
 
 
 def test_a_maker_s_example_of_the_load_factor():

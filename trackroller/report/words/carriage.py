@@ -77,7 +77,8 @@ def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
         lifted = (ds["radial_force"].sel(roller=roller) == 0).values
         gap = -float(ds["approach"].sel(roller=roller).max())
         if lifted.all():
-            yield say("carriage", "carriage_unloaded", roller=str(roller), gap=max(gap, 0.0))
+            play = str(roller) in ds.attrs.get("with_play", "").split(", ")
+            yield say("carriage", "carriage_unloaded", roller=str(roller), gap=max(gap, 0.0), play=play)
         elif lifted.any():
             share, names = float(ds["share"].values[lifted].sum()), ds["load_case"].values[lifted].tolist()
             yield say("carriage", "carriage_lifted", roller=str(roller), cases=names, share=share)
