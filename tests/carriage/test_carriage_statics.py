@@ -335,14 +335,14 @@ def test_a_roller_without_load_is_told_with_its_cause():
         rollers=rollers_between(stiffness=1e4) | {"D" + n: r for n, r in rollers_below(stiffness=1e4).items()}
     )
     values["preload"] = [{"pair": ["FL", "FR"], "play": 0.5}]
-    texts = [str(one) for one in sentences(solve_carriage(values, lives=False))]
+    texts = [one.text for one in sentences(solve_carriage(values, lives=False))]
     (of_pair,) = [text for text in texts if text.startswith("Roller FL carries no load")]
     assert "its play is larger than the deflection" in of_pair
     rollers = {"FL": [200, 50, 0], "FR": [200, -50, 0], "RL": [-200, 50, 0], "up": [0, 0, -40]}
     made = {n: {"at": at, "pushes": [0, 0, -1], "x_R": [0, 1, 0], "stiffness": 1e4} for n, at in rollers.items()}
     made["up"]["pushes"] = [0, 0, 1]
     values = cart(rollers=made, mass={"value": 40, "at": [60, 10, 60]})
-    texts = [str(one) for one in sentences(solve_carriage(values, lives=False))]
+    texts = [one.text for one in sentences(solve_carriage(values, lives=False))]
     assert any(text.startswith("Roller up carries no load in any case: the others") for text in texts)
 
 
