@@ -305,6 +305,17 @@ def test_margins_of_a_cart():
     assert float(ds.loads_to_lift_off[0]) == math.inf
 
 
+def test_margin_to_one_contact():
+    """A front roller has the axial force F/4 + F/2 (x/wheelbase); its preload bears up to F_rad tan(alpha)."""
+    ds = solve_carriage(shuttle(cases=[{"name": "run"}]), lives=False)
+    bears = 1000 * math.tan(math.radians(30))
+    assert float(ds.loads_to_one_contact[0]) == pytest.approx(bears / (100 * G * (0.25 + 24 / 300)), rel=1e-6)
+    payload = G * (0.25 + 40 / 300)  # N per kg of payload, 80 mm in front
+    assert float(ds.payload_to_one_contact[0]) == pytest.approx((bears - 10 * G) / (60 * payload), rel=1e-6)
+    texts = " ".join(one.text for one in sentences(ds))
+    assert "leaves a roller on one contact in the load case run" in texts
+
+
 def test_preload_lifts_off_at_its_own_multiplier():
     """Linear pairs share a lateral force by half until one roller of each pair lifts, at twice the preload."""
     push = {"name": "push", "forces": [{"force": [0, 500, 0], "at": [0, 0, 0]}]}

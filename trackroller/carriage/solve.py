@@ -23,6 +23,7 @@ from trackroller.carriage.statics import (
     free_motion,
     is_determinate,
     multipliers,
+    to_one_contact,
 )
 from trackroller.contact.hertz import contact_modulus, unit_approach
 from trackroller.damage import verdict
@@ -50,6 +51,11 @@ CONVENTIONS = (
     "shares are shares of the travel; damage adds up linearly over the load cases, limit by limit (Palmgren-Miner)",
 )
 ROUNDING = 1e-14  # of the largest radial force: an axial force below it is 0
+ENDS = {
+    "one_contact": "to the first roller on one contact, without friction",
+    "lift_off": "to the first lift-off",
+    "tipping": "to tipping",
+}
 TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
 _RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
 
@@ -97,7 +103,7 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     """
     whole = source if isinstance(source, Carriage) else load_carriage(source)
     springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
-    ds = _solution(whole, springs, loads).assign(_margins(springs, loads))
+    ds = _solution(whole, springs, loads).assign(_margins(whole, springs, loads))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
         return ds.assign_attrs(without_case=", ".join(without))
@@ -295,17 +301,20 @@ def _places(whole: Carriage) -> dict[str, Any]:
     }
 
 
-def _margins(springs: Springs, loads: list[Loads]) -> dict[str, Any]:
-    """Return the multipliers of payload and of all loads at which a roller lifts and the carriage tips."""
+def _margins(whole: Carriage, springs: Springs, loads: list[Loads]) -> dict[str, Any]:
+    """Return the multipliers of payload and of all loads to one contact, to lift-off and to tipping."""
+    angles = [np.nan if roller.case is None else roller.case.contact_angle for roller in whole.rollers]
+    tangent = np.tan(np.radians(np.array(angles, dtype=float)))
     out: dict[str, list[float]] = {}
     for one in loads:
         payload, other = (_reduced(part, springs.length) for part in (one.payload, one.other))
         for name, fixed, varying in (("payload", other, payload), ("loads", np.zeros(5), payload + other)):
-            for end, value in zip(("lift_off", "tipping"), multipliers(springs, fixed, varying), strict=True):
+            lift_off, tipping = multipliers(springs, fixed, varying)
+            one_contact = to_one_contact(springs, fixed, varying, tangent, lift_off)
+            for end, value in zip(ENDS, (one_contact, lift_off, tipping), strict=True):
                 out.setdefault(f"{name}_to_{end}", []).append(value)
     words = {"payload": "multiplier of the payload", "loads": "multiplier of all loads"}
-    ends = {"lift_off": "to the first lift-off", "tipping": "to tipping"}
-    names = {f"{name}_to_{end}": f"{words[name]} {ends[end]}" for name in words for end in ends}
+    names = {f"{name}_to_{end}": f"{words[name]} {ENDS[end]}" for name in words for end in ENDS}
     return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
 
 

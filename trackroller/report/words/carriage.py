@@ -101,6 +101,11 @@ def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
     for name, what in MARGINS:
         if f"{name}_to_lift_off" not in ds:  # the forces alone
             continue
+        contact = ds[f"{name}_to_one_contact"].values
+        if np.isfinite(contact).any() and not np.array_equal(contact, ds[f"{name}_to_lift_off"].values, equal_nan=True):
+            i = int(np.nanargmin(contact))
+            case = str(ds["load_case"].values[i])
+            yield say("carriage", "carriage_contact", what=what, multiplier=float(contact[i]), case=case)
         first = ds[f"{name}_to_lift_off"].values
         if np.isfinite(first).any():
             i = int(np.nanargmin(first))
