@@ -110,7 +110,7 @@ FORMULAS = {
         "self.high[others] > self.high[i]",
         VERDICT,
     ),
-    "carriage-curve": ("carriage/loads.py", "inward, 0.0])", "-inward, 0.0])", CARRIAGE),
+    "carriage-curve": ("carriage/loads.py", "- inward * left", "+ inward * left", CARRIAGE),
     "carriage-moment": ("carriage/loads.py", "np.cross(at, force)", "np.cross(force, at)", CARRIAGE),
     "carriage-life Miner": (
         "carriage/lives.py",

@@ -214,11 +214,10 @@ def test_doubts_about_rollers_are_told(folder):
     values["rollers"]["FL"]["roller"] = ROLLER | {"roller_profile_radius": 0.1, "radial_force": -1e7}
     (folder / "odd.yaml").write_text(write_yaml(values))
     done = run("odd.yaml", "--spectrum", "FR", "-o", "s.yaml")
-    (told,) = [line for line in done.stderr.splitlines() if "doubtful" in line]
-    assert told.startswith(
-        "trackroller: doubtful: Roller FL: roller_profile_radius = 0.1 mm is 3 times below the usual"
-    )
-    assert doubts_of(tr.carriage(values, lives=False)) == [told.partition("doubtful: ")[2]]
+    told = [line.partition("doubtful: ")[2] for line in done.stderr.splitlines() if "doubtful" in line]
+    assert told[0].startswith("Roller FL: radial_force = -10000000.0 in its file does not count")
+    assert told[1].startswith("Roller FL: roller_profile_radius = 0.1 mm is 3 times below the usual")
+    assert doubts_of(tr.carriage(values, lives=False)) == told
 
 
 def test_doubts_that_rollers_share_are_told_once():

@@ -14,6 +14,7 @@ from trackroller.carriage.file import load_carriage
 from trackroller.carriage.loads import GRAVITY, loads_of
 from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
 from trackroller.carriage.statics import equilibrium
+from trackroller.errors import InputError
 from trackroller.report.pages.carriage import margin_table
 from trackroller.report.words.carriage import sentences
 
@@ -149,6 +150,30 @@ def test_a_tilted_mass_has_its_horizontal_radius():
     assert force == pytest.approx([0, across, up], abs=1e-12)
 
 
+def test_a_missing_stiffness_may_decide_which_roller_lifts():
+    """Three loaded rollers are determinate, but a soft roller in a corner makes the opposite one lift."""
+    rollers = rollers_below()
+    for name in ("FR", "RR"):
+        rollers[name]["kind"] = "floating"
+    del rollers["FL"]["roller"]
+    with pytest.raises(InputError, match=r"rollers\.FL\.roller is missing"):
+        solved(cart(rollers=rollers, mass={"value": 40, "at": [10, 5, 60]}))
+
+
+def test_a_counter_roller_that_lifts_needs_no_stiffness():
+    down, up = {"pushes": [0, 0, -1], "x_R": [0, 1, 0]}, {"pushes": [0, 0, 1], "x_R": [0, 1, 0], "kind": "floating"}
+    places = {"A": [200, 50, 0], "B": [200, -50, 0], "C": [-100, 0, 0]}
+    rollers = {n: {"at": at, **down, "kind": "floating" if n == "B" else "locating"} for n, at in places.items()}
+    ds = solved(cart(mass={"value": 60, "at": [50, 10, 70]}, rollers=rollers | {"D": {"at": [50, 10, -40], **up}}))
+    assert float(ds.radial_force.sel(roller="D")[0]) == 0
+    assert -float(ds.radial_force.sel(roller="C")[0]) == pytest.approx(30 * G, rel=1e-12)
+
+
+def test_an_axial_force_of_rounding_is_none():
+    ds = solved(cart(mass={"value": 40, "at": [30, 10, 60]}))
+    assert np.all(ds.axial_force == 0)
+
+
 def test_a_mirrored_vehicle_has_mirrored_loads():
     values = shuttle(payloads=[{"value": 60, "at": [80, 15, 150]}])
     here, there = solved(values), solved(mirrored(values))
@@ -280,6 +305,17 @@ def test_margins_of_a_cart():
     assert float(ds.loads_to_lift_off[0]) == math.inf
 
 
+def test_margin_to_one_contact():
+    """A front roller has the axial force F/4 + F/2 (x/wheelbase); its preload bears up to F_rad tan(alpha)."""
+    ds = solve_carriage(shuttle(cases=[{"name": "run"}]), lives=False)
+    bears = 1000 * math.tan(math.radians(30))
+    assert float(ds.loads_to_one_contact[0]) == pytest.approx(bears / (100 * G * (0.25 + 24 / 300)), rel=1e-6)
+    payload = G * (0.25 + 40 / 300)  # N per kg of payload, 80 mm in front
+    assert float(ds.payload_to_one_contact[0]) == pytest.approx((bears - 10 * G) / (60 * payload), rel=1e-6)
+    texts = " ".join(one.text for one in sentences(ds))
+    assert "leaves a roller on one contact in the load case run" in texts
+
+
 def test_preload_lifts_off_at_its_own_multiplier():
     """Linear pairs share a lateral force by half until one roller of each pair lifts, at twice the preload."""
     push = {"name": "push", "forces": [{"force": [0, 500, 0], "at": [0, 0, 0]}]}
@@ -302,6 +338,23 @@ def test_play_leaves_a_roller_without_load():
     ds = solved(values)
     assert np.all(ds.radial_force.sel(roller=["FL", "FR", "RL", "RR"]) == 0)
     assert float(ds.approach.sel(load_case="run", roller="FL")) == pytest.approx(-0.25, abs=1e-3)
+
+
+def test_a_roller_without_load_is_told_with_its_cause():
+    """Only a roller of a pair with play is told that its play is larger than the deflection."""
+    values = shuttle(
+        rollers=rollers_between(stiffness=1e4) | {"D" + n: r for n, r in rollers_below(stiffness=1e4).items()}
+    )
+    values["preload"] = [{"pair": ["FL", "FR"], "play": 0.5}]
+    texts = [one.text for one in sentences(solve_carriage(values, lives=False))]
+    (of_pair,) = [text for text in texts if text.startswith("Roller FL carries no load")]
+    assert "its play is larger than the deflection" in of_pair
+    rollers = {"FL": [200, 50, 0], "FR": [200, -50, 0], "RL": [-200, 50, 0], "up": [0, 0, -40]}
+    made = {n: {"at": at, "pushes": [0, 0, -1], "x_R": [0, 1, 0], "stiffness": 1e4} for n, at in rollers.items()}
+    made["up"]["pushes"] = [0, 0, 1]
+    values = cart(rollers=made, mass={"value": 40, "at": [60, 10, 60]})
+    texts = [one.text for one in sentences(solve_carriage(values, lives=False))]
+    assert any(text.startswith("Roller up carries no load in any case: the others") for text in texts)
 
 
 def test_a_maker_s_example_of_the_load_factor():

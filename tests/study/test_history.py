@@ -135,8 +135,41 @@ def test_gaps_spikes_drift_sign_and_unit_are_told(tmp_path):
     assert "time in s, radial_force in N, axial_force in N and speed in m/s" in bare
     assert "if it is in kN" in told(tmp_path, r=np.full(60, -0.2))
     assert "no radial force presses" in told(tmp_path, r=np.where(t < 15, 0.0, -200.0))
+    assert "radial_force is above 0 in 75 % of the lines" in told(tmp_path, r=np.where(t < 15, -200.0, 200.0))
+    fast = np.ones(60) + 0.01 * noise
+    fast[10] = 100
+    assert "The speed has 1 spike of one line, and the travel holds them: the largest 6000 m/min" in told(
+        tmp_path, v=fast
+    )
+    assert "The speed is below 0 in 25 % of the lines" in told(tmp_path, v=np.where(t < 15, -1.0, 1.0))
     quiet = told(tmp_path, r=-200 + noise)
     assert not any(word in quiet for word in ("gap", "spike", "drift", "positive", "unit"))
+
+
+def test_lines_with_lift_off_have_levels_of_their_own(tmp_path):
+    """A mean of lines with and without a lifted contact stands for neither."""
+    axial = np.where(np.arange(60) == 7, 150.0, 110.0)  # 200 tan 30 deg = 115
+    path = log(tmp_path / "log.csv", a=axial)
+    values, notes = spectrum_of_log(path, ROLLER)
+    assert sorted({block["axial_force"] for block in values["blocks"]}) == [110, 150]
+    assert any("Over 1.69 % of the travel the axial force lifts one contact off" in note for note in notes)
+
+
+def test_decimal_commas(tmp_path):
+    path = tmp_path / "log.csv"
+    path.write_text("time [min];radial_force [kN];speed [m/s]\n0,0;-0,10;1,5\n0,5;-0,10;1,5\n1,0;-0,10;1,5\n")
+    values, _ = spectrum_of_log(path, ROLLER)
+    assert sum(block["distance"] for block in values["blocks"]) == pytest.approx(90)
+    assert values["blocks"][0]["radial_force"] == -100
+
+
+def test_a_stop_in_a_log_over_distance(tmp_path, recwarn):
+    """A line that neither moves nor has a speed takes no time."""
+    path = tmp_path / "log.csv"
+    path.write_text("distance,radial_force,speed\n0,-100,1\n10,-100,0\n10,-100,0\n10,-100,0\n20,-100,1\n")
+    values, _ = spectrum_of_log(path, ROLLER)
+    assert sum(block["distance"] for block in values["blocks"]) == pytest.approx(20)
+    assert not recwarn
 
 
 def test_a_gap_adds_no_travel(tmp_path):
@@ -148,8 +181,8 @@ def test_a_gap_adds_no_travel(tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("time,axial_force\n0,1\n1,1\n", "Add a column radial_force"),
-        ("radial_force\n-1\n-2\n", "Add a column time or distance"),
+        ("time,axial_force\n0,1\n1,1\n", "Name a column radial_force"),
+        ("radial_force\n-1\n-2\n", "Name a column time or distance"),
         ("time,radial_force\n0,-1\n0,-2\n", "line 3: time = 0.0 .*times that increase"),
         ("time,radial_force\n0,-1\n1,x\n", "line 3"),
         ("time [m],radial_force\n0,-1\n1,-2\n", "a unit that can be converted to s"),
@@ -168,7 +201,7 @@ def test_the_command(tmp_path, monkeypatch):
     (tmp_path / "r.yaml").write_text(write_yaml(ROLLER))
     done = CliRunner().invoke(app, ["spectrum", "r.yaml", "--from", "log.csv", "-o", "shift.yaml"])
     assert done.exit_code == 0, done.output
-    assert "60 lines of log.csv in 1 levels" in done.output
+    assert "60 lines of log.csv in 1 level" in done.output
     spectrum = load_spectrum(tmp_path / "shift.yaml")
     assert spectrum.blocks[0].distance == pytest.approx(59)
     assert spectrum.blocks[0].case.roller_material == STEEL

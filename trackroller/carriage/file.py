@@ -226,7 +226,10 @@ def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
     values = mapping_of(source)
     if isinstance(values, Mapping):
         return carriage_of(values)
-    path = Path(source)  # type: ignore[arg-type]  # the path of a file
+    if not isinstance(source, str | Path):
+        allowed = "the name of a carriage file, or a mapping with its keys"
+        raise InputError("carriage", type(source).__name__, allowed, "Write tr.carriage('shuttle.yaml').")
+    path = Path(source)
     text = read_text(path, "carriage file")
     values = parse_mapping(text, str(path))
     with errors_by_line(text, aliases=ALIASES), files_beside(path):
@@ -428,7 +431,7 @@ def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
     if abs(pushes @ axis) > SQUARE:
         allowed = "a direction perpendicular to x_R"
         remedy = "A roller presses at right angles to its axis: change pushes or x_R."
-        raise InputError(f"{where}.pushes", pushes.tolist(), allowed, remedy, f"stands at {angle:.3g} deg to x_R")
+        raise InputError(f"{where}.pushes", pushes.tolist(), allowed, remedy, f"stands at {angle:.6g} deg to x_R")
     for key, way in (("pushes", pushes), ("x_R", axis)):
         if abs(way[0]) > SQUARE:
             allowed = "a direction across the track, whose x is 0"
@@ -528,6 +531,10 @@ def _cases(value: Any) -> tuple[LoadCase, ...]:
     shares = [case.share for case in made]
     if not any("share" in entry for entry in given):
         return tuple(_with_share(case, 1 / len(made)) for case in made)
+    for case, entry in zip(made, given, strict=True):
+        if len(made) > 1 and "share" not in entry:
+            allowed = "the share of the travel, as other cases have one"
+            raise InputError(f"case '{case.name}'.share", None, allowed, "Add share: 0.5, or remove all shares.")
     if abs(sum(shares) - 1) > 1e-6:
         raise InputError(
             "cases", f"{sum(shares):.6g}", "shares that add up to 1", "Change the shares.", "is the sum of the shares"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +23,7 @@ from trackroller.carriage.statics import (
     free_motion,
     is_determinate,
     multipliers,
+    to_one_contact,
 )
 from trackroller.contact.hertz import contact_modulus, unit_approach
 from trackroller.damage import verdict
@@ -49,6 +50,12 @@ CONVENTIONS = (
     "contacts without friction give the stiffness: Hertz's approach at the load of each roller",
     "shares are shares of the travel; damage adds up linearly over the load cases, limit by limit (Palmgren-Miner)",
 )
+ROUNDING = 1e-14  # of the largest radial force: an axial force below it is 0
+ENDS = {
+    "one_contact": "to the first roller on one contact, without friction",
+    "lift_off": "to the first lift-off",
+    "tipping": "to tipping",
+}
 TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
 _RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
 
@@ -96,7 +103,7 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     """
     whole = source if isinstance(source, Carriage) else load_carriage(source)
     springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
-    ds = _solution(whole, springs, loads).assign(_margins(springs, loads))
+    ds = _solution(whole, springs, loads).assign(_margins(whole, springs, loads))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
         return ds.assign_attrs(without_case=", ".join(without))
@@ -122,12 +129,20 @@ def _solution(whole: Carriage, springs: Springs, loads: list[Loads]) -> xr.Datas
         "title": whole.name,
         "description": whole.description,
         "conventions": "; ".join(CONVENTIONS),
+        "with_play": ", ".join(name for one in whole.preloads if one.play > 0 for name in one.pair),
     }
     return with_duty(xr.Dataset(variables, coords, attrs), whole.duty)
 
 
-def springs_of(whole: Carriage) -> Springs:
+def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
     """Return the springs of the rollers of a carriage.
+
+    Parameters
+    ----------
+    whole : Carriage
+        The carriage.
+    unknown : sequence of float
+        Compliances [mm/N] of the rollers whose stiffness is not given, 1 without it.
 
     Raises
     ------
@@ -141,7 +156,10 @@ def springs_of(whole: Carriage) -> Springs:
         turning = [np.cross(roller.at, getattr(roller, way)) / length for roller in rollers]
         return np.hstack([[getattr(roller, way) for roller in rollers], turning])[:, 1:]
 
-    contact, tangent, series = (np.array(column) for column in zip(*map(_compliance, rollers), strict=True))
+    made = [_compliance(roller) for roller in rollers]
+    for j, compliance in zip(_unknown(whole), unknown, strict=False):
+        made[j] = (0.0, 1.0, (compliance, compliance))
+    contact, tangent, series = (np.array(column) for column in zip(*made, strict=True))
     springs = Springs(
         radial=rows("pushes"),
         axial=rows("axis"),
@@ -208,11 +226,32 @@ def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> 
             "carries axial load only while it presses on its rail."
         )
         raise InputError("case", name, allowed, remedy, f"{tips} the carriage: it {error.motion}") from None
-    unknown = [r.name for r in whole.rollers if r.case is None and r.stiffness is None]
-    if unknown and not is_determinate(springs, found):
+    unknown = _unknown(whole)
+    if unknown and not (is_determinate(springs, found) and _decided(whole, loads, found)):
         needs = f"the stiffness, because the statics alone does not decide the forces in case '{name}'"
-        raise InputError(f"rollers.{unknown[0]}.roller", None, needs, "Add roller: FILE, or stiffness: 5e4.")
+        where = f"rollers.{whole.rollers[unknown[0]].name}.roller"
+        raise InputError(where, None, needs, "Add roller: FILE, or stiffness: 5e4.")
     return found
+
+
+def _unknown(whole: Carriage) -> list[int]:
+    """Return the numbers of the rollers whose stiffness is not given."""
+    return [j for j, roller in enumerate(whole.rollers) if roller.case is None and roller.stiffness is None]
+
+
+def _decided(whole: Carriage, loads: Loads, found: Equilibrium) -> bool:
+    """Return whether other values of the unknown stiffnesses give the same forces, and lift the same rollers."""
+    steps = 10.0 ** -np.arange(float(len(_unknown(whole))))
+    for compliance in (1e-5 * steps, 1e-5 * steps[::-1]):
+        springs = springs_of(whole, compliance.tolist())
+        try:
+            other = equilibrium(springs, _reduced(loads.all, springs.length))
+        except Moves:
+            return False
+        near = 1e-6 * float(found.radial.max(initial=0.0))
+        if not (np.allclose(other.radial, found.radial, 0, near) and np.allclose(other.axial, found.axial, 0, near)):
+            return False
+    return True
 
 
 def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
@@ -222,10 +261,12 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
 def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
     """Return the forces of rollers and drive, and what the file says of the load cases, as variables."""
     radial = -np.array([one.radial for one in found])
+    axial = np.array([one.axial for one in found])
+    axial = np.where(np.abs(axial) <= ROUNDING * np.abs(radial).max(axis=1, keepdims=True), 0.0, axial)
     speeds = [np.nan if case.speed is None else case.speed for case in whole.cases]
     return {
         "radial_force": (_RC, np.where(radial == 0, 0.0, radial), _attrs("N", "radial force", "F_rad")),
-        "axial_force": (_RC, np.array([one.axial for one in found]), _attrs("N", "axial force", "F_ax")),
+        "axial_force": (_RC, axial, _attrs("N", "axial force", "F_ax")),
         "approach": (
             _RC,
             np.array([one.approach for one in found]),
@@ -260,17 +301,20 @@ def _places(whole: Carriage) -> dict[str, Any]:
     }
 
 
-def _margins(springs: Springs, loads: list[Loads]) -> dict[str, Any]:
-    """Return the multipliers of payload and of all loads at which a roller lifts and the carriage tips."""
+def _margins(whole: Carriage, springs: Springs, loads: list[Loads]) -> dict[str, Any]:
+    """Return the multipliers of payload and of all loads to one contact, to lift-off and to tipping."""
+    angles = [np.nan if roller.case is None else roller.case.contact_angle for roller in whole.rollers]
+    tangent = np.tan(np.radians(np.array(angles, dtype=float)))
     out: dict[str, list[float]] = {}
     for one in loads:
         payload, other = (_reduced(part, springs.length) for part in (one.payload, one.other))
         for name, fixed, varying in (("payload", other, payload), ("loads", np.zeros(5), payload + other)):
-            for end, value in zip(("lift_off", "tipping"), multipliers(springs, fixed, varying), strict=True):
+            lift_off, tipping = multipliers(springs, fixed, varying)
+            one_contact = to_one_contact(springs, fixed, varying, tangent, lift_off)
+            for end, value in zip(ENDS, (one_contact, lift_off, tipping), strict=True):
                 out.setdefault(f"{name}_to_{end}", []).append(value)
     words = {"payload": "multiplier of the payload", "loads": "multiplier of all loads"}
-    ends = {"lift_off": "to the first lift-off", "tipping": "to tipping"}
-    names = {f"{name}_to_{end}": f"{words[name]} {ends[end]}" for name in words for end in ends}
+    names = {f"{name}_to_{end}": f"{words[name]} {ENDS[end]}" for name in words for end in ENDS}
     return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
 
 
@@ -312,10 +356,19 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
         loaded = [case for (_, own), case in cases.items() if own == j]
         values = {name: value for name, value in roller.case.as_dict().items() if name not in LOADS}
         values |= {name: [getattr(case, name) for case in loaded] for name in (*LOADS, "velocity") if loaded}
+        for text in _unused_loads(roller):
+            by_text.setdefault(text, []).append(roller.name)
         for text in doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES)):
             by_text.setdefault(text, []).append(roller.name)
     one = len(whole.rollers) == 1
     return [text if one else f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
+
+
+def _unused_loads(roller: MountedRoller) -> Iterator[str]:
+    """Yield a sentence for each force in the file of a roller, whose place the loads of the carriage take."""
+    for name in LOADS:
+        if name in roller.given:
+            yield f"{name} = {roller.given[name]} in its file does not count: the carriage gives it. Remove it there."
 
 
 def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:

@@ -14,6 +14,7 @@ ASSUME: displacements are small; a lifted locating roller carries no axial load.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -379,6 +380,50 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     if last <= 1 or lowest(last) > 0:
         return tipping, tipping
     return float(brentq(lowest, 1.0, last, xtol=1e-9)), tipping
+
+
+def to_one_contact(
+    springs: Springs, fixed: np.ndarray, varying: np.ndarray, tangent: np.ndarray, lift_off: float
+) -> float:
+    """Return the multiplier of a part of the loads at which the first contact of a roller lifts, without friction.
+
+    Parameters
+    ----------
+    springs : Springs
+        The rollers.
+    fixed, varying : numpy.ndarray, shape (5,)
+        Wrench that stays, and wrench that is multiplied; see `equilibrium`.
+    tangent : numpy.ndarray, shape (n,)
+        Tangent of the contact angle of each roller [1], NaN where it is not known.
+    lift_off : float
+        Multiplier at which the first roller lifts [1], the largest result.
+
+    Notes
+    -----
+    The contacts of a wedge carry F_rad +- F_ax/tan(alpha): one of them lifts where the axial force exceeds
+    F_rad tan(alpha).
+    """
+    known = springs.locating & np.isfinite(tangent)
+    if np.isnan(lift_off) or not known.any() or not np.any(varying):
+        return lift_off
+
+    def spare(multiplier: float) -> float:
+        """Return the smallest axial force that is left [N], of the rollers that carry load."""
+        try:
+            found = equilibrium(springs, fixed + multiplier * varying)
+        except Moves:
+            return -1.0
+        own = known & found.loaded
+        left = found.radial[own] * tangent[own] - np.abs(found.axial[own])
+        return float(left.min(initial=np.inf)) if own.any() else -1.0
+
+    steps = np.geomspace(1.0, max(min(lift_off, LARGEST_MULTIPLIER), 1.0) * (1 - 1e-9), 25)
+    if spare(1.0) <= 0:
+        return float(brentq(spare, 0.0, 1.0, xtol=1e-9)) if spare(0.0) > 0 else 0.0
+    for low, high in itertools.pairwise(steps.tolist()):
+        if spare(high) <= 0:
+            return float(brentq(spare, low, high, xtol=1e-9))
+    return lift_off
 
 
 def _holds(springs: Springs, wrench: np.ndarray) -> bool:

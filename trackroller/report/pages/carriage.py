@@ -65,9 +65,10 @@ def roller_table(ds: xr.Dataset) -> Table | None:
 
 def margin_table(ds: xr.Dataset) -> Table:
     """List drive force and margins of each load case."""
-    names = [f"{part}_to_{end}" for part in ("payload", "loads") for end in ("lift_off", "tipping")]
-    heads = ["Load case", "Share [%]", "Drive [N]", "Payload to lift-off", "Payload to tipping"]
-    heads += ["All loads to lift-off", "All loads to tipping"]
+    names = [f"{part}_to_{end}" for part in ("payload", "loads") for end in ("one_contact", "lift_off", "tipping")]
+    ends = ("one contact", "lift-off", "tipping")
+    heads = ["Load case", "Share [%]", "Drive [N]"]
+    heads += [f"{part} to {end}" for part in ("Payload", "All loads") for end in ends]
     rows = []
     for i, case in enumerate(ds["load_case"].values):
         values = [float(ds[name][i]) for name in names]
@@ -76,7 +77,8 @@ def margin_table(ds: xr.Dataset) -> Table:
         rows.append(
             [f"{case}{unsettled}", cell(100 * float(ds["share"][i])), cell(float(ds["drive_force"][i])), *shown]
         )
-    note = "A margin is a multiplier of the payload, or of all loads, with the same preload. A dash: not up to 1000."
+    note = "A margin is a multiplier of the payload, or of all loads, with the same preload. One contact: the "
+    note += "axial force lifts the other contact of a roller, without friction. A dash: not up to 1000."
     return Table("carriage_margins", "Load cases and margins", heads, rows, note)
 
 

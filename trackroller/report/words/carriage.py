@@ -77,7 +77,8 @@ def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
         lifted = (ds["radial_force"].sel(roller=roller) == 0).values
         gap = -float(ds["approach"].sel(roller=roller).max())
         if lifted.all():
-            yield say("carriage", "carriage_unloaded", roller=str(roller), gap=max(gap, 0.0))
+            play = str(roller) in ds.attrs.get("with_play", "").split(", ")
+            yield say("carriage", "carriage_unloaded", roller=str(roller), gap=max(gap, 0.0), play=play)
         elif lifted.any():
             share, names = float(ds["share"].values[lifted].sum()), ds["load_case"].values[lifted].tolist()
             yield say("carriage", "carriage_lifted", roller=str(roller), cases=names, share=share)
@@ -100,6 +101,11 @@ def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
     for name, what in MARGINS:
         if f"{name}_to_lift_off" not in ds:  # the forces alone
             continue
+        contact = ds[f"{name}_to_one_contact"].values
+        if np.isfinite(contact).any() and not np.array_equal(contact, ds[f"{name}_to_lift_off"].values, equal_nan=True):
+            i = int(np.nanargmin(contact))
+            case = str(ds["load_case"].values[i])
+            yield say("carriage", "carriage_contact", what=what, multiplier=float(contact[i]), case=case)
         first = ds[f"{name}_to_lift_off"].values
         if np.isfinite(first).any():
             i = int(np.nanargmin(first))

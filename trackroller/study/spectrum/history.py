@@ -34,6 +34,7 @@ MOST_BLOCKS = 2000
 GAP = 5.0  # times the usual step of time, or of distance
 SPIKE = 12.0  # times the usual change from line to line, there and back
 DRIFT = 0.25  # of the spread of a force: a change of its median from the first to the last fifth
+MOSTLY = 0.5  # of the lines: radial forces above 0 in more of them have another sign convention
 SMALL = 1.0  # N: a force that stays below is more likely in kN
 
 
@@ -79,6 +80,7 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
         log.notes.append(f"Over {100 * share:.3g} % of the travel no radial force presses; it has no block.")
     loads = np.column_stack([log.radial, log.axial])[pressed]
     weights = log.travel[pressed]
+    _tell_lift_off(loads, weights, math.tan(angle), log.notes)
     blocks = []
     for own in levels(loads, weights, math.tan(angle)):
         radial, axial = np.average(loads[own], axis=0, weights=weights[own])
@@ -91,7 +93,7 @@ def spectrum_of_log(path: Path | str, roller: Mapping[str, Any]) -> tuple[dict[s
     if any("velocity" in block for block in named):
         fields.pop("velocity", None)
     duty = {"duty": given["duty"]} if "duty" in given else {}
-    lines = f"{len(log.travel):,} lines of {path.name} in {len(named)} levels of load"
+    lines = f"{len(log.travel):,} lines of {path.name} in {len(named)} level{'s' * (len(named) > 1)} of load"
     log.notes.insert(0, f"{lines}: {log.travel.sum() / 1e3:.4g} km in {log.hours.sum():.4g} h.")
     head = {"name": path.stem, "description": " ".join([*log.notes, NO_RAINFLOW])}
     return head | {"base": fields, "blocks": named} | duty | options, log.notes
@@ -108,7 +110,7 @@ def read_log(path: Path, velocity: float) -> Log:
     if axis is None or "radial_force" not in columns:
         lacking = "radial_force" if axis is not None else "time or distance"
         allowed = "columns time or distance, radial_force, and where they vary axial_force and velocity"
-        raise InputError("--from", ", ".join(table.names), allowed, f"Add a column {lacking}.").at(path, table.head)
+        raise InputError("--from", ", ".join(table.names), allowed, f"Name a column {lacking}.").at(path, table.head)
     if len(table.lines) < 2:
         raise InputError("--from", str(path), "a log of at least two lines", "Add lines.")
     if "axial_force" not in columns:
@@ -128,6 +130,8 @@ def read_log(path: Path, velocity: float) -> Log:
     if pace is None:
         notes.append(f"No column velocity: {velocity:g} m/min holds, that of the roller's file or of the example.")
         pace = np.full(held.size, velocity)
+    else:
+        _tell_speed(pace, table, notes)
     pace = np.abs(pace) / 60  # m/s
     if axis == "time":
         hours, travel = held / 3600, held * pace
@@ -135,7 +139,7 @@ def read_log(path: Path, velocity: float) -> Log:
             travel = _halves(np.abs(np.diff(columns["distance"])))
     else:
         travel = held
-        with np.errstate(divide="ignore"):
+        with np.errstate(divide="ignore", invalid="ignore"):
             hours = np.where(pace > 0, travel / pace / 3600, 0.0)
     if not travel.sum() > 0:
         raise InputError("--from", str(path), "a log in which the roller moves", "Check the column velocity.")
@@ -158,7 +162,7 @@ def _columns(table: UserTable, path: Path, notes: list[str]) -> dict[str, np.nda
         values = np.array([number_or_nan(cell, wanted, name) for cell in cells])  # the reader has put the units there
         if np.isnan(values).any():
             k = int(np.argmax(np.isnan(values)))
-            error = InputError(name, cells[k], f"a number [{wanted}]", "Mend the cell, or remove its line.")
+            error = InputError(name, str(cells[k]), f"a number [{wanted}]", "Mend the cell, or remove its line.")
             raise error.at(path, list(table.lines)[k])
         if split_quantity(cells[0]) is None:
             bare.append(f"{name} in {wanted}")
@@ -184,32 +188,59 @@ def _without_gaps(steps: np.ndarray, axis: str, table: UserTable, notes: list[st
     return steps
 
 
+def _spikes(values: np.ndarray) -> np.ndarray:
+    """Return the lines that jump away from both neighbours by many times the usual change."""
+    change = np.diff(values)
+    usual = float(np.median(np.abs(change[change != 0]))) if np.any(change) else math.inf
+    far = np.minimum(np.abs(change[:-1]), np.abs(change[1:])) > SPIKE * usual
+    return np.flatnonzero(far & (change[:-1] * change[1:] < 0)) + 1
+
+
+def _tell_spikes(name: str, values: np.ndarray, unit: str, effect: str, table: UserTable, notes: list[str]) -> None:
+    spikes = _spikes(values)
+    if spikes.size:
+        worst = int(spikes[np.argmax(np.abs(values[spikes]))])
+        count = f"{spikes.size} spikes" if spikes.size > 1 else "1 spike"
+        largest = f"the largest {values[worst]:.4g} {unit} in line {list(table.lines)[worst]}"
+        notes.append(f"{name} has {count} of one line, {effect}: {largest}.")
+
+
+def _tell_speed(pace: np.ndarray, table: UserTable, notes: list[str]) -> None:
+    """Tell travel backward, and spikes of the speed [m/min]."""
+    _tell_spikes("The speed", pace, "m/min", "and the travel holds them", table, notes)
+    if (back := float(np.mean(pace < 0))) > 0:
+        notes.append(f"The speed is below 0 in {100 * back:.3g} % of the lines: travel backward counts as forward.")
+
+
 def _tell_forces(columns: dict[str, np.ndarray], table: UserTable, notes: list[str]) -> None:
     """Tell sign, unit, spikes and drift of the forces; radial forces of the other sign are turned."""
     radial = columns["radial_force"]
     if (radial >= 0).all() and (radial > 0).any():
         notes.append("All radial forces are positive; they count as pressing the roller on the guide.")
         columns["radial_force"] = radial = -radial
-    lines = list(table.lines)
+    elif (share := float(np.mean(radial > 0))) > MOSTLY:
+        notes.append(f"radial_force is above 0 in {100 * share:.3g} % of the lines: change its sign if they press.")
     for name in LOADS:
         force = columns[name]
         if name == "radial_force" and 0 < float(np.abs(force).max()) < SMALL:
             largest = f"The largest {name} is {float(np.abs(force).max()):.3g} N."
             notes.append(f"{largest} Name the column {name} [kN] if it is in kN.")
-        change = np.diff(force)
-        usual = float(np.median(np.abs(change[change != 0]))) if np.any(change) else 0.0
-        alone = (np.minimum(np.abs(change[:-1]), np.abs(change[1:])) > SPIKE * usual) & (change[:-1] * change[1:] < 0)
-        spikes = np.flatnonzero(alone) + 1
-        if spikes.size and usual > 0:
-            worst = int(spikes[np.argmax(np.abs(force[spikes]))])
-            count = f"{spikes.size} spikes" if spikes.size > 1 else "1 spike"
-            largest = f"the largest {force[worst]:.4g} N in line {lines[worst]}"
-            notes.append(f"{name} has {count} of one line, which count as loads: {largest}.")
+        _tell_spikes(name, force, "N", "which count as loads", table, notes)
         fifth = max(1, force.size // 5)
         spread = float(np.ptp(np.percentile(force, [5, 95])))
         moved = float(np.median(force[-fifth:]) - np.median(force[:fifth]))
         if force.size >= 50 and spread > 0 and abs(moved) > DRIFT * spread:
             notes.append(f"{name} drifts: its median moves by {moved:.4g} N from the first to the last fifth.")
+
+
+def _tell_lift_off(loads: np.ndarray, weights: np.ndarray, tangent: float, notes: list[str]) -> None:
+    """Tell the travel in which the axial force lifts a contact off, without friction."""
+    share = float(weights[np.abs(loads[:, 1]) >= -loads[:, 0] * tangent].sum() / weights.sum())
+    if share > 0:
+        notes.append(
+            f"Over {100 * share:.3g} % of the travel the axial force lifts one contact off; a spectrum with such "
+            "blocks has no life."
+        )
 
 
 def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.ndarray]:
@@ -226,8 +257,9 @@ def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.nd
 
     Notes
     -----
-    The contacts of a wedge without friction carry forces in the ratio of -F_rad +- F_ax/tan(alpha). The level that
-    changes the sum of their powers most is halved, until no power in `POWERS` changes by more than `TOLERANCE`.
+    The contacts of a wedge without friction carry forces in the ratio of -F_rad +- F_ax/tan(alpha). Lines in which one
+    of them lifts off have levels of their own. The level that changes the sum of their powers most is halved, until no
+    power in `POWERS` changes by more than `TOLERANCE`.
     """
     axial = loads[:, 1] / tangent
     contacts = np.maximum(np.column_stack([-loads[:, 0] - axial, -loads[:, 0] + axial]), 0.0)
@@ -241,8 +273,9 @@ def levels(loads: np.ndarray, weights: np.ndarray, tangent: float) -> list[np.nd
         single = np.concatenate([mean**power for power in POWERS])
         return np.asarray(np.abs(weights[own] @ effects[own] - weights[own].sum() * single) / total)
 
-    whole = [np.arange(len(loads))]
-    errors = [error(whole[0])]
+    lifted = contacts.min(axis=1) <= 0  # a mean of lines with and without lift-off stands for neither
+    whole = [own for own in (np.flatnonzero(~lifted), np.flatnonzero(lifted)) if own.size]
+    errors = [error(own) for own in whole]
     while np.max(np.sum(errors, axis=0)) > TOLERANCE and len(whole) < MOST_BLOCKS:
         i = int(np.argmax([one.max() for one in errors]))
         own = whole.pop(i)
