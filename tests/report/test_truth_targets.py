@@ -14,7 +14,8 @@ from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
 SHARE = r"([\d.]+) %"
-CHANCE = rf"{SHARE}(?: \({SHARE} to {SHARE}\))?"
+BOUND = rf"(?:over |below )?{SHARE}"
+CHANCE = rf"{BOUND}(?: \({BOUND} to {BOUND}\))?"
 LISTS = {
     "velocity": [30.0, 45.0, 60.0],
     "contact_angle": [30.0, 36.0],

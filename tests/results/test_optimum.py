@@ -16,6 +16,7 @@ from trackroller.methods.optimise import (
     nondominated_ranks,
 )
 from trackroller.report.pages.best import best_of, write_best
+from trackroller.report.words.optimum import optimum_sentences
 from trackroller.results.judging import beyond_data, judge, optimum_of
 from trackroller.results.optimum import cheaper, search_designs
 from trackroller.results.pareto import pareto_mask
@@ -311,5 +312,13 @@ def test_no_thirds_of_a_search_are_compared():
         "budget": {"designs": 48},
         "contact_model": "sliding",
     }
-    found = tr.run(study, progress=False).findings["why"]
+    results = tr.run(study, progress=False)
+    found = results.findings["why"]
     assert {one.kind for one in found} and not any(one.kind.startswith("classes") for one in found)
+    said = [one.text for one in optimum_sentences(results)]
+    best = results.design.columns["profile_ratio"][:: results.design.meta["inner_samples"]][
+        optimum_of(results)["recommended"]
+    ]
+    at_end = min(best - 1.05, 1.3 - best) <= 1e-3 * 0.25
+    assert ("profile ratio stands at the end of the allowed range" in said[0]) == at_end
+    assert any(text.startswith("Not checked: bearing, heat, wear and guide") for text in said)

@@ -9,13 +9,16 @@ import numpy as np
 from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import Life, capital, lasting, long_name, percent, quantity, setting, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import BEST, compared
+from trackroller.report.words.designs import BEST, compared, ended_by
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.report.words.verdict import SHORT
 from trackroller.results.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.results.results import Results
+from trackroller.results.verdict import not_checked
 from trackroller.roller.output_names import is_life
 from trackroller.study.file.search import judged_by
 
+AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
 SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
 
 
@@ -36,6 +39,7 @@ def optimum_sentences(results: Results) -> list[Sentence]:
         said += [_recommended(results, search, best), _unreached(results, search), _checked(search)]
         said.append(_tolerance(results, search, best))
     facts = ("designs", "generations", "model", "valid", "stopped")
+    said.append(_unchecked(results, search))
     said.append(say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts}))
     return [sentence for sentence in said if sentence is not None]
 
@@ -66,8 +70,28 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
         "design": design_words(results, best["design"]),
         "front": search["front"],
     }
+    values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
     alike = all(one["values"] == best["values"] for one in search["optima"])
     return say("optimum", "recommended", goals=goal_texts(results, search, best), alike=alike, **values)
+
+
+def _edges(results: Results, number: int) -> list[str]:
+    """Return the choices of a design that stand at an end of the range that the search may take."""
+    found = []
+    for name, value in choices_of(results, number).items():
+        ends = results.design.factors[name].numbers[:2]
+        width = ends[1] - ends[0] if len(ends) == 2 else 0.0
+        if width and min(abs(value - end) for end in ends) <= AT_END * abs(width):
+            found.append(name)
+    return found
+
+
+def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
+    """Name the limits that the search did not check, where a goal is a life."""
+    if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
+        return None
+    names = [SHORT.get(name) or ended_by(name) for name in not_checked(results)]
+    return say("verdict", "not_checked", names=names) if names else None
 
 
 def _invalid(results: Results, search: dict[str, Any], least: float) -> Sentence:
