@@ -72,7 +72,18 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     }
     values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
     alike = all(one["values"] == best["values"] for one in search["optima"])
-    return say("optimum", "recommended", goals=goal_texts(results, search, best), alike=alike, **values)
+    values["goals"] = goal_texts(results, search, best)
+    several = len(search["goals"]) > 1 and search["front"] > 1 and not alike
+    if several and not values["least"] and not results.config.analysis.target:  # the goals alone do not choose
+        ends = [goal_texts(results, search, one) for one in _ends(search)]
+        return say("optimum", "requirement", ends=ends, **values)
+    return say("optimum", "recommended", alike=alike, **values)
+
+
+def _ends(search: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the optima that are best in the first and in the last goal."""
+    signs = [-1.0 if direction == "max" else 1.0 for direction in search["goals"].values()]
+    return [min(search["optima"], key=lambda one: signs[i] * one["values"][i]) for i in (0, len(signs) - 1)]
 
 
 def _edges(results: Results, number: int) -> list[str]:
