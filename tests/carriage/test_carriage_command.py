@@ -74,6 +74,15 @@ def test_a_carriage_without_a_life_says_why():
     assert "the file of FL, FR, RL and RR is not given" in " ".join(one.text for one in sentences(unknown))
 
 
+def test_lives_beyond_the_fatigue_limit_are_told():
+    """A life that rests on the rule beyond the fatigue limit is no number to trust, and a carriage says so."""
+    light = [{"pair": [f"{end}L", f"{end}R"], "force": "60 N"} for end in "FR"]
+    ds = tr.carriage(shuttle(cases=[{"name": "run"}], preload=light, payloads=[], mass={"value": 4, "at": [0, 0, 0]}))
+    told = [one.text for one in sentences(ds) if one.kind == "carriage_flag"]
+    words = "The peak stress lies below the fatigue limit for FL, FR, RL and RR in run. The life rests"
+    assert any(text.startswith(words) for text in told), told
+
+
 def test_a_roller_with_play_is_named():
     values = shuttle(
         rollers=rollers_between() | {"D" + n: r for n, r in rollers_below().items()}, cases=[{"name": "a"}]

@@ -390,6 +390,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         solve_cases = solve
     shape, n = ds["radial_force"].shape, len(whole.rollers)
     case_hours, regime, damage = np.full(shape, np.inf), np.full(shape, -1, dtype=np.int8), np.zeros(shape)
+    flagged = np.zeros(shape, dtype=np.int64)
     lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
     pace = _hours_per_km(whole, ds)
     flags: Mapping[str, Any] = {}
@@ -409,6 +410,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
         case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
+        flagged[i, j] = solved["validity"].values
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
@@ -418,6 +420,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         "case_life_hours": (_RC, case_hours, _attrs("h", "life to the first limit under a load case alone")),
         "damage_per_km": (_RC, damage, _attrs("km-1", "damage of a load case by a km of travel with all load cases")),
         "roller_regime": (_RC, regime, meanings),
+        "roller_validity": (_RC, flagged, {"long_name": "validity flags of the roller, as of `trackroller.solve`"}),
         "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
         "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
         "life_hours_low": (_R, lasts["_low"], _attrs("h", f"low end of the hours of travel {first}")),

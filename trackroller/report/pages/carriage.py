@@ -78,7 +78,7 @@ def margin_table(ds: xr.Dataset) -> Table:
             [f"{case}{unsettled}", cell(100 * float(ds["share"][i])), cell(float(ds["drive_force"][i])), *shown]
         )
     note = "A margin is a multiplier of the payload, or of all loads, with the same preload. One contact: the "
-    note += "axial force lifts the other contact of a roller, without friction. A dash: not up to 1000."
+    note += "axial force lifts the other contact of a roller; friction may do so earlier. A dash: not up to 1000."
     return Table("carriage_margins", "Load cases and margins", heads, rows, note)
 
 

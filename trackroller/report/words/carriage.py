@@ -8,9 +8,11 @@ import numpy as np
 import xarray as xr
 
 from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import lasting
 from trackroller.report.words.designs import SAME
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.roller.dataset import validity_bit
 
 MARGINS = (("payload", "The payload"), ("loads", "All loads"))
 ROLLING = REGIMES.index("rolling")
@@ -42,6 +44,7 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
         *_one_contact(ds),
         *_margins(ds),
         *_catalogue(ds),
+        *_flags(ds),
     ]
 
 
@@ -122,3 +125,15 @@ def _catalogue(ds: xr.Dataset) -> Iterator[Sentence]:
     names, k = ds["roller"].values, int(np.nanargmin(life))
     more = {"shortest": str(names[k]), "km": float(life[k]), "case": str(ds["load_case"].values[i])}
     yield say("carriage", "carriage_catalogue", roller=str(names[j]), factor=float(factor[i, j]), **more)
+
+
+def _flags(ds: xr.Dataset) -> Iterator[Sentence]:
+    """Say what limits the lives: each validity flag with its remedy, the rollers and their load cases."""
+    if "roller_validity" not in ds:
+        return
+    for name, flag in VALIDITY.items():
+        here = (ds["roller_validity"].values & validity_bit(name)) != 0
+        if here.any():
+            rollers, cases = ds["roller"].values[here.any(axis=0)], ds["load_case"].values[here.any(axis=1)]
+            more = {"rollers": rollers.tolist(), "cases": cases.tolist(), "remedy": flag.remedy}
+            yield say("carriage", "carriage_flag", words=flag.words[:1].upper() + flag.words[1:], **more)
