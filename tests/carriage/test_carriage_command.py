@@ -9,7 +9,7 @@ from typer.testing import CliRunner
 
 import trackroller as tr
 from trackroller.carriage.file import load_carriage
-from trackroller.carriage.files import spectrum_of, study_of
+from trackroller.carriage.files import doubts_of_carriage, spectrum_of, study_of
 from trackroller.carriage.solve import forces_of, with_lives
 from trackroller.cli.main import app
 from trackroller.report.words.carriage import sentences
@@ -57,6 +57,21 @@ def test_sentences_state_lifted_rollers(lifting):
     assert said["carriage_lifted", "FR"]["cases"] == ["push"]
     assert said["carriage_lifted", "FR"]["share"] == 0.25
     assert ("carriage_lifted", "FL") not in said
+
+
+def test_unusual_values_of_rollers_are_told():
+    """Kilonewtons of a catalogue that were given as newtons."""
+    values = shuttle()
+    rated = {"radial_force": 3, "axial_force": 1, "basic_life": 100}
+    values["rollers"]["FL"]["catalogue"] = rated
+    whole = load_carriage(values)
+    said = doubts_of_carriage(whole, forces_of(whole))
+    assert any(
+        one.startswith("rollers.FL.catalogue.radial_force = 3 N") and "write '3 kN' or 3000" in one for one in said
+    )
+    values["rollers"]["FL"]["catalogue"] = rated | {"radial_force": "3 kN", "axial_force": "1 kN"}
+    whole = load_carriage(values)
+    assert not doubts_of_carriage(whole, forces_of(whole))
 
 
 def test_a_roller_with_play_is_named():

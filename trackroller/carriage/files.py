@@ -11,8 +11,35 @@ import xarray as xr
 from trackroller.carriage.file import Carriage
 from trackroller.carriage.solve import cases_of
 from trackroller.errors import InputError, check_names
+from trackroller.materials import load_database
 from trackroller.parameters import OPTIONS
+from trackroller.roller.doubts import doubts
 from trackroller.roller.settings import LOADS, parts_for_spectrum
+
+
+def doubts_of_carriage(whole: Carriage, ds: xr.Dataset) -> list[str]:
+    """Return a sentence for each unusual value of the rollers under their loads, see `trackroller.roller.doubts`.
+
+    The ratings of a maker's catalogue are compared with the smallest load that presses their roller.
+    """
+    sentences: list[str] = []
+    cases = cases_of(whole, ds)
+    for j, roller in enumerate(whole.rollers):
+        own = [case.as_dict() for (_, k), case in cases.items() if k == j]
+        if own and roller.case is not None:
+            loads = {name: [case[name] for case in own] for name in LOADS}
+            used = (roller.case.roller_material, roller.case.guide_material)
+            found = doubts(own[0] | loads, map(load_database().material, used))
+            sentences += [f"rollers.{roller.name}.roller: {text}" for text in found]
+        if roller.catalogue is not None:
+            rated = {"radial": roller.catalogue.radial_force, "axial": roller.catalogue.axial_force}
+            found = doubts({"radial_force": ds["radial_force"].values[:, j], "catalogue": rated})
+            names = [text.replace("radial =", "radial_force =").replace("axial =", "axial_force =") for text in found]
+            sentences += [f"rollers.{roller.name}.{text}" for text in names if text.startswith("catalogue")]
+    seen = dict[str, str]()  # rollers of the same file say the same
+    for text in sentences:
+        seen.setdefault(text.partition(": ")[2] or text, text)
+    return list(seen.values())
 
 
 def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:

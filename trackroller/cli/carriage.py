@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result, write_spectrum_file
+from trackroller.cli.usage import print_doubts
 from trackroller.errors import InputError
 
 
@@ -19,7 +20,7 @@ def run_carriage(
     target = _target(out, spectrum, study)
     page = None if report is None else writable_page(report)
     from trackroller.carriage.file import load_carriage
-    from trackroller.carriage.files import spectrum_of, study_of
+    from trackroller.carriage.files import doubts_of_carriage, spectrum_of, study_of
     from trackroller.carriage.solve import forces_of, solve_carriage  # heavy: scipy
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
@@ -29,6 +30,7 @@ def run_carriage(
         ds = forces_of(whole)  # a spectrum needs neither margins nor lives
     else:
         ds = solve_carriage(whole, lives=spectrum is None or page is not None)
+    print_doubts(doubts_of_carriage(whole, ds))
     if target is not None and spectrum is not None:
         write_spectrum_file(target, spectrum_of(whole, ds, spectrum))
     elif target is not None and study:
