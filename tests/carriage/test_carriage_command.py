@@ -12,7 +12,7 @@ from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.files import spectrum_of, study_of
 from trackroller.carriage.loads import GRAVITY
-from trackroller.carriage.solve import forces_of, with_lives
+from trackroller.carriage.solve import doubts_of_rollers, forces_of, with_lives
 from trackroller.cli.main import app
 from trackroller.errors import InputError
 from trackroller.report.words.carriage import sentences
@@ -81,6 +81,21 @@ def test_lives_beyond_the_fatigue_limit_are_told():
     told = [one.text for one in sentences(ds) if one.kind == "carriage_flag"]
     words = "The peak stress lies below the fatigue limit for FL, FR, RL and RR in run. The life rests"
     assert any(text.startswith(words) for text in told), told
+
+
+def test_unusual_values_of_rollers_are_told():
+    """Kilonewtons of a catalogue that were given as newtons."""
+    values = shuttle()
+    rated = {"radial_force": 3, "axial_force": 1, "basic_life": 100}
+    values["rollers"]["FL"]["catalogue"] = rated
+    whole = load_carriage(values)
+    said = doubts_of_rollers(whole, forces_of(whole))
+    assert any(
+        one.startswith("Roller FL: catalogue.radial_force = 3 N") and "write '3 kN' or 3000" in one for one in said
+    )
+    values["rollers"]["FL"]["catalogue"] = rated | {"radial_force": "3 kN", "axial_force": "1 kN"}
+    whole = load_carriage(values)
+    assert not doubts_of_rollers(whole, forces_of(whole))
 
 
 def test_a_roller_with_play_is_named():

@@ -5,8 +5,7 @@ from __future__ import annotations
 import openpyxl
 import pytest
 import xarray as xr
-
-from tests.command_line import trackroller
+from command_line import trackroller
 
 ROLLER = "motor_force: 0\nfriction_coefficient: 0.2\ncontact_model: sliding\noutputs: [forces, contact]\n"
 LOG = "time [s];radial_force [N];axial_force [N]\n0;-100;10\n1;-200;20\n2;-150;20\n"

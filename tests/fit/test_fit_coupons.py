@@ -113,6 +113,12 @@ def test_all_run_outs_give_a_bound_with_held_values(tmp_path):
     assert "fatigue_limit" not in fit.material
 
 
+@pytest.mark.parametrize("more", [{"slope": 0.09}, {"slope": -0.09}, {"prior": {"slope": (0.09, 0.01)}}])
+def test_basquins_exponent_is_no_slope(tmp_path, more):
+    with pytest.raises(tr.InputError, match=r"slope = -?0\.09 .*at least 1.*k = 1/b: write 11\.1"):
+        tr.fit_sn(table(tmp_path, GOOD), **more, **UNDER)
+
+
 @pytest.mark.parametrize(
     ("text", "head", "message"),
     [

@@ -52,6 +52,7 @@ CURVE = {"like": STEEL, "fatigue_limit": 300, "cycles_at_fatigue_limit": 2e6}
             "woehler_exponent = 0.085 .* b is meant.* write 11.8",
         ),
         ({"guide_material": CURVE | {"woehler_exponent": 0.2}}, "write 5"),
+        ({"guide_material": CURVE | {"second_exponent": 0.05}}, "second_exponent = 0.05 .* b is meant.* write 20"),
     ],
 )
 def test_a_wrong_unit_is_asked_about(given, words):

@@ -17,6 +17,7 @@ from trackroller.errors import InputError
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import chunks, netcdf, seal
+from trackroller.study.store.netcdf import MOST_VARIABLES
 
 MANY = 4_000_000_000
 KINDS = {
@@ -35,7 +36,7 @@ def write_bomb(path, kind="packed", dimensions=("case",), variable="peak_stress"
         settings = {"datatype": "f8", **KINDS[kind]}
         file.createVariable(variable, settings.pop("datatype"), dimensions, **settings)
         file.study = "name: bomb\nfactors: {axial_force: {values: [1, 2]}}\n"
-        file.title = "a result"
+        file.title, file.source = "a result", "trackroller 0.1.0"
     assert path.stat().st_size < 100_000
     return path
 
@@ -64,6 +65,17 @@ def test_a_coordinate_or_a_field_of_many_values_is_refused(tmp_path, dimensions)
     path = write_bomb(tmp_path / "study.nc", dimensions=dimensions, variable=dimensions[0])
     with pytest.raises(InputError, match="declares"):
         seal.read_result(path)
+
+
+def test_many_variables_and_nested_texts_are_refused(tmp_path):
+    with netCDF4.Dataset(tmp_path / "many.nc", "w") as file:
+        for i in range(MOST_VARIABLES + 1):
+            file.createVariable(f"v{i}", "f4", ())
+    with netCDF4.Dataset(tmp_path / "deep.nc", "w") as file:
+        file.not_given = "[" * 100_000 + "]" * 100_000
+    for name, words in (("many", "declares 5,001 variables"), ("deep", "maximum recursion depth")):
+        with pytest.raises(InputError, match=words):
+            seal.read_result(tmp_path / f"{name}.nc")
 
 
 def test_a_list_of_cases_and_a_chunk_are_called_corrupt(tmp_path):

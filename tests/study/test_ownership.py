@@ -635,12 +635,14 @@ def test_a_file_of_another_kind_is_not_overwritten(finished, words):
     assert code in (1, 2) and name in err and Path(name).read_bytes() == FOREIGN
 
 
-def test_wear_goes_on_only_from_its_own_results(tmp_path, monkeypatch):
+@pytest.mark.parametrize("attributes", [{}, {"source": "trackroller 0.1.0"}])
+def test_wear_goes_on_only_from_its_own_results(tmp_path, monkeypatch, attributes):
     monkeypatch.chdir(tmp_path)
-    xr.Dataset({"force": ("time", [1.0, 2.0])}).to_netcdf("mine.nc")
+    xr.Dataset({"force": ("time", [1.0, 2.0])}, attrs=attributes).to_netcdf("mine.nc")
     before = Path("mine.nc").read_bytes()
     code, _, err = command(("wear", "-o", "mine.nc", "--to", "1km"))
-    assert code == 2 and "mine.nc" in err and "did not write" in err and Path("mine.nc").read_bytes() == before
+    assert code == 2 and "mine.nc" in err and Path("mine.nc").read_bytes() == before
+    assert ("one that `trackroller wear` wrote" if attributes else "trackroller did not write") in err
 
 
 def test_an_explorer_beside_a_lone_file_replaces_only_an_explorer(finished):

@@ -358,10 +358,21 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
         values |= {name: [getattr(case, name) for case in loaded] for name in (*LOADS, "velocity") if loaded}
         for text in _unused_loads(roller):
             by_text.setdefault(text, []).append(roller.name)
-        for text in doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES)):
+        known = doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES))
+        for text in [*known, *_doubted_ratings(roller, ds["radial_force"].values[:, j])]:
             by_text.setdefault(text, []).append(roller.name)
     one = len(whole.rollers) == 1
     return [text if one else f"Roller {', '.join(names)}: {text}" for text, names in by_text.items()]
+
+
+def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]:
+    """Yield a sentence for each rating of a maker's catalogue that is small beside the radial forces (n,) [N]."""
+    if roller.catalogue is None:
+        return
+    rated = {"radial": roller.catalogue.radial_force, "axial": roller.catalogue.axial_force}
+    for text in doubts({"radial_force": radial, "catalogue": rated}):
+        if text.startswith("catalogue"):
+            yield text.replace("radial =", "radial_force =").replace("axial =", "axial_force =")
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:

@@ -125,6 +125,15 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     return Fit("sn", name or "fitted material", (own,), tests, like, given, notes)
 
 
+def _too_flat(field: str, slope: Any) -> InputError:
+    """Return the error about a slope that no S-N line has, but Basquin's b = 1/k."""
+    number = number_or_nan(slope)
+    meant = (
+        f"If Basquin's b is meant, the slope is k = 1/b: write {1.0 / abs(number):.3g}." if 0 < abs(number) < 1 else ""
+    )
+    return InputError(field, slope, "a number of at least 1", meant)
+
+
 def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
     """Return the priors of a line by the names of its values, from those of a user; see `fit_sn`."""
     given = dict(given or {})
@@ -138,6 +147,8 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
         if not (middle > 0 and deviation > 0):
             raise InputError(f"prior.{name}", list(pair), allowed)
         if name == "slope":
+            if middle < 1.0:
+                raise _too_flat("prior.slope", middle)
             found["slope"] = Normal(middle, deviation)
         elif name == "scatter_in_cycles":  # ln s of T_N = exp(2.563 s)
             own = math.log(middle) / math.log(ln_range(1.0))
@@ -213,6 +224,8 @@ def deviation_of(scatter_in_cycles: float) -> float:
 def check_held(slope: float | None, scatter_in_cycles: float | None) -> None:
     """Refuse a slope or scatter that is held outside the bounds of a line."""
     low, high = BOUNDS["slope"]
+    if slope is not None and 0 < abs(number_or_nan(slope)) < low:
+        raise _too_flat("slope", slope)
     if slope is not None and not low <= number_or_nan(slope) <= high:
         raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
     low, high = (ln_range(math.exp(end)) for end in BOUNDS["log_scatter"])

@@ -93,7 +93,7 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
             number = getattr(material, name)
             kind = f" for the family {material.family} (material '{material.name}')"
             sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
-        sentences.append(_exponent(material))
+        sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
     sentences += _ratings(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     for name in ("guide_profile", "roller_profile"):
@@ -121,14 +121,14 @@ def _unusual(name: str, number: float, unit: str, usual: tuple[float, float], ki
     return f"{name} = {number:g}{shown} is {off} the usual {low:g} to {high:g}{shown}{kind}{ask}."
 
 
-def _exponent(material: Material) -> str:
+def _exponent(material: Material, name: str) -> str:
     """Return the sentence about an exponent of the S-N curve that may be Basquin's b = 1/k, '' for a usual one."""
-    k = material.woehler_exponent
-    if EXPONENT[0] <= k <= EXPONENT[1]:
+    k = getattr(material, name)
+    if not isinstance(k, (int, float)) or EXPONENT[0] <= k <= EXPONENT[1] or math.isinf(k):
         return ""
     off = f"below the usual {EXPONENT[0]:g}" if k < EXPONENT[0] else f"above the usual {EXPONENT[1]:g}"
     ask = f"; if b is meant, k = 1/b: write {1.0 / k:.3g}" if k < EXPONENT[0] else ""
-    return f"woehler_exponent = {k:.4g} of the material '{material.name}' is {off}{ask}."
+    return f"{name} = {k:.4g} of the material '{material.name}' is {off}{ask}."
 
 
 def _ratings(values: Mapping[str, Any]) -> list[str]:

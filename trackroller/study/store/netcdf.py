@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import contextlib
+import json
 import math
 from pathlib import Path
 
@@ -14,6 +16,7 @@ from trackroller.files import memory
 ANY_BYTES = 1_000_000_000  # any file may declare so many bytes
 MOST_PACKED = 200  # bytes declared for each byte of a larger file; results of a study pack 2 to 20 times
 TEXT_BYTES = 100  # of a text in memory
+MOST_VARIABLES = 5_000  # a table has 1,000 columns at most, and each variable takes xarray longer than the one before
 
 
 def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
@@ -35,11 +38,31 @@ def read_netcdf(path: Path, what: str, remedy: str) -> xr.Dataset:
         with netCDF4.Dataset(path) as file:
             excess = too_large(file, path.stat().st_size)
         if excess is None:
-            return xr.load_dataset(path, engine="netcdf4")
-    except (OSError, ValueError, RuntimeError, AttributeError, IndexError, KeyError, TypeError, OverflowError) as exc:
+            found = xr.load_dataset(path, engine="netcdf4")
+            _check_attributes(found)
+            return found
+    except (
+        OSError,
+        ValueError,
+        RuntimeError,
+        AttributeError,
+        IndexError,
+        KeyError,
+        TypeError,
+        OverflowError,
+        RecursionError,
+    ) as exc:
         reason = " ".join(str(exc).split())[:200]
         raise InputError(what, str(path), "a netCDF file", remedy, f"cannot be read as netCDF ({reason})") from None
     raise InputError(what, str(path), "a netCDF file that fits the memory", remedy, excess)
+
+
+def _check_attributes(ds: xr.Dataset) -> None:
+    """Raise RecursionError for a text of nested lists or mappings that nobody could read."""
+    for text in ds.attrs.values():
+        if isinstance(text, str) and text[:1] in ("[", "{"):
+            with contextlib.suppress(json.JSONDecodeError):
+                json.loads(text)
 
 
 def too_large(file: netCDF4.Dataset, size: int) -> str | None:
@@ -58,6 +81,8 @@ def too_large(file: netCDF4.Dataset, size: int) -> str | None:
         None if the values fit the memory, and are as many as a file of this size can hold.
     """
     variables = file.variables.values()
+    if len(variables) > MOST_VARIABLES:
+        return f"declares {len(variables):,} variables, and {MOST_VARIABLES:,} are the most"
     values = sum(math.prod(variable.shape) for variable in variables)
     declared = sum(math.prod(v.shape) * getattr(v.dtype, "itemsize", TEXT_BYTES) for v in variables)
     if declared <= min(memory(), max(ANY_BYTES, MOST_PACKED * size)):
