@@ -329,6 +329,38 @@ ROW = "<row>" + "<c><v>1</v></c>" * 10 + "</row>"
 
 
 @pytest.mark.parametrize(
+    ("letters", "why"), [(200_000, r"line 2: part = 'x{40}\.\.\..*32,767 char"), (30_000, "50 million char")]
+)
+def test_cells_that_share_a_long_text_take_little_memory(letters, why, tmp_path):
+    """A workbook holds each text once; a copy for each cell would take gigabytes."""
+    rows = [["radial_force", "part"], *([-200 - i, "long"] for i in range(2_000))]
+    book = openpyxl.Workbook()
+    for row in rows:
+        book.active.append(row)
+    book.save(tmp_path / "own.xlsx")
+    sheet, kind = (
+        "http://schemas.openxmlformats.org/spreadsheetml/2006/main",
+        b"application/vnd.openxmlformats-officedocument",
+    )
+    links, shared = b"http://schemas.openxmlformats.org/officeDocument/2006/relationships", "xl/sharedStrings.xml"
+    added = {  # openpyxl itself writes the text into each cell
+        "[Content_Types].xml": b'<Override PartName="/%s" ContentType="%s.spreadsheetml.sharedStrings+xml"/></Types>'
+        % (shared.encode(), kind),
+        "xl/_rels/workbook.xml.rels": b'<Relationship Id="s" Type="%s/sharedStrings" Target="/%s"/></Relationships>'
+        % (links, shared.encode()),
+    }
+    with zipfile.ZipFile(tmp_path / "own.xlsx") as old, zipfile.ZipFile(tmp_path / "t.xlsx", "w") as new:
+        for name in old.namelist():
+            content = old.read(name).replace(b't="inlineStr"><is><t>long</t></is>', b't="s"><v>0</v>')
+            more = added.get(name, b"")
+            new.writestr(name, content.replace(more[more.rfind(b"</") :], more) if more else content)
+        text = f'<sst xmlns="{sheet}"><si><t xml:space="preserve">{"x" * letters} </t></si></sst>'
+        new.writestr(shared, text)
+    with pytest.raises(tr.InputError, match=why):
+        table(tmp_path / "t.xlsx")
+
+
+@pytest.mark.parametrize(
     ("part", "content", "why"),
     [
         ("sheet1.xml", (ROW, 400_000), "unpacks to at most 50 MB"),

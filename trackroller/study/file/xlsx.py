@@ -21,6 +21,7 @@ from trackroller.numerics.cells import Refused, Stored
 
 MAX_UNPACKED = 50_000_000  # bytes of all parts
 MAX_CELLS = 500_000  # also empty ones between others
+MAX_LETTERS = 32_767  # of a cell, as in Excel; many cells may share one text
 MAX_TAGS = 4 * MAX_CELLS  # of a sheet or of its texts: a cell with a number has four
 MAX_OTHER_TAGS = 100_000  # of any other part, such as the formats, each of which takes openpyxl 50 us
 MAX_COLUMNS = 1_000
@@ -297,9 +298,13 @@ def _rows(sheet: Any, facts: _Facts) -> Lines:
         return []
     sheet.reset_dimensions()  # some programs write wrong ones
     lines: Lines = []
-    width = 0
+    width = letters = 0
     for number, row in enumerate(sheet.iter_rows(max_row=facts.last, max_col=facts.width), start=1):
         cells = [_text(cell) for cell in row]
+        letters += sum(map(len, cells))
+        if letters > MAX_UNPACKED:
+            allowed = f"cells of at most {MAX_UNPACKED // 1_000_000} million characters in all"
+            raise InputError("sheet", sheet.title, allowed, "Remove the long texts, or save the sheet as CSV.")
         for j in range(len(cells)):
             if (formula := facts.formulas.get((number, j + 1))) is not None:
                 cells[j] = formula.checked(cells[j], facts.sums_up((number, j + 1)), facts.computed_on_load)
@@ -343,7 +348,10 @@ def _text(cell: Any) -> str:
         return str(value).upper()
     if isinstance(value, (int, float)):
         return _formatted(value, cell.number_format)
-    return str(value).strip()
+    text = str(value)
+    if len(text) > MAX_LETTERS:
+        return Refused(f"{text[:40]}...", f"a text of at most {MAX_LETTERS:,} characters", "Shorten the text.")
+    return text.strip()
 
 
 def _formatted(value: float, code: str) -> str:
