@@ -89,10 +89,9 @@ def test_a_list_of_cases_and_a_chunk_are_called_corrupt(tmp_path):
 
 def test_commands_refuse_it_in_one_line(tmp_path):
     bomb = write_bomb(tmp_path / "bomb.nc")
-    wear = ("wear", "--to", "1km", "-o", bomb, "-q")
-    for words, why in ((("explore", bomb), "4,000,000,000 values"), (wear, "trackroller did not write")):
+    for words in (("explore", bomb), ("wear", "--to", "1km", "-o", bomb, "-q")):
         line = trackroller(*words, cwd=tmp_path, code=2).stderr
-        assert why in line and len(line.splitlines()) <= 2 and "Traceback" not in line
+        assert "4,000,000,000 values" in line and len(line.splitlines()) <= 2 and "Traceback" not in line
 
 
 def test_a_large_file_that_holds_its_values_is_read(tmp_path, monkeypatch):
