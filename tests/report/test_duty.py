@@ -145,3 +145,8 @@ def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypat
     plain = tr.run("e.yaml", progress=False)
     assert "1 year]" not in plain.report("e.html").read_text(encoding="utf-8")
     assert not any("years" in name for name in (*plain.to_table(), *(c.name for c in collect(plain))))
+
+
+def test_a_duty_among_the_values_of_the_roller_is_sent_to_its_place():
+    with pytest.raises(tr.InputError, match=r"base\.duty = .* Write duty: .* on a line of its own"):
+        tr.load_study({"name": "d", "base": {"duty": DUTY}, "factors": {"axial_force": {"values": [0, 30]}}})

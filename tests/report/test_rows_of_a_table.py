@@ -2,8 +2,10 @@
 
 import numpy as np
 import pytest
+import yaml
 
 import trackroller as tr
+from trackroller.report.build import report_text
 from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import rows_table, unanswered
 from trackroller.report.words.in_short import in_short
@@ -73,3 +75,53 @@ def test_a_coarse_life_states_its_error():
     assert error == pytest.approx(float(own.sel(body=coarse.verdict.best[0].body).values[worst])) and error > 0.1
     assert sum("is resolved to" in text and text.startswith("The life of the first candidate") for text in said) == 1
     assert not any(text.startswith("The life of the first candidate") for text in sure(contact_model="sliding")[1])
+
+
+PROPOSALS = """roller_profile_radius,radial_force,axial_force
+-6.4,-90,6
+-6.4,-180,12
+-6.4,-240,20
+-7,-90,6
+-7,-180,12
+-6.6,-90,6
+-6.6,-180,12
+-6.6,-240,20
+"""
+
+
+def test_proposals_are_compared_over_the_loads_that_each_was_tried_under(tmp_path, monkeypatch):
+    """One proposal was not tried at the largest load: it is not worse or better for that, and the page says so."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cases.csv").write_text(PROPOSALS, encoding="utf-8")
+    keys = {"name": "proposals", "design": "table", "table": "cases.csv", "contact_model": "sliding"}
+    target = {"analysis": {"target": {"roller_life_hours": {"min": 1}}}}
+    study = keys | {"base": {"motor_force": 0, "friction_coefficient": 0.15}} | target
+    results = tr.run(_file(tmp_path, study), progress=False)
+    candidates, table = results.candidates(), results.table
+    life = table["pair_life_to_first_limit_hours"].to_numpy()
+    both = table["radial_force"] > -200
+    worst = {radius: life[both & (table["roller_profile_radius"] == radius)].min() for radius in (-6.4, -6.6, -7.0)}
+    assert candidates.matched and candidates.untried.sum() == 2
+    assert results.verdict.kind == "build"
+    (best,) = results.verdict.best
+    assert best.choices["roller_profile_radius"] == max(worst, key=worst.get)
+    assert best.low == max(worst.values())
+    text = report_text(results)
+    assert "compared over the 2 conditions that each was tried under" in text
+    assert "radial force −240 N, axial force 20 N" in text and "which 2 rows have for some designs only" in text
+
+
+def test_one_shared_load_is_too_little_to_compare_proposals(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    rows = [line for line in PROPOSALS.splitlines() if line != "-7,-180,12"]
+    (tmp_path / "cases.csv").write_text("\n".join(rows) + "\n", encoding="utf-8")
+    keys = {"name": "proposals", "design": "table", "table": "cases.csv", "contact_model": "sliding"}
+    results = tr.run(_file(tmp_path, keys | {"base": {"motor_force": 0}}), progress=False)
+    assert results.verdict.kind == "cannot_tell" and not results.candidates().untried.any()
+
+
+def _file(folder, keys):
+    """Write a study file, beside which its table is found."""
+    path = folder / "study.yaml"
+    path.write_text(yaml.safe_dump(keys), encoding="utf-8")
+    return path

@@ -23,6 +23,7 @@ from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.roles import roles_of
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
+SHARED = 2  # conditions that all designs of a table must have, so that they are compared over these alone
 STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")  # compared in a study without lives
 TIED = 1e-9  # relative difference of lives that count as equal
 
@@ -84,6 +85,23 @@ def _input(results: Results, name: str) -> np.ndarray:
     return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
 
 
+def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
+    """Mark the rows whose conditions every design has once; none if there are fewer than `SHARED` such conditions.
+
+    Parameters
+    ----------
+    place : number of the design of each row, -1 for rows that are not compared, shape (n,)
+    use : number of the condition of each row, shape (n,)
+    """
+    rows = np.flatnonzero(place >= 0)
+    pairs = pd.DataFrame({"place": place[rows], "use": use[rows]})
+    tried = pairs.drop_duplicates().groupby("use").size()
+    shared = tried.index[tried == place.max() + 1].to_numpy()
+    kept = np.isin(use, shared) & (place >= 0)
+    each_once = not pairs[kept[rows]].duplicated().any()
+    return kept if len(shared) >= SHARED and each_once else np.zeros(len(use), dtype=bool)
+
+
 @dataclass(frozen=True)
 class Candidates:
     """The designs of a study.
@@ -95,6 +113,7 @@ class Candidates:
     goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller
     place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model
     matched : whether each design has the same conditions, each once
+    untried : rows of a table whose conditions were not tried with every design, shape (n,) bool; no design has them
     """
 
     results: Results
@@ -103,6 +122,7 @@ class Candidates:
     goal: tuple[str, str, str]
     place: np.ndarray
     matched: bool
+    untried: np.ndarray
 
     @classmethod
     def of(cls, results: Results, free: tuple[str, ...] = ()) -> Candidates | None:
@@ -136,10 +156,15 @@ class Candidates:
         own = of_one_model(results, np.ones(len(results.table), dtype=bool), model)
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
-        use = codes(results.table, conditions)[own]
-        several, many = place.max() + 1, len(np.unique(use))
-        pairs = len(np.unique(place[own] * (use.max() + 1) + use))
-        return cls(results, choices, conditions, goal, place, bool(pairs == own.sum() == several * many))
+        use = codes(results.table, conditions)
+        shared = _shared(place, use) if results.config.method.observed else np.zeros(len(use), dtype=bool)
+        untried = own & ~shared if shared.any() else shared
+        place = np.where(untried, -1, place)
+        kept = place >= 0
+        several, many = place.max() + 1, len(np.unique(use[kept]))
+        pairs = len(np.unique(place[kept] * (use.max() + 1) + use[kept]))
+        matched = bool(pairs == kept.sum() == several * many)
+        return cls(results, choices, conditions, goal, place, matched, untried)
 
     @cached_property
     def size(self) -> np.ndarray:

@@ -253,7 +253,8 @@ def ends_text(low: float, high: float, beyond: str, unit: str) -> str:
     """Write a life as its two ends, or as one number where they are the same; `beyond` says what it lies beyond."""
     if math.isinf(low) or high <= low * (1 + SAME):
         return lasting(low, unit, bool(beyond))
-    text = f"{rounded(low)} to {quantity(high, unit)}"
+    ends = quantity(low, unit), quantity(high, unit)
+    text = f"{ends[0] if '(' in ends[1] else rounded(low)} to {ends[1]}"  # years stand behind both ends or none
     text = text if math.isfinite(high) else f"at least {quantity(low, unit)}"
     return text + f" ({beyond})" * bool(beyond)
 

@@ -161,7 +161,7 @@ def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
     title = "Targets by level of a factor" if levels else "Targets"
     if table["target_probability"].ndim == 1:
         rows = [["All cases", *_cells(table, "target")], *levels]
-        if met := _designs_that_meet(table, results):
+        if met := _designs_that_meet(table, results)[: len(rows)]:  # a table shows no levels
             heads.insert(0, "Designs that meet all in all conditions")
             rows = [[row[0], count_of, *row[1:]] for row, count_of in zip(rows, met, strict=True)]
         return [Table("targets", title, ["Level", *heads], rows, " ".join(said))]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from trackroller.damage import LIMITS
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
@@ -17,6 +19,7 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.words.designs import (
     SAME,
+    condition_words,
     design_words,
     ended_by,
     ends_words,
@@ -73,6 +76,7 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.without(),
         words.models(),
         words.aside(),
+        words.untried(),
         words.open_limits(),
         words.guessed(),
         words.unchecked(),
@@ -336,6 +340,15 @@ class _Words:
             holds = "" if math.isnan(one.holds) else quantity(one.holds, unit)
             shown.append((self.name(one), REASONS.get(one.ends, one.ends), holds))
         return say("verdict", "not_judged", shown=shown, left=len(others) - len(shown), rises=found.goal_rises)
+
+    def untried(self) -> Sentence | None:
+        """Name the conditions of a table that not every design was tried under."""
+        rows = np.flatnonzero(self.candidates.untried)
+        if not len(rows):
+            return None
+        named = list(dict.fromkeys(condition_words(self.candidates, int(row)) for row in rows))
+        shared = int(self.candidates.size[0])
+        return say("verdict", "untried", shared=shared, rows=len(rows), named=named[:MOST], left=len(named) - MOST)
 
     def without(self) -> Sentence | None:
         """Name the candidate that only a constraint of the study keeps out."""

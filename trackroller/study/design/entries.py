@@ -110,7 +110,7 @@ def base_value(key: Any, value: Any, section: str = "base") -> Any:
     InputError : unknown field, or a value outside its bounds
     """
     known = (*CASE_FIELDS, "material_pair")
-    if key in OPTIONS:
+    if key in (*OPTIONS, "duty"):
         remedy = f"Write {key}: {value} on a line of its own that is not indented."
         raise InputError(f"{section}.{key}", value, "parameters of the roller", remedy, "is a key of the study")
     if key not in known:
