@@ -67,7 +67,7 @@ def test_every_sentence_on_a_spectrum_is_true():
             assert hours == pytest.approx(drive / total[worst], rel=0.006)
             assert f"contact {worst + 1} fails first" in said.text
             most = int(np.argmax(damage[:, worst]))
-            told = float(re.search(r"and ([\d.]+) % of its damage", said.text)[1])
+            told = float(re.search(r"and (?:over |below )?([\d.]+) % of its damage", said.text)[1])
             assert f"'{spec.blocks[most].name}'" in said.text
             assert told == pytest.approx(100 * damage[most, worst] / total[worst], abs=0.51)
     assert kinds == {"spectrum", "spectrum_unknown", "spectrum_unlimited"}
