@@ -196,3 +196,16 @@ def test_a_roller_that_does_not_roll_is_the_worst_one():
     assert ds["regime"].values.tolist() == lifted and lifted[0] == 2 and lifted[2] == 0
     some = solved[LIFE].values[(row == 0) & (regime == 0)]
     assert len(some) and np.isfinite(some).all() and np.isnan(ds[LIFE].values[0])
+
+
+def test_a_load_case_without_a_speed_has_the_velocity_of_the_roller():
+    """It counts in the hours of the carriage, also where the first load case states another speed."""
+    cases = [{"name": "run", "share": 0.4, "speed": 2.0}, {"name": "creep", "share": 0.6}]
+    made = rolled(cases=cases)
+    for roller in made["rollers"].values():
+        roller["roller"] = OVERROLLED | {"velocity": 12}
+    found = tr.run(study(made, factors={"carriage_payload": {"values": [20, 60]}}), progress=False).data
+    alone = tr.carriage(made)
+    own = float(alone.life_hours.sel(roller=alone.attrs["worst_roller"]))
+    assert float(found[LIFE].sel(carriage_payload=60)) == pytest.approx(own, rel=2e-3)  # `standard` there
+    assert float(alone.life_hours[0] / alone.life_km[0]) == pytest.approx(0.4 / 7.2 + 0.6 / 0.72)

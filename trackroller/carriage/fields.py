@@ -11,9 +11,7 @@ import numpy as np
 
 from trackroller.carriage.file import Carriage, LoadCase, PointMass, Preload, check_curves
 from trackroller.errors import unknown_name
-from trackroller.parameters.of_carriage import OF_LOAD_CASE, OF_ROLLER, OF_WHOLE, PREFIX, split_field, word_of
-
-_AXES = ("x", "y", "z")
+from trackroller.parameters.of_carriage import AXES, OF_LOAD_CASE, OF_ROLLER, OF_WHOLE, PREFIX, split_field, word_of
 
 
 def fields_of(whole: Carriage) -> list[str]:
@@ -107,7 +105,7 @@ def _of_roller(whole: Carriage, field: str, place: str, value: float) -> Carriag
 
 def _moved(at: np.ndarray, axis: str, value: float) -> np.ndarray:
     new = at.copy()
-    new[_AXES.index(axis)] = value
+    new[AXES.index(axis)] = value
     return new
 
 
@@ -117,7 +115,7 @@ def _stretched(axis: int) -> Callable[[Carriage, float], Carriage]:
         middle, distance = (places.max() + places.min()) / 2, np.ptp(places)
         new = middle + (places - middle) * value / distance
         pairs = zip(whole.rollers, new, strict=True)
-        return replace(whole, rollers=tuple(replace(r, at=_moved(r.at, _AXES[axis], x)) for r, x in pairs))
+        return replace(whole, rollers=tuple(replace(r, at=_moved(r.at, AXES[axis], x)) for r, x in pairs))
 
     return change
 
@@ -134,7 +132,7 @@ def _payload_place(axis: int) -> Callable[[Carriage, float], Carriage]:
         weights = np.array([one.value for one in whole.payloads])
         weights = weights if weights.sum() > 0 else np.ones(len(weights))
         step = value - float(np.average([one.at[axis] for one in whole.payloads], weights=weights))
-        moved = (PointMass(one.value, _moved(one.at, _AXES[axis], one.at[axis] + step)) for one in whole.payloads)
+        moved = (PointMass(one.value, _moved(one.at, AXES[axis], one.at[axis] + step)) for one in whole.payloads)
         return replace(whole, payloads=tuple(moved))
 
     return change
@@ -169,6 +167,6 @@ _OF_WHOLE: dict[str, Callable[[Carriage, float], Carriage]] = {
     "payload": _payload,
     "preload": _pairs("preload"),
     "play": _pairs("play"),
-    **{f"{part}_{axis}": _at(part, axis) for part in ("mass", "drive") for axis in _AXES},
-    **{f"payload_{axis}": _payload_place(i) for i, axis in enumerate(_AXES)},
+    **{f"{part}_{axis}": _at(part, axis) for part in ("mass", "drive") for axis in AXES},
+    **{f"payload_{axis}": _payload_place(i) for i, axis in enumerate(AXES)},
 }

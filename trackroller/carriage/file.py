@@ -31,7 +31,7 @@ from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
 from trackroller.roller.duty import checked_duty
-from trackroller.roller.settings import checked_case
+from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 FILE_FIELDS = (
@@ -42,6 +42,7 @@ ROLLER_FIELDS = ("at", "pushes", "x_R", "kind", "roller", "stiffness", "bearing"
 CASE_FIELDS = (*("name", "share", "acceleration", "speed", "curve_radius", "gradient", "cant", "payload", "forces"),)
 CATALOGUE_FIELDS = ("radial_force", "axial_force", "basic_life", "lubricated", "offset")
 KINDS = ("locating", "floating")
+OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage gives
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
 IN_LINE = 1e-3  # of the distance: rollers of a pair press against each other if they are off their line by less
 _POINT = "three numbers [x, y, z] in mm: x forward, y left, z up"

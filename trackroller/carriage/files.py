@@ -9,13 +9,12 @@ from typing import Any
 
 import xarray as xr
 
-from trackroller.carriage.file import Carriage
+from trackroller.carriage.file import OF_LOADS, Carriage
 from trackroller.carriage.solve import cases_of
 from trackroller.errors import InputError, check_names
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 
-TABLED = (*LOADS, "velocity")  # columns of each table of loads
 HEADS = "load_case,roller,share"  # the columns before them, which say where a load comes from
 
 
@@ -99,11 +98,11 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
             raise InputError(f"rollers.{roller.name}.roller", None, "the file of the roller", "Add roller: FILE.")
     _check_same_options(whole)
     base, varying = _shared(whole)
-    units = {name: PARAMETERS[name].unit for name in (*varying, *TABLED) if name in PARAMETERS}
-    heads = [*HEADS.split(","), *TABLED, *varying]
+    units = {name: PARAMETERS[name].unit for name in (*varying, *OF_LOADS) if name in PARAMETERS}
+    heads = [*HEADS.split(","), *OF_LOADS, *varying]
     rows: list[list[Any]] = [[f"{name} [{units[name]}]" if units.get(name, "-") != "-" else name for name in heads]]
     for (i, j), case in sorted(cases_of(whole, ds).items()):
-        fields = [getattr(case, name) for name in (*TABLED, *varying)]
+        fields = [getattr(case, name) for name in (*OF_LOADS, *varying)]
         shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
         rows.append([whole.cases[i].name, whole.rollers[j].name, f"{whole.cases[i].share:.10g}", *shown])
     out = io.StringIO()
@@ -114,7 +113,7 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
         text += f" Rollers that are lifted carry no load and have no row, {lifted} in all."
     study = {"name": f"{whole.name}-loads", "description": text, "base": base, "design": "table", "table": table}
     columns = zip(heads, zip(*rows[1:], strict=True), strict=True)
-    varies = [name for name, column in columns if name not in TABLED and len({*column}) > 1]
+    varies = [name for name, column in columns if name not in OF_LOADS and len({*column}) > 1]
     study["roles"] = dict.fromkeys(varies, "condition")  # all cases are conditions of one design
     duty = {} if whole.duty is None else {"duty": dict(whole.duty)}
     given = whole.rollers[0].options
@@ -136,13 +135,13 @@ def _check_same_options(whole: Carriage) -> None:
 def _shared(whole: Carriage) -> tuple[dict[str, Any], list[str]]:
     """Return what the files of all rollers say alike, and the fields in which the rollers differ."""
     given = [
-        {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key not in TABLED}
+        {key: value for key, value in parts_for_spectrum(roller.given)[0].items() if key not in OF_LOADS}
         for roller in whole.rollers
     ]
     if all(one == given[0] for one in given):
         return given[0], []
     cases = [roller.case for roller in whole.rollers if roller.case is not None]
-    fields = [{key: value for key, value in case.as_dict().items() if key not in TABLED} for case in cases]
+    fields = [{key: value for key, value in case.as_dict().items() if key not in OF_LOADS} for case in cases]
     varying = [key for key in fields[0] if any(one[key] != fields[0][key] for one in fields)]
     for key in varying:
         if key in MAPPING_FIELDS:

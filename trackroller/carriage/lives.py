@@ -18,6 +18,21 @@ from trackroller.parameters import BODIES
 from trackroller.roller.output_names import declared
 
 
+def hours_per_km(share: np.ndarray, speed: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Return the hours that a carriage travels for a km with all its load cases, (n,) [h/km].
+
+    Parameters
+    ----------
+    share : numpy.ndarray, shape (load_case,)
+        Shares of the travel [1].
+    speed : numpy.ndarray, shape (n, load_case)
+        Speeds [m/s]; NaN for a load case that states none, which has the velocity of the roller.
+    velocity : numpy.ndarray, shape (n,)
+        Velocity that the file of the roller states [m/min].
+    """
+    return np.asarray(np.sum(share / np.where(np.isnan(speed), 0.06 * velocity[:, None], 3.6 * speed), axis=1))
+
+
 class Lives:
     """The lives of rollers that are solved in several load cases.
 

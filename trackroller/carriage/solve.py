@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.carriage.file import Carriage, MountedRoller, load_carriage
-from trackroller.carriage.lives import Lives
+from trackroller.carriage.file import OF_LOADS, Carriage, MountedRoller, load_carriage
+from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.loads import Loads, loads_of
 from trackroller.carriage.statics import (
     MOTIONS,
@@ -355,7 +355,7 @@ def doubts_of_rollers(whole: Carriage, ds: xr.Dataset) -> list[str]:
             continue
         loaded = [case for (_, own), case in cases.items() if own == j]
         values = {name: value for name, value in roller.case.as_dict().items() if name not in LOADS}
-        values |= {name: [getattr(case, name) for case in loaded] for name in (*LOADS, "velocity") if loaded}
+        values |= {name: [getattr(case, name) for case in loaded] for name in OF_LOADS if loaded}
         for text in _unused_loads(roller):
             by_text.setdefault(text, []).append(roller.name)
         known = doubts(values, (database.material(values[f"{body}_material"]) for body in BODIES))
@@ -403,7 +403,8 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     case_hours, regime, damage = np.full(shape, np.inf), np.full(shape, -1, dtype=np.int8), np.zeros(shape)
     flagged = np.zeros(shape, dtype=np.int64)
     lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
-    pace = _hours_per_km(whole, ds)
+    own = np.array([roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float)
+    pace = hours_per_km(ds["share"].values, np.tile(ds["speed"].values, (n, 1)), own)
     flags: Mapping[str, Any] = {}
     cases = cases_of(whole, ds)
     groups: dict[str, list[tuple[int, int]]] = {}
@@ -446,15 +447,3 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     known = np.where(np.isnan(travel), np.inf, travel)
     worst = ds["roller"].values[int(np.argmin(known))] if np.isfinite(known).any() else ""
     return ds.assign(variables).assign_attrs(worst_roller=str(worst))
-
-
-def _hours_per_km(whole: Carriage, ds: xr.Dataset) -> np.ndarray:
-    """Return the hours that the carriage travels for a km, by roller [h/km].
-
-    A load case that states no speed has the velocity of the roller.
-    """
-    own = [0.06 * float(roller.case.velocity) for roller in whole.rollers if roller.case is not None]
-    speed = ds["speed"].values[:, None]
-    return np.asarray(
-        np.sum(ds["share"].values[:, None] / np.where(np.isnan(speed), np.array(own), 3.6 * speed), axis=0)
-    )

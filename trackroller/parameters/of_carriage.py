@@ -13,6 +13,7 @@ from trackroller.numerics.parameter import Parameter
 from trackroller.parameters.numbers import PARAMETERS
 
 PREFIX = "carriage_"
+AXES = ("x", "y", "z")
 _SMALL = 1e-9
 LABELS = {"mass": "mass of the carriage"} | {  # where the name says too little
     f"{part}{axis}": f"{words} {axis}"
@@ -22,7 +23,7 @@ LABELS = {"mass": "mass of the carriage"} | {  # where the name says too little
         ("drive_", "drive in"),
         ("", "place of the roller in"),
     )
-    for axis in ("x", "y", "z")
+    for axis in AXES
 }
 
 
@@ -31,7 +32,6 @@ def _field(name: str, unit: str, meaning: str, role: str = "choice", **more: obj
     return Parameter(PREFIX + name, "", unit, math.nan, meaning, label=label, role=role, **more)  # type: ignore[arg-type]
 
 
-_AXES = ("x", "y", "z")
 OF_LOAD_CASE = {  # fields of each load case
     field.name: field
     for field in (
@@ -50,7 +50,7 @@ OF_LOAD_CASE = {  # fields of each load case
     )
 }
 OF_ROLLER = {  # coordinates of one roller
-    field.name: field for field in (_field(axis, "mm", f"coordinate {axis} of a roller") for axis in _AXES)
+    field.name: field for field in (_field(axis, "mm", f"coordinate {axis} of a roller") for axis in AXES)
 }
 OF_WHOLE = {  # fields of the whole carriage
     field.name: field
@@ -58,13 +58,13 @@ OF_WHOLE = {  # fields of the whole carriage
         _field("wheelbase", "mm", "distance along x of the foremost and the rearmost roller", lower=_SMALL),
         _field("gauge", "mm", "distance along y of the outermost rollers", lower=_SMALL),
         _field("mass", "kg", "mass of the carriage without payload", lower=0.0),
-        *(_field(f"mass_{axis}", "mm", f"coordinate {axis} of this mass") for axis in _AXES),
+        *(_field(f"mass_{axis}", "mm", f"coordinate {axis} of this mass") for axis in AXES),
         _field("payload", "kg", "mass of all payloads together", "condition", lower=0.0),
         *(
             _field(f"payload_{axis}", "mm", f"coordinate {axis} of the common centre of the payloads", "condition")
-            for axis in _AXES
+            for axis in AXES
         ),
-        *(_field(f"drive_{axis}", "mm", f"coordinate {axis} of the point at which the drive pulls") for axis in _AXES),
+        *(_field(f"drive_{axis}", "mm", f"coordinate {axis} of the point at which the drive pulls") for axis in AXES),
         _field("preload", "N", "force between the rollers of each pair with preload", lower=0.0),
         _field("play", "mm", "play of each pair with play", lower=0.0),
     )

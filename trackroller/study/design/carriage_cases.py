@@ -16,13 +16,15 @@ import numpy as np
 import xarray as xr
 
 from trackroller.carriage.fields import changed
-from trackroller.carriage.lives import Lives
+from trackroller.carriage.file import OF_LOADS
+from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.solve import forces_of
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.of_carriage import field_of
 from trackroller.roller.settings import LOADS
 from trackroller.study.design.build import build, columns_of, dataset_of
+from trackroller.study.design.entries import GEOMETRY
 
 if TYPE_CHECKING:
     from trackroller.carriage.file import Carriage
@@ -32,11 +34,7 @@ if TYPE_CHECKING:
 
 ROW, ROLLER, LOAD_CASE, SHARE, HOURS = "design_row", "carriage_roller", "load_case", "share", "hours_per_km"
 REASONS = "carriage_reasons"  # attribute: JSON, why the rollers do not hold the carriage, by the number of its row
-OF_LOADS = (*LOADS, "velocity")  # parameters that the carriage gives
-STIFF = (  # parameters of a roller that decide the stiffness of its contacts
-    *("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle"),
-    *MATERIAL_FIELDS,
-)
+STIFF = (*GEOMETRY, *MATERIAL_FIELDS)  # parameters of a roller that decide the stiffness of its contacts
 DIGITS = 8  # of a force: the last digits depend on the processor, and a case is known by its numbers
 
 
@@ -75,7 +73,8 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
     """
     places, reasons = _loads(design, whole)
     number = places["roller"]
-    parts, order = [], []
+    shares = np.array([case.share for case in whole.cases])
+    parts, order, hours = [], [], []
     for j, roller in enumerate(whole.rollers):
         own = np.flatnonzero(number == j)
         if not len(own) or roller.case is None:
@@ -86,8 +85,9 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
         columns, friction = columns_of(base, given, len(own), materials)
         for name in LOADS:
             columns[name] = places[name][own]
-        speed = places["speed"][own]
-        columns["velocity"] = np.where(np.isnan(speed), columns["velocity"].astype(float), 60 * speed)
+        velocity, speed = columns["velocity"].astype(float), places["speed"][own]
+        hours.append(hours_per_km(shares, places["speeds"][own], velocity))
+        columns["velocity"] = np.where(np.isnan(speed), velocity, 60 * speed)
         parts.append(dataset_of(columns, given.get("material_pair"), {}, friction))
         order.append(own)
     if not parts:
@@ -95,8 +95,6 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
         raise InputError("carriage", whole.name, "a carriage that its rollers hold in a row of the design", "", first)
     sort = np.argsort(np.concatenate(order))
     cases = xr.concat([part.drop_vars("case") for part in parts], "case", combine_attrs="override").isel(case=sort)
-    velocity = cases["velocity"].values
-    shares = np.array([case.share for case in whole.cases])[places["load_case"]]
     words = {"long_name": "case number", "units": "1"}
     coords: dict[str, Any] = {
         "case": ("case", np.arange(len(sort)), words),
@@ -107,8 +105,8 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
             _names([case.name for case in whole.cases], places["load_case"]),
             {"long_name": "load case of the carriage"},
         ),
-        SHARE: ("case", shares, {"long_name": "share of the travel", "units": "1"}),
-        HOURS: ("case", _hours(places, velocity, whole), {"long_name": "hours of travel for a km", "units": "h km-1"}),
+        SHARE: ("case", shares[places["load_case"]], {"long_name": "share of the travel", "units": "1"}),
+        HOURS: ("case", np.concatenate(hours)[sort], {"long_name": "hours of travel for a km", "units": "h km-1"}),
     }
     attrs = {"study_name": config.name, "seed": config.seed, REASONS: json.dumps(reasons)}
     return cases.assign_coords(coords).assign_attrs(attrs)
@@ -117,18 +115,6 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
 def _names(names: list[str], numbers: np.ndarray) -> np.ndarray:
     named: np.ndarray = np.array(names, dtype=object)[numbers]
     return named
-
-
-def _hours(places: Mapping[str, np.ndarray], velocity: np.ndarray, whole: Carriage) -> np.ndarray:
-    """Return the hours that a carriage travels for a km with all its load cases, for each case [h/km].
-
-    A load case that states no speed has the velocity of the roller.
-    """
-    hours = np.zeros(len(velocity))
-    for i, case in enumerate(whole.cases):
-        speed = places["speeds"][:, i]
-        hours += case.share / np.where(np.isnan(speed), 0.06 * velocity, 3.6 * speed)
-    return hours
 
 
 def _loads(design: Design, whole: Carriage) -> tuple[dict[str, np.ndarray], dict[int, str]]:

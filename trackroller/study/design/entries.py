@@ -20,6 +20,7 @@ from trackroller.roller.fields import mapping_text
 from trackroller.roller.output_names import PARTS
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
+GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
 OPTION_FACTORS = {option.name: option.values for option in OPTIONS.values() if option.factor}
 RESERVED = frozenset(  # names of the data set of a study that a factor of its own cannot have
     (

@@ -20,7 +20,7 @@ from trackroller.roller.fields import FIELDS, other_than_default
 from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
-from trackroller.study.design.entries import OPTION_FACTORS, check_own_name
+from trackroller.study.design.entries import GEOMETRY, OPTION_FACTORS, check_own_name
 from trackroller.study.design.read_table import table_lines
 from trackroller.study.design.roles import check_roles
 from trackroller.study.file.correlations import check_design
@@ -36,7 +36,6 @@ if TYPE_CHECKING:
 
 
 MOST_LEVELS = 12
-_GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
 
 
 def _check_options(study: Study) -> None:
@@ -249,17 +248,17 @@ def check_geometry(study: Study) -> None:
     drawn = config.method.observed or any(factor.kind == "expression" for factor in study.parsed.values())
     if drawn or config.carriage is not None:
         design = study.design()
-        problems = list(geometry_problems({name: design[name].values for name in _GEOMETRY}))
+        problems = list(geometry_problems({name: design[name].values for name in GEOMETRY}))
         if problems and config.method.observed:
             lines = table_lines(study.table_path)
             raise_all(problem.at(study.table_path, lines[row]) for row, problem in problems)
         problem = problems[0][1] if problems else None
     else:
-        levels = [_ends(study, name) for name in _GEOMETRY]
+        levels = [_ends(study, name) for name in GEOMETRY]
         if math.prod(map(len, levels)) > MAX_CASES:
             raise InputError("design", "grid of the geometry", f"at most {MAX_CASES} cases")
         rows = np.array(list(itertools.product(*levels)), dtype=float)
-        problem = geometry_problem({name: rows[:, i] for i, name in enumerate(_GEOMETRY)})
+        problem = geometry_problem({name: rows[:, i] for i, name in enumerate(GEOMETRY)})
     if problem is not None:
         where = "factors" if problem.field in study.factors else "base"
         raise problem.named(f"{where}.{problem.field}")
