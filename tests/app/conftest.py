@@ -1,8 +1,9 @@
-"""One server for the tests that only ask it."""
+"""One server for the tests that only ask it, and a browser for those that look at it."""
 
 from __future__ import annotations
 
 import pytest
+from browser import Browser
 from live_page import LivePage
 
 
@@ -12,3 +13,10 @@ def live(tmp_path_factory):
     page = LivePage(tmp_path_factory.mktemp("live"))
     yield page
     page.stop()
+
+
+@pytest.fixture(scope="module")
+def browser():
+    running = Browser()
+    yield running
+    running.close()

@@ -6,7 +6,7 @@ import json
 from contextlib import closing
 
 import pytest
-from browser import CHROMIUM, Browser, Page
+from browser import CHROMIUM, Page
 
 from trackroller.carriage.example import EXAMPLE
 from trackroller.study.spectrum.file import load_spectrum
@@ -16,13 +16,6 @@ pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="
 
 STAGE = "document.querySelector('.carriage .stage').dataset.stage"
 SETTLED = f"document.querySelector('.carriage') !== null && {STAGE} === 'complete'"
-
-
-@pytest.fixture(scope="module")
-def browser():
-    running = Browser()
-    yield running
-    running.close()
 
 
 @pytest.fixture

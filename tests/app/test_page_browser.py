@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 import yaml
-from browser import CHROMIUM, Browser, Page
+from browser import CHROMIUM, Page
 from live_page import LivePage
 
 pytestmark = [pytest.mark.browser, pytest.mark.skipif(CHROMIUM is None, reason="needs Chromium")]
@@ -24,13 +24,6 @@ factors: {friction_coefficient: {values: [0.1, 0.2]}}
 contact_model: sliding
 accuracy: preview
 """
-
-
-@pytest.fixture(scope="module")
-def browser():
-    running = Browser()
-    yield running
-    running.close()
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ import shlex
 from collections.abc import Mapping
 from pathlib import Path
 
-from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result, write_spectrum_file
+from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result, write_yaml_file
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.files import write_text
@@ -50,11 +50,11 @@ def run_carriage(
         ds = solve_carriage(whole)
     print_doubts(doubts_of_rollers(whole, ds))
     if target is not None and spectrum is not None:
-        write_spectrum_file(target, spectrum_of(whole, ds, spectrum))
+        write_yaml_file(target, spectrum_of(whole, ds, spectrum))
     elif target is not None and table is not None:
         keys, rows = study_of(whole, ds, table.name)
         write_text(table, rows)
-        write_spectrum_file(target, keys)
+        write_yaml_file(target, keys)
     elif target is not None:
         write_result(ds, target)
     if page is not None:

@@ -168,7 +168,7 @@ def _is_ours(path: Path, suffix: str) -> bool:
     )
 
 
-def write_spectrum_file(target: Path, values: Mapping[str, Any]) -> None:
+def write_yaml_file(target: Path, values: Mapping[str, Any]) -> None:
     """Write a spectrum or study file as YAML, with the mark by which `writable` knows it; `target` comes from there."""
     write_text(target, f"{BY_US}\n{write_yaml(values)}")
 
@@ -328,7 +328,7 @@ def _write_log(log: Path, roller: Path | None, out: Path | None, more: bool) -> 
     if roller is not None:
         case_of(roller, None)  # refuses wrong values before the log is read
     spectrum, notes = spectrum_of_log(log, given)
-    write_spectrum_file(target, spectrum)
+    write_yaml_file(target, spectrum)
     for note in notes:
         print(note)
 

@@ -218,7 +218,7 @@ class ByTests:
         return out
 
     def lives(self, name: str, values: np.ndarray, shift: Shift, end: str = "") -> np.ndarray:
-        """Return lives of a study when those by fatigue are moved.
+        """Return a column of lives after each life by fatigue has been moved.
 
         Parameters
         ----------

@@ -79,7 +79,7 @@ def alone(candidates: Candidates) -> bool:
 
 
 def lasting_one(candidates: Candidates) -> str:
-    """Return the word for what lasts: the carriage of a study of one, otherwise the pair or the roller alone."""
+    """Return the word for what lasts: in a study of carriages the carriage, otherwise the pair or the roller alone."""
     if candidates.results.study.carriage is not None:
         return "carriage"
     return "roller" if alone(candidates) else "pair"
