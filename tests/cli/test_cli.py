@@ -224,6 +224,9 @@ def wait_until(there, seconds=60):
     raise AssertionError("waited in vain")
 
 
+LOADED = "import atexit; atexit.register(lambda: print('loaded', *sys.modules))"
+
+
 @pytest.mark.parametrize(
     ("words", "code", "heavy"),
     [
@@ -234,9 +237,18 @@ def wait_until(there, seconds=60):
     ],
 )
 def test_an_answer_without_a_solution_loads_no_heavy_package(words, code, heavy, tmp_path):
-    program = f"import atexit, sys; from trackroller.cli.main import main; sys.argv[1:] = {words}; "
-    program += "atexit.register(lambda: print('loaded', *sys.modules)); main()"
+    program = f"import sys; from trackroller.cli.main import main; sys.argv[1:] = {words}; "
+    program += f"{LOADED}; main()"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
     loaded = set(done.stdout.partition("loaded ")[2].split())
     assert done.returncode == code and "typer" in loaded, done.stderr
     assert not loaded & (heavy | {"xarray", "matplotlib"})
+
+
+def test_one_roller_loads_only_what_it_needs(tmp_path):
+    program = "import sys; from trackroller.cli.__main__ import run; sys.argv[1:] = ['solve', '-o', 'one.nc']; "
+    program += f"{LOADED}; run()"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, cwd=tmp_path)
+    loaded = set(done.stdout.partition("loaded ")[2].split())
+    assert done.returncode == 0 and "xarray" in loaded, done.stderr
+    assert not loaded & {"dask.base", "trackroller.study.file.config", "scipy.stats", "matplotlib"}

@@ -216,7 +216,7 @@ def test_margins_against_the_searched_limits():
     results = results_of(ds.assign_coords(data))
     edges = [limits(c, "sliding").motor_force[0] for c in cases[:2]]
     expected = [1 - c.motor_force / edge for c, edge in zip(cases, edges, strict=False)]
-    np.testing.assert_allclose(slip_margin(results)[:2], expected, atol=1e-5)
+    np.testing.assert_allclose(slip_margin(results)[:2], expected, atol=5e-5)
     loads = ds["normal_force"].values
     np.testing.assert_allclose(lift_off_margin(results), loads.min(axis=1) / loads.max(axis=1))
     assert lift_off_margin(results)[2] < 0.01  # lifts at 78.08 N

@@ -63,7 +63,7 @@ def test_more_radial_force_holds_more_axial_force():
 
 def test_a_lifted_roller_still_has_the_axial_force_that_would_hold():
     lifted = limits(replace(CASE, axial_force=300))
-    assert lifted.axial_force[1] == pytest.approx(limits(replace(CASE, axial_force=0)).axial_force[1], rel=1e-6)
+    assert lifted.axial_force[1] == pytest.approx(limits(replace(CASE, axial_force=0)).axial_force[1], rel=5e-5)
     assert np.isnan(lifted.motor_force).all()
 
 

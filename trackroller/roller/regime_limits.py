@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 # Parts into which the first round, and each further one, cuts the range of each search. Cases near lift-off are dear,
 # and many rounds of few cases need the least of them.
-FIRST, ROUNDS = 16, (4,) * 12
+FIRST, ROUNDS = 8, (4,) * 8
 _LOCKED = validity_bit("jamming")
 _FRICTION = PARAMETERS["friction_coefficient"].upper
 _FIELD = {"locking": "friction_coefficient", "lifting": "friction_coefficient"}  # limits of one field
@@ -69,11 +69,11 @@ def limits(case: Case, contact_model: str = "kalker", database: MaterialDatabase
     Returns
     -------
     Limits
-        Each bound is exact to 1e-7 of the range searched: four times |F_rad| + |F_ax| for forces.
+        Each bound is exact to 2e-6 of the range searched: four times |F_rad| + |F_ax| for forces.
 
     Notes
     -----
-    Equilibria are solved with `accuracy="preview"`, in batches, about 300 in all.
+    Equilibria are solved with `accuracy="preview"`, in batches, about 150 in all.
     ASSUME: drawn and worn profiles are replaced by their nominal circles, for the equilibrium hardly depends on the
     shape of the patch. ASSUME: friction that falls with the slip speed is searched with full sliding, which is a
     thousand times cheaper and has the same complete friction.

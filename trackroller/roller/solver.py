@@ -41,7 +41,6 @@ if TYPE_CHECKING:
 
 # Every solution needs these modules; loading them here makes the first call as quick as the others.
 importlib.import_module("scipy.special")
-importlib.import_module("dask.array")  # xarray loads it with its first data set
 cpu_target.typing_context.refresh()
 cpu_target.target_context.refresh()
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from trackroller.materials import Material
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED
@@ -13,9 +13,11 @@ from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, MECHANICAL_M
 from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import capital, level_text, long_name, near, number, plain, rounded, row_unit, unit_text
 from trackroller.report.tables.table import Table
-from trackroller.results.results import Results
 from trackroller.roller.record import friction_records, is_default
 from trackroller.study.design.levels import NAMED, entries
+
+if TYPE_CHECKING:
+    from trackroller.results.results import Results
 
 SHOWN = (  # values of a material on a sheet
     *("youngs_modulus", "poisson_ratio", "tensile_strength", "fatigue_limit"),

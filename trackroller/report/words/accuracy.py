@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -12,9 +13,11 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import capital, level_text, number, percent
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.lives import FIRST_LIMIT
-from trackroller.results.results import Results
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
+
+if TYPE_CHECKING:
+    from trackroller.results.results import Results
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 SLIDING_WEAR = "Full sliding errs in friction energy, and so in wear, by 41 % in the median of 92 designs."
