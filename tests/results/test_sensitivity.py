@@ -73,6 +73,8 @@ def test_ishigami_indices_come_right_through_the_whole_chain(tmp_path):
         np.testing.assert_allclose(part["ST"], total, atol=0.03)
         assert (part["ST_low"] <= total).all() and (total <= part["ST_high"]).all()
         assert float(part["S2"].sel(factor="axial_force", factor_2="velocity")) == pytest.approx(pair, abs=0.04)
+        for one, other in (("axial_force", "motor_force"), ("motor_force", "velocity")):  # these act one by one
+            assert float(part["S2"].sel(factor=one, factor_2=other)) == pytest.approx(0.0, abs=0.05)
         assert int(part["reliable"]) == 1
         np.testing.assert_allclose(part["first"], first, atol=0.05)
     constant = result.sel(output="peak")
