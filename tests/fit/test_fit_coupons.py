@@ -11,8 +11,8 @@ import xarray as xr
 
 import trackroller as tr
 from trackroller.damage.sn_curve import SNCurve
-from trackroller.fit.fitted import posterior_path
 from trackroller.materials import load_database
+from trackroller.materials.file import posterior_path
 
 HEAD = "amplitude [MPa],cycles,failed\n"
 GOOD = "900,90000,yes\n900,130000,yes\n800,200000,yes\n800,350000,yes\n700,800000,yes\n700,1000000,yes\n"

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -11,6 +13,10 @@ from trackroller.materials import load_database
 from trackroller.report.numbers import rounded
 from trackroller.report.pages.sheet import collect
 from trackroller.report.words.by_tests import by_tests
+from trackroller.study.file.load import parse_study
+from trackroller.study.run import run_study
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.inputs import study_of_folder
 
 RIG = {"motor_force": 0, "friction_coefficient": 0.1, "axial_force": 20}
 
@@ -100,3 +106,26 @@ def test_bands_widen_with_fewer_tests(rig):
     many = tr.fit_bench(rows, base=RIG | {"contact_model": "sliding"})
     wide, narrow = (np.diff(np.log(fit.interval("fatigue_strength")))[0] for fit in (rig, many))
     assert narrow < 0.6 * wide
+
+
+def test_a_study_keeps_the_fits_of_its_materials(rig, tmp_path, monkeypatch):
+    """The folder of a study, copied to where nothing was fitted, has the same range of lives by tests."""
+    first = tr.run(study(factors={"radial_force": {"values": [-180, -120]}}), progress=False, results=tmp_path / "here")
+    assert (tmp_path / "here" / "meets" / "inputs" / "fits" / "rig-steel.nc").is_file()
+    monkeypatch.delenv("TRACKROLLER_MATERIALS")
+    there = shutil.copytree(tmp_path / "here" / "meets", tmp_path / "there")
+    moved = tr.open_study(there)
+    assert moved.by_tests.fits["rig steel"].rows == len(rig.tests)
+    low, high = (moved.by_tests.ends("roller", 0.5)[end] for end in (0, 1))
+    assert np.all(low < high)
+    np.testing.assert_array_equal(low, first.by_tests.ends("roller", 0.5)[0])
+    again = run_study(study_of_folder(StudyFolder(there)), tmp_path / "again")
+    assert tr.open_study(again.folder.root).by_tests.fits.keys() == {"rig steel"}
+    assert tr.open_study(moved.data).by_tests is None, "a data set alone has no fits"
+
+
+@pytest.mark.parametrize("design", [{"design": "grid"}, {"design": "morris"}])
+def test_a_design_without_random_rows_takes_no_scatter_of_a_fit(rig, design):
+    given = {"values": [-180, -120]} if design["design"] == "grid" else {"uniform": [-180, -120]}
+    with pytest.raises(tr.InputError, match=r"analysis\.material_scatter = 'fitted'.*a random sample"):
+        parse_study(study(factors={"radial_force": given}, **design))

@@ -50,7 +50,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each option of the command
 def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
     """Print what was fitted, and write material, posterior and page."""
     from trackroller.cli.case import writable_page
-    from trackroller.fit.fitted import slug
+    from trackroller.materials.file import slug
     from trackroller.report.pages.fit import sentences
 
     target = writable_page(page or Path(f"fit-{slug(made.name)}.html"))

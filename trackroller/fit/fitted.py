@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 import math
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -21,10 +20,10 @@ from trackroller.fit.line import Interval, Line
 from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
 from trackroller.fit.table import TestTable
 from trackroller.materials import Material, add_material
+from trackroller.materials.file import posterior_path
 from trackroller.numerics.numbers import number_or_nan
 
 CONFIDENCE = 0.9
-FOLDER = "fits"  # beside the user's materials file: posteriors of its fitted materials
 # name in `.data` and in an entry of the database, by the value of a line of each kind
 WORDS = {
     "fatigue_limit": ("MPa", "fatigue strength at the knee, failure probability 50 %"),
@@ -453,16 +452,6 @@ class Fit:
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")
-
-
-def slug(name: str) -> str:
-    """Return the name of a material as a part of names of files: 'rig-steel' of 'Rig steel'."""
-    return re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-") or "material"
-
-
-def posterior_path(file: Path | str, name: str) -> Path:
-    """Return the file of the posterior of a fitted material, beside the user's materials file."""
-    return Path(file).expanduser().resolve().parent / FOLDER / f"{slug(name)}.nc"
 
 
 def log_life_of(ds: xr.Dataset, log_stress: np.ndarray, probability: float) -> np.ndarray:

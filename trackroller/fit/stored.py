@@ -14,10 +14,9 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.fit.bench import DEFAULTS
-from trackroller.fit.fitted import posterior_path
 from trackroller.fit.line import Interval, Line, Tests
 from trackroller.fit.posterior import Posterior
-from trackroller.materials.file import find_user_file
+from trackroller.materials.file import find_user_file, posterior_path
 from trackroller.parameters import BODIES
 from trackroller.roller.record import materials_of
 
@@ -65,7 +64,7 @@ class StoredFit:
         return np.asarray(outside | (np.asarray(cycles) > longest))
 
 
-def stored_fit(name: str, values: Mapping[str, Any]) -> StoredFit | None:
+def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -> StoredFit | None:
     """Return the fit of a material of the user's file; None for a material without one.
 
     Parameters
@@ -74,14 +73,16 @@ def stored_fit(name: str, values: Mapping[str, Any]) -> StoredFit | None:
         Name of the material.
     values : mapping
         Its values, of which the strength must be that of the fit: a material changed by hand has no fit any more.
+    file : Path, optional
+        The materials file beside which the fit stands; by default the user's.
 
     Raises
     ------
     InputError
         If the file of the fit cannot be read.
     """
-    user = find_user_file()
-    path = None if user is None else posterior_path(user, name)
+    file = find_user_file() if file is None else file
+    path = None if file is None else posterior_path(file, name)
     if path is None or not path.is_file():
         return None
     found = _read(path, name, path.stat().st_mtime_ns)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import functools
 import os
+import re
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ from trackroller.yaml_file import errors_by_line, parse_yaml
 BUILTIN_FILE = Path(__file__).with_name("materials.yaml")
 DEFAULT_USER_FILE = Path("config") / "materials.yaml"
 BUILTIN = "built-in"
+FITS = "fits"  # folder beside the user's materials file: posteriors of its fitted materials
 SECTIONS: dict[str, type] = {"sources": dict, "materials": dict, "friction": list, "wear": list}
 
 
@@ -48,6 +50,16 @@ def find_user_file(argument: Path | str | None = None) -> Path | None:
         remedy = "Correct the path, or leave it out to use the built-in materials."
         raise InputError(field, str(named), "the path of a YAML file", remedy, "does not exist or is no file")
     return path.resolve()
+
+
+def slug(name: str) -> str:
+    """Return the name of a material as a part of names of files: 'rig-steel' of 'Rig steel'."""
+    return re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-") or "material"
+
+
+def posterior_path(file: Path | str, name: str) -> Path:
+    """Return the file of the posterior of a fitted material, beside the user's materials file."""
+    return Path(file).expanduser().resolve().parent / FITS / f"{slug(name)}.nc"
 
 
 def read_database(user_file: Path | None) -> MaterialDatabase:

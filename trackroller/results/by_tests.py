@@ -49,7 +49,8 @@ Shift = Callable[[str], np.ndarray]  # of ln life by body, (n,)
 def materials_fitted(results: Results) -> dict[str, StoredFit]:
     """Return the fits of the materials of a study by the names of the materials, whether they hold for it or not."""
     stored = json.loads(str(results.data.attrs.get("materials", "{}")))
-    return {name: fit for name, values in stored.items() if (fit := stored_fit(name, values)) is not None}
+    fits = {name: stored_fit(name, values, results.materials_file) for name, values in stored.items()}
+    return {name: fit for name, fit in fits.items() if fit is not None}
 
 
 def options_of(results: Results) -> dict[str, Any]:

@@ -53,6 +53,9 @@ class Results:
     known_indices : xarray.Dataset, optional
         Sensitivity indices that were computed before. A data set without variables stands for a study that has none.
         By default they are computed when they are needed.
+    materials_file : Path, optional
+        Materials file of the study as its folder keeps it, with the fits of its materials beside it. By default the
+        user's.
 
     Examples
     --------
@@ -68,6 +71,7 @@ class Results:
     design: Design
     data: xr.Dataset
     known_indices: xr.Dataset | None = field(default=None, repr=False)
+    materials_file: Path | None = field(default=None, repr=False)
 
     @property
     def config(self) -> StudyFile:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import tempfile
 from collections.abc import Mapping
 from contextlib import nullcontext
@@ -65,7 +66,8 @@ def run(
             return Results(checked, checked.drawn, solve_study(checked, bar.started, bar.advanced))
         # the cases of a study that decides follow from stored results
         with tempfile.TemporaryDirectory() if results is None else nullcontext(results) as place:
-            return open_study(run_any(checked, place, **shown).folder.root)
+            solved = open_study(run_any(checked, place, **shown).folder.root)
+            return solved if results is not None else dataclasses.replace(solved, materials_file=None)
 
 
 def run_any(study: Study, results: Path | str = "results", **how: Any) -> Ledger:

@@ -28,7 +28,7 @@ from trackroller.study.store import chunks
 from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
 from trackroller.study.store.gather import collect
 from trackroller.study.store.identity import Cases
-from trackroller.study.store.inputs import study_of_folder
+from trackroller.study.store.inputs import MATERIALS, study_of_folder
 from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
 from trackroller.study.store.ownership import check_readable
@@ -95,7 +95,8 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
         if "regime" in names:
             solved = chunks.from_results(solved, np.arange(data.sizes["case"]))
         data = labelled(study, design, data.drop_vars(names), solved)
-    return Results(study, design, data, known)
+    file = None if isinstance(source, xr.Dataset) else _materials_file(Path(source))
+    return Results(study, design, data, known, file)
 
 
 def open_as_reported(root: Path) -> Results:
@@ -111,7 +112,13 @@ def open_as_reported(root: Path) -> Results:
 def solved_results(ledger: Ledger) -> Results:
     """Return the results of a study whose cases are all solved."""
     study = ledger.study
-    return Results(study, study.drawn, labelled(study, study.drawn, ledger.cases.design, collect(ledger)))
+    data = labelled(study, study.drawn, ledger.cases.design, collect(ledger))
+    return Results(study, study.drawn, data, materials_file=_materials_file(ledger.folder.root))
+
+
+def _materials_file(path: Path) -> Path:
+    """Return where the folder of a study, or of its `study.nc`, keeps its materials and the fits beside them."""
+    return StudyFolder(path if path.is_dir() else path.parent).inputs / MATERIALS
 
 
 def _gathered(path: Path) -> xr.Dataset | None:
@@ -154,7 +161,7 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
     if study.config.method.points:  # its goals are statistics of whole design points
         study = dataclasses.replace(study, config=study.config.model_copy(update={"pareto": {}}))
     data = data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(solved)})
-    return Results(study, drawn, data, indices)
+    return Results(study, drawn, data, indices, _materials_file(folder.root))
 
 
 def _checked_version(data: xr.Dataset) -> dict[str, str]:

@@ -179,13 +179,17 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
 
     Raises
     ------
-    InputError : another design than `inner_outer`, which alone has a B10, or a material without scatter
+    InputError : a design in which the scatter has no use, or a material without scatter
     """
     wanted = config.analysis.material_scatter
     if wanted is False:
         return
-    if wanted == "fitted":
-        return  # the analysis finds the fits
+    if wanted == "fitted":  # the analysis finds the fits
+        if config.method.weighted and not config.method.whole:
+            return
+        remedy = "Remove the key: the verdict has the range by the tests in any design."
+        allowed = "a random sample, such as design: sobol, or inner_outer"
+        raise InputError("analysis.material_scatter", wanted, allowed, remedy)
     if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."
         raise InputError("analysis.material_scatter", wanted, "design: inner_outer", remedy)

@@ -11,9 +11,14 @@ import dataclasses
 import hashlib
 from pathlib import Path
 
+import numpy as np
+import xarray as xr
+
 from trackroller.errors import InputError, WorkError
-from trackroller.files import Reads, noted_reads, sha256
+from trackroller.files import Reads, noted_reads, read_bytes, sha256
 from trackroller.materials import builtin_database, load_database
+from trackroller.materials.file import FITS, posterior_path
+from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
@@ -24,7 +29,7 @@ from trackroller.study.store.seal import altered, recorded, sealing
 MATERIALS = "materials.yaml"
 
 
-def store_inputs(study: Study, folder: StudyFolder) -> dict[str, dict[str, str]]:
+def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[str, dict[str, str]]:
     """Write the inputs of a study into its folder, and remove the inputs of an earlier version.
 
     Parameters
@@ -33,6 +38,9 @@ def store_inputs(study: Study, folder: StudyFolder) -> dict[str, dict[str, str]]
         The study with the digests of its inputs.
     folder : StudyFolder
         Its folder.
+    cases : xarray.Dataset
+        Its cases, which name its materials: the fits of these are stored as well, because the range of a life by tests
+        rests on them.
 
     Returns
     -------
@@ -52,6 +60,10 @@ def store_inputs(study: Study, folder: StudyFolder) -> dict[str, dict[str, str]]
         _compare(path, digest, hashlib.sha256(content).hexdigest())
         names = {"table": path.name, "materials file": MATERIALS, "limit": f"limits/{path.name}"}
         contents[names.get(kind, f"given/{digest[:8]}-{path.name}")] = content
+        if kind == "materials file":
+            used = {str(name) for field in MATERIAL_FIELDS if field in cases for name in np.unique(cases[field])}
+            fits = [fit for fit in (posterior_path(path, name) for name in used) if fit.is_file()]
+            contents |= {f"{FITS}/{fit.name}": read_bytes(fit, "fit") for fit in fits}
     table = None if study.config.table is None else Path(study.config.table).name
     contents[folder.study_file.name] = study.merged(table=table).encode()
     stored = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}

@@ -401,7 +401,7 @@ def _set_damaged_aside(ledger: Ledger, tell: Tell) -> None:
 def _keep(ledger: Ledger, tell: Tell) -> None:
     """Write the record of a ledger after its inputs, and remove the files of earlier plans."""
     folder, earlier = ledger.folder, ledger.folder.record()
-    record = record_of(ledger, store_inputs(ledger.study, folder))
+    record = record_of(ledger, store_inputs(ledger.study, folder, ledger.cases.design))
     record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
     if record != earlier:
         folder.write_record(record, tell)
