@@ -5,14 +5,14 @@ Each entry is a file of the package, the text before and after, and the tests th
 
 from __future__ import annotations
 
+BORDERS = "results/test_decisions.py"
 SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
 VERDICT = ("results/test_study_verdict.py",)
 WEAR = ("damage/test_wear.py",)
 SOBOL = ("results/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
-CONVERGENCE = ("results/test_sensitivity.py", "results/test_enough.py", "results/test_given_data.py")
-BORDERS = "results/test_decisions.py"
+CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_enough.py", "results/test_given_data.py")
 WORDS = (
     BORDERS,
     "report/test_sentences.py",
@@ -23,7 +23,7 @@ WORDS = (
 DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py", "report/test_truth.py")
 TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py", "report/test_truth_targets.py")
 PACKED = (BORDERS, "report/test_explorer.py")
-STORE = ("study/test_resume.py", "study/test_two_runs.py")
+STORE = (BORDERS, "study/test_resume.py", "study/test_two_runs.py")
 ANALYSED = (BORDERS, "results/test_sensitivity.py", "results/test_robustness.py", "report/test_report.py")
 PLANNED = (BORDERS, "study/test_levels.py", "study/test_resume.py")
 SAMPLED = (BORDERS, "study/test_sampling.py")

@@ -3,8 +3,8 @@
     python -m validation.mutations [NAME ...]
 
 Each mutation changes a sign, a factor or an index of one formula, or a border outside formulas (`mutants.py`). The
-quick tests beside it must then fail. Prints formula, change and the test that caught it; ends with 1 if a mutation
-survives.
+tests beside it must then fail, those marked slow included. Prints formula, change and the test that caught it; ends
+with 1 if a mutation survives.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def catching_test(place: Path, mutation: Mutation) -> str:
         "-q",
         "-x",
         "-m",
-        "not long and not slow",
+        "not long",
         "-p",
         "no:cacheprovider",
         *tests,

@@ -8,13 +8,24 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+import xarray as xr
 
+from trackroller.errors import WorkError
+from trackroller.methods.intervals import difference_of_medians
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
+from trackroller.report.words.samples import samples
+from trackroller.report.words.targets import target
+from trackroller.results.candidates import FEWEST, Candidates, lift_off_margin
+from trackroller.results.effects import _of_steps
+from trackroller.results.findings import _outwards
 from trackroller.results.groups import classes
 from trackroller.results.targets import _all, hits_of
 from trackroller.study import cost
+from trackroller.study.file.load import parse_study
 from trackroller.study.outputs import _countable
+from trackroller.study.store.gather import gather
+from trackroller.study.store.ledger import working_ledger
 
 
 def test_a_value_on_an_edge_belongs_to_the_class_above():
@@ -83,3 +94,59 @@ def test_the_rate_of_several_models_is_that_of_their_times_together(monkeypatch)
     study = SimpleNamespace(factors=models, options={}, friction_laws=[None])
     monkeypatch.setattr(cost, "rate", lambda options, law: {"sliding": 100.0, "kalker": 1.0}[options["contact_model"]])
     assert cost.study_rate(study) == pytest.approx(2 / (1 / 100 + 1 / 1))
+
+
+@pytest.mark.parametrize(("times", "kind"), [(1.0, "enough"), (2.0, "more")])
+def test_samples_are_enough_until_more_are_needed(times, kind):
+    columns = {"take_times": times, "half_width": 0.1, "output_name": "slip", "scale": "linear"}
+    sens = xr.Dataset({name: ("output", [value]) for name, value in columns.items()}, {"output": ["slip"]})
+    sens = sens.assign_attrs(method="sobol", samples=64)
+    assert samples(sens, 64).kind == kind
+
+
+def test_the_interval_of_a_difference_takes_the_far_end_of_each_median():
+    """Skewed values: the low end takes the high end of the first median and the low end of the second."""
+    first, second = np.arange(1.0, 42.0) ** 2, 1000.0 + np.arange(1.0, 42.0) ** 3
+    found, low, high = difference_of_medians(first, second)
+    (a, a_low, a_high), (b, b_low, b_high) = ((np.sort(v)[20], np.sort(v)[13], np.sort(v)[27]) for v in (first, second))
+    assert found == b - a
+    assert (low, high) == pytest.approx(
+        (b - a - np.hypot(b - b_low, a_high - a), b - a + np.hypot(b_high - b, a - a_low))
+    )
+
+
+def test_a_pair_without_a_change_neither_rises_nor_falls():
+    effect = _of_steps("axial_force", 0, 10, np.array([0.2, 0.0, 0.0, -0.1, 0.3]))
+    assert (effect.rising, effect.falling, effect.size) == (2, 1, 5)
+
+
+@pytest.mark.parametrize(("sizes", "comparable"), [((FEWEST, 90), True), ((FEWEST - 1, 90), False)])
+def test_each_design_needs_a_sample_of_its_conditions(sizes, comparable):
+    candidates = SimpleNamespace(conditions=("axial_force",), matched=False, size=np.array(sizes))
+    assert Candidates.comparable.fget(candidates) is comparable
+
+
+def test_the_margin_to_lift_off_is_the_light_contact_over_the_heavy_one():
+    loads = {"normal_force_1": np.array([30.0, 80.0]), "normal_force_2": np.array([120.0, 20.0])}
+    assert lift_off_margin(SimpleNamespace(column=loads.get)).tolist() == [0.25, 0.25]
+
+
+@pytest.mark.parametrize(("value", "low", "high"), [(123.45, 123, 124), (-0.067891, -0.0679, -0.0678), (0.0, 0, 0)])
+def test_a_bound_is_rounded_away_from_the_values_inside_it(value, low, high):
+    assert (_outwards(value, -1), _outwards(value, 1)) == (low, high)
+
+
+def test_a_study_with_unsolved_cases_is_not_gathered(tmp_path):
+    study = parse_study({"name": "two", "factors": {"friction_coefficient": {"values": [0.1, 0.2]}}})
+    with working_ledger(study, tmp_path) as ledger, pytest.raises(WorkError, match=r"^2 of 2 cases are not solved"):
+        gather(ledger)
+
+
+@pytest.mark.parametrize(("chances", "same"), [((0.4, 0.4, 0.4), True), ((0.4, 0.4, 0.5), False)])
+def test_design_points_with_the_same_chance_are_told_together(chances, same):
+    words = {"target_name": "slip", "target_units": "1", "target_min": np.nan, "target_max": 0.1}
+    table = xr.Dataset({name: ("target", [value]) for name, value in words.items()}, attrs={"method": "inner_outer"})
+    for name, shift in {"": 0.0, "_low": -0.1, "_high": 0.1}.items():
+        table[f"target_probability{name}"] = (("target", "point"), [np.add(chances, shift)])
+    said = target(table, 0)
+    assert ("at all 3 design points" in said.text) is same and said.values["same"] is same
