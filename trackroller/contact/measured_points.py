@@ -300,6 +300,11 @@ def _random_scatter(x: np.ndarray, z: np.ndarray) -> float:
 
 
 def _is_random(differences: np.ndarray) -> bool:
+    """Return whether the signs of neighbouring differences change as often as those of random scatter, or oftener.
+
+    Few differences change their signs often by chance: 0.6 over the root of their number is 1.2 standard deviations of
+    the share of changes of independent signs.
+    """
     signs = np.sign(differences)
     both = (signs[1:] != 0) & (signs[:-1] != 0)
     if np.count_nonzero(both) < FEWEST - 5:

@@ -15,7 +15,7 @@ from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import ModelDeclaration
 
 if TYPE_CHECKING:
-    from trackroller.contact.settings import Rollers
+    from trackroller.contact.rollers import Rollers
 
 
 class Patch(Protocol):

@@ -23,7 +23,7 @@ from trackroller.numerics.variable import BODIES, REGIMES, Variable
 
 SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
 OF_GUIDE = ("guide_overrollings_per_hour",)  # fields of a case that concern the guide alone
-Results = dict[str, np.ndarray]
+Values = dict[str, np.ndarray]  # results by name
 
 
 def missing(column: np.ndarray) -> np.ndarray:
@@ -199,11 +199,11 @@ class Limit:
     name: str
     title: str
     group: str
-    evaluate: Callable[[SolvedRollers], Results]
-    verdict: Callable[[SolvedRollers, Results], Verdict] | None = None
+    evaluate: Callable[[SolvedRollers], Values]
+    verdict: Callable[[SolvedRollers, Values], Verdict] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
-    shared: Callable[[SolvedRollers], Results] | None = None
+    shared: Callable[[SolvedRollers], Values] | None = None
     results: tuple[Variable, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     materials: tuple[Parameter, ...] = ()

@@ -30,7 +30,7 @@ from trackroller.roller.stages import outcome as stages_outcome
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import finer_across
-from trackroller.roller.stages.scene import Results
+from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
 
@@ -262,10 +262,10 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
 
 def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
-    return block_of(Results.start(scene, balance(scene)), options)
+    return block_of(StageResults.start(scene, balance(scene)), options)
 
 
-def block_of(results: Results, options: Options) -> Block:
+def block_of(results: StageResults, options: Options) -> Block:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
     wanted = set(options.outputs)

@@ -21,7 +21,7 @@ from trackroller.roller.record import CASE, MATERIALS, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.solver import assemble, block_of
 from trackroller.roller.stages import outcome as stages_outcome
-from trackroller.roller.stages.scene import Results
+from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.wearing import ENDS, Groove, Wearing, between, travel_to_depth
 
 if TYPE_CHECKING:
@@ -172,7 +172,7 @@ class _Record:
         place = between(one, two, travel)
         return ("permissible" if deep < self.to else "travel"), place
 
-    def _add(self, state: Groove, turned: Groove, results: Results, onward: float) -> None:
+    def _add(self, state: Groove, turned: Groove, results: StageResults, onward: float) -> None:
         """Add the row of a solved state; `turned` has the inclination by its own pressure."""
         block = block_of(results, self.options)
         stages_outcome.finish(self.table, block, self.options)
@@ -256,7 +256,7 @@ class _Record:
         return state, float(last.next_step)
 
 
-def _pressure_error(state: Groove, results: Results) -> np.ndarray:
+def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
     """Return the estimated relative error of the largest pressure, (2,) [1]; 0 for the new groove."""
     patch: Any = results.patch
     out = np.zeros(2)

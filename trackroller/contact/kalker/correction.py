@@ -19,7 +19,7 @@ from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
 from trackroller.contact.protocol import Patch
-from trackroller.contact.settings import converged_up_to
+from trackroller.contact.rollers import converged_up_to
 from trackroller.contact.slip import Creepage, Slip
 from trackroller.contact.wedge import determinant
 from trackroller.numerics.knots import rise

@@ -20,7 +20,7 @@ from trackroller.contact.normal.measure import roughness
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel, Patch
-from trackroller.contact.settings import Rollers
+from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import DECLARED
 

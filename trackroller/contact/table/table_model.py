@@ -18,7 +18,7 @@ from trackroller.contact.kalker.correction import SERVING
 from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Rollers
+from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table
 from trackroller.parameters.accuracy import Accuracy

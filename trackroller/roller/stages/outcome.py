@@ -21,7 +21,7 @@ from trackroller.parameters import BODIES, CONTACT_MODELS, MAPPING_FIELDS, PARAM
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import rolling_radius
-from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.stages.scene import StageResults, surface_tractions
 from trackroller.roller.table import TEXTS
 
 if TYPE_CHECKING:
@@ -117,8 +117,8 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
     places = [solved]
     if any(limit.moves(solved) for limit in wanted):
         places += [_at_end(solved, wanted, end) for end in (0, 1)]
-        for end, place in zip(verdict.ENDS[1:], places[1:], strict=True):
-            names = [one.name for limit in wanted for one in limit.results if one.name.endswith(end)]
+        for end, place in zip(("low", "high"), places[1:], strict=True):
+            names = [one.name for limit in wanted for one in limit.results if one.end == end]
             v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
         names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
@@ -146,7 +146,7 @@ def _at_end(solved: SolvedRollers, wanted: tuple[Limit, ...], end: int) -> Solve
     return dataclasses.replace(moved, values=values)
 
 
-def patch_limits(results: Results, options: Options, wanted: tuple[Limit, ...]) -> None:
+def patch_limits(results: StageResults, options: Options, wanted: tuple[Limit, ...]) -> None:
     """Add the results of the limits that need the tractions of the patches, or what these limits share.
 
     Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME` and `_1_NAME`.
