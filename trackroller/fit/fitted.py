@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 import re
 from collections.abc import Mapping
@@ -364,8 +363,9 @@ class Fit:
         InputError
             If the design does not roll, or has another contact model, life criterion or accuracy than the fit.
         """
-        rollers: Any = importlib.import_module("trackroller.fit.bench")
-        stress, per_hour = rollers.worst_stress(design, self.given, self.name)
+        from trackroller.fit.bench import worst_stress
+
+        stress, per_hour = worst_stress(design, self.given, self.name)
         found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
         return Interval(*(float(np.exp(end)) / per_hour for end in found))
 
@@ -448,8 +448,9 @@ class Fit:
         Path
             The file.
         """
-        page: Any = importlib.import_module("trackroller.report.pages.fit")
-        return page.write_fit(self, path)
+        from trackroller.report.pages.fit import write_fit
+
+        return write_fit(self, path)
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")

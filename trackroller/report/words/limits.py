@@ -23,7 +23,9 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
         counts = {limit_title(name): cases for name, cases in values["counts"].items()}
         return say("limits", "first_limits", counts=counts, valid=values["of"])
     if finding.kind == "turned":
-        return say("limits", "turned", **values, name=design_words(results.candidates(), values["design"]))
+        candidates = results.candidates()
+        assert candidates is not None  # the finding is about their order
+        return say("limits", "turned", **values, name=design_words(candidates, values["design"]))
     return say("limits", "whichever_first", **values, **_unsure(results, values["factors"]))
 
 

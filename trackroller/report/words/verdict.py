@@ -270,7 +270,7 @@ class _Words:
         own = self.results.by_tests
         shown = [*found.best[:MOST], *([] if found.next is None else [found.next])]
         named = list(dict.fromkeys(name for one in shown for name in one.tested))
-        if not named or not found.goal_rises:
+        if own is None or not named or not found.goal_rises:
             return None
         far = next((one for one in shown if one.beyond_tests and one.tested), None)
         values = {"tests": own.words(named), "far": "", "stress": ""}
