@@ -111,8 +111,10 @@ class Group:
             return np.exp(log_strength(self.line, values, self.at))
         if name == "woehler_exponent":
             return np.asarray(values.slope)
-        if name.endswith("_coefficient"):
-            return self.scale * np.exp(-values.level) if self.kind == "wear" else np.exp(values.level)
+        if name == "wear_coefficient":  # a longer travel is a smaller coefficient
+            return self.scale * np.exp(-values.level)
+        if name == "friction_coefficient":
+            return np.exp(values.level)
         deviation = values.log_limit_scatter if name == "scatter_in_stress" else values.log_scatter
         return np.exp(math.log(ln_range(1.0)) * np.exp(deviation))
 
