@@ -22,6 +22,7 @@ from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
+from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
 from trackroller.roller.reflection import handed, reflect
@@ -190,7 +191,7 @@ def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
     warm = temperature.notes(table, block)
     if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
-        ds.attrs[NOTES] = "\n".join([*stages_outcome.notes_on_limits(table, options), *warm])
+        ds.attrs[NOTES] = "\n".join([*notes_on_limits(table, options), *warm])
     return ds
 
 

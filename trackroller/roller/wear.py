@@ -16,6 +16,7 @@ from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES
+from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options
 from trackroller.roller.record import CASE, MATERIALS, with_inputs
 from trackroller.roller.reflection import handed, reflect
@@ -222,7 +223,7 @@ class _Record:
         if "life_cycles" in ds:
             ds = ds.assign(_of_lives(ds, self.wearing.per_km))
         ds.attrs |= {"title": "A roller and its guide while they wear", "end": end, "to": self.to}
-        ds.attrs[NOTES] = "\n".join(stages_outcome.notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
+        ds.attrs[NOTES] = "\n".join(notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
         ds.attrs |= {"wear_per_km": self.wearing.rates.tolist(), "end_meaning": ENDS.get(end, "")}
         return with_inputs(ds, self.case, self.database)
 

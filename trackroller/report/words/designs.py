@@ -32,10 +32,10 @@ from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
-from trackroller.results.limit_notes import placeholders_of
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
+from trackroller.roller.limit_notes import placeholders_of
 
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side

@@ -31,9 +31,9 @@ from trackroller.report.words.designs import (
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
-from trackroller.results.limit_notes import guessed_lines
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
+from trackroller.roller.limit_notes import guessed_lines
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
