@@ -17,9 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Resultants
+from trackroller.contact.common import Elastic, Patch, Resultants
 from trackroller.contact.linear import chebyshev
-from trackroller.contact.protocol import Patch
 from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates, in_range
 from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import interval
