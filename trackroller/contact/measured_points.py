@@ -185,6 +185,7 @@ def examined(x: np.ndarray, z: np.ndarray) -> Findings:
 
 @lru_cache(maxsize=64)  # a case is checked, asked about and solved with the same points
 def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
+    """Examine points whose coordinates are given as bytes, by which the results are kept; see `examined`."""
     x, z = np.frombuffer(x_bytes), np.frombuffer(z_bytes)
     spacing = float(np.median(np.diff(x)))
     if x.size < FEWEST:

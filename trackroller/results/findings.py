@@ -443,7 +443,7 @@ def slip_law(results: Results) -> Finding | None:
     return finding(results, "slip_law", "all", looked, what="full_slip", **values)
 
 
-def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
+def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None:
     """Say how often an event occurs and at which levels of the factors.
 
     That it occurs only at some levels is said of a grid, in which every combination was tried, and of a sample if one
@@ -451,7 +451,7 @@ def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
 
     Parameters
     ----------
-    hit : whether the event occurs, shape (n,) bool
+    event : whether it occurs, shape (n,) bool
     what : name of the event
 
     Returns
@@ -459,8 +459,8 @@ def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
     Finding or None
         None if the event never occurs.
     """
-    looked = of_one_model(results, np.ones(len(hit), dtype=bool))
-    hit, whole, cases = hit & looked, int(looked.sum()), int((hit & looked).sum())
+    looked = of_one_model(results, np.ones(len(event), dtype=bool))
+    hit, whole, cases = event & looked, int(looked.sum()), int((event & looked).sum())
     if not cases:
         return None
     values: dict[str, Any] = {"what": what, "count": cases, "of": whole}

@@ -182,16 +182,16 @@ def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: Materia
 def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset:
     """Solve checked cases with the same options."""
     _check_cases(table, options)
-    table, lost = with_travel(table, options)
-    windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
+    worn, lost = with_travel(table, options)
+    windows = [_solve_window(part, options) for part in _cut(worn, WINDOW)]
     block = join(windows)
     block.fail(list(lost))
-    ds = with_reasons(assemble(block, options, single), table, options, temperature.reasons(block) | lost)
-    tell_errors(ds, table, options)
+    ds = with_reasons(assemble(block, options, single), worn, options, temperature.reasons(block) | lost)
+    tell_errors(ds, worn, options)
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
-    warm = temperature.notes(table, block)
+    warm = temperature.notes(worn, block)
     if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
-        ds.attrs[NOTES] = "\n".join([*notes_on_limits(table, options), *warm])
+        ds.attrs[NOTES] = "\n".join([*notes_on_limits(worn, options), *warm])
     return ds
 
 
@@ -215,20 +215,18 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
 
 def _solve_window(table: CaseTable, options: Options) -> Block:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
-    mirrored = np.zeros(len(table), bool)
-    if options.shortcuts:
-        table, mirrored = handed(table)
+    one_handed, mirrored = handed(table) if options.shortcuts else (table, np.zeros(len(table), bool))
 
     def solve_all(cases: CaseTable) -> Block:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
-    distinct, number = table, np.arange(len(table))
+    distinct, number = one_handed, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(table, options)):
-        rows, number = requirements.distinct_mechanics(table)
-        distinct = table.take(rows)
-    table, block = temperature.settle(table, solve_all(distinct).take(number), options, solve_all)
-    stages_outcome.finish(table, block, options)
+    if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(one_handed, options)):
+        rows, number = requirements.distinct_mechanics(one_handed)
+        distinct = one_handed.take(rows)
+    at_temperature, block = temperature.settle(one_handed, solve_all(distinct).take(number), options, solve_all)
+    stages_outcome.finish(at_temperature, block, options)
     reflect(block.values, mirrored)
     return block
 
