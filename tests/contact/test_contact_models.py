@@ -92,11 +92,11 @@ def test_gridded_tractions_give_the_stress_of_the_formula():
     from trackroller.roller.options import Options
     from trackroller.roller.stages import mechanics as stages
     from trackroller.roller.stages.ellipse_stresses import EllipseStresses
-    from trackroller.roller.stages.scene import Results
+    from trackroller.roller.stages.scene import StageResults
 
     options = Options()
     scene = stages.prepare(to_table([tr.Case()]), options)
-    results = Results.start(scene, solve_equilibrium(scene.loads, scene.model.law))
+    results = StageResults.start(scene, solve_equilibrium(scene.loads, scene.model.law))
     from trackroller.contact import sliding
 
     t = sliding.tractions(results.patch, results.slip, results.friction, points=201)

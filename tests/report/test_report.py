@@ -17,7 +17,7 @@ from told import occurrence
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.build import build_report
 from trackroller.report.figures.study import draw_all
-from trackroller.report.pages.study import contents, models_used, page_text, write_report
+from trackroller.report.pages.study import SECTIONS, Section, contents, models_used, page_text, write_report
 from trackroller.report.tables.inputs import Row
 from trackroller.report.tables.table import Table
 from trackroller.report.words.cases import regime_table, validity_table
@@ -74,6 +74,18 @@ def test_a_long_cell_that_equals_the_one_above_says_so(tmp_path):
 
 
 @pytest.mark.slow
+def test_a_further_section_stands_on_the_page_and_in_its_contents(tmp_path, monkeypatch):
+    """The recipe of CONTRIBUTING: one row with a title, and tables under its key."""
+    monkeypatch.setitem(SECTIONS, "cost", Section("What it costs", link="Cost"))
+    results = results_of(grid_study({"axial_force": [0.0, 130.0], "friction_coefficient": [0.1, 0.2]}))
+    content = contents(results)
+    content["tables"]["cost"] = [Table("cost", "Cases", ["Cases"], [[4]])]
+    text = page_text(results, content, tmp_path)
+    assert '<a href="#cost">Cost</a>' in text and '<section id="cost">\n<h2>What it costs</h2>' in text
+    del content["tables"]["cost"]
+    assert "#cost" not in page_text(results, content, tmp_path)
+
+
 def test_it_says_what_was_studied_found_and_how_to_repeat_it(report):
     text = report.read_text(encoding="utf-8")
     wanted = (

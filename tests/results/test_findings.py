@@ -8,7 +8,7 @@ from synthetic_results import grid_study, results_of
 
 import trackroller as tr
 from trackroller.report.words.in_short import in_short
-from trackroller.results.findings import MOST, effect_of, go_together, occurrence, slip_law
+from trackroller.results.findings import MOST, confounded_with, effect_of, occurrence, slip_law
 from trackroller.study.file.load import parse_study
 
 LIFE = "roller_life_hours"
@@ -74,12 +74,12 @@ def test_of_several_contact_models_the_most_exact_one_counts():
     )
 
 
-def test_factors_that_go_together_have_no_effect_of_their_own():
+def test_factors_that_confounded_with_have_no_effect_of_their_own():
     rng = np.random.default_rng(1)
     force = rng.permutation(np.arange(100.0))
     for speed, together in ((2 * force, True), (force + rng.normal(0, 20, 100), True), (rng.permutation(force), False)):
         results = table(speed, force, np.exp(force / 20))
-        assert bool(go_together(results, "axial_force", np.ones(100, bool))) == together
+        assert bool(confounded_with(results, "axial_force", np.ones(100, bool))) == together
         assert (effect_of(results, LIFE, "axial_force") is None) == together
 
 

@@ -10,7 +10,7 @@ import trackroller as tr
 from trackroller.materials import builtin_database
 from trackroller.report.numbers import factor_label
 from trackroller.results.first_limits import reached_hours, settled
-from trackroller.results.limit_notes import placeholders_of
+from trackroller.roller.limit_notes import placeholders_of
 from trackroller.study.file.load import parse_study
 
 STUDY = {

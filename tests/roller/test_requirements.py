@@ -12,7 +12,7 @@ from trackroller.roller.options import Options
 from trackroller.roller.stages import ellipse_stresses
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import stress as stages_stress
-from trackroller.roller.stages.scene import Results
+from trackroller.roller.stages.scene import StageResults
 
 EVERYTHING = ("forces", "contact", "friction_work", "peak_stress", "life", "tractions", "subsurface")
 
@@ -130,7 +130,7 @@ def test_the_bound_that_stops_is_below_the_peak(model):
     ]
     options = Options(contact_model=model)
     scene = stages.prepare(to_table(cases), options)
-    results = Results.start(scene, stages.eq.solve_equilibrium(scene.loads, scene.model.law))
+    results = StageResults.start(scene, stages.eq.solve_equilibrium(scene.loads, scene.model.law))
     stages.contact(results, options)
     bound = stages_stress.peak_bound(results, options)
     stages_stress.peak_stress(results, options)

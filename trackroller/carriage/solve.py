@@ -33,7 +33,7 @@ from trackroller.materials import load_database
 from trackroller.parameters import BODIES
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import file_attributes
-from trackroller.roller.doubts import doubts
+from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import with_duty, years
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.record import DOUBTS
@@ -370,9 +370,8 @@ def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]
     if roller.catalogue is None:
         return
     rated = {"radial": roller.catalogue.radial_force, "axial": roller.catalogue.axial_force}
-    for text in doubts({"radial_force": radial, "catalogue": rated}):
-        if text.startswith("catalogue"):
-            yield text.replace("radial =", "radial_force =").replace("axial =", "axial_force =")
+    for text in ratings({"radial_force": radial, "catalogue": rated}):
+        yield text.replace("radial =", "radial_force =").replace("axial =", "axial_force =")
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:

@@ -42,13 +42,15 @@ def run_carriage(
     from trackroller.carriage.solve import doubts_of_rollers, forces_of, solve_carriage  # heavy: scipy
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
+    from trackroller.roller.record import doubts_of
 
     whole = load_carriage(file)
     if (spectrum is not None or study) and page is None and not as_json:
         ds = forces_of(whole)  # loads need neither margins nor lives
+        print_doubts(doubts_of_rollers(whole, ds))
     else:
         ds = solve_carriage(whole)
-    print_doubts(doubts_of_rollers(whole, ds))
+        print_doubts(doubts_of(ds))
     if target is not None and spectrum is not None:
         write_yaml_file(target, spectrum_of(whole, ds, spectrum))
     elif target is not None and table is not None:

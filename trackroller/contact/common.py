@@ -1,4 +1,4 @@
-"""Data classes that a contact model receives and returns; `protocol` has the interfaces of patches and models.
+"""What a contact model receives and returns: patches, elastic constants, forces, tractions and works.
 
 Every array has one entry for each contact patch, shape (n,), unless stated otherwise. Units: N, mm, MPa, rad.
 The contact frame has x_C in the lateral direction, y_C in the rolling direction and z_C along the common normal, into
@@ -10,15 +10,69 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
+from trackroller.contact.slip import Slip
 from trackroller.numerics.rows import Rows
 
 # Share of the largest possible error of the friction work, see `error_of_work`. The error exceeded this share in 1 of
 # 100 designs.
 WORK_SHARE = 0.7
+
+
+class Patch(Protocol):
+    """Interface of n contact patches, elliptical (`Ellipse`) or not (`grid_patch.GridPatch`).
+
+    Arrays of shape (n,).
+    """
+
+    @property
+    def is_hertzian(self) -> bool:
+        """Return True for the ellipses of Hertz's theory, whose pressure follows from a, b and p_max.
+
+        False if the pressure was solved element by element.
+        """
+
+    @property
+    def semi_axis_lateral(self) -> np.ndarray:
+        """Return the semi-axis a along x_C, or half the width of the box around the patch [mm]."""
+
+    @property
+    def semi_axis_rolling(self) -> np.ndarray:
+        """Return the semi-axis b along y_C, or half the length of the box around the patch [mm]."""
+
+    @property
+    def max_pressure(self) -> np.ndarray:
+        """Return the largest pressure p_max [MPa]."""
+
+    @property
+    def normal_force(self) -> np.ndarray:
+        """Return the normal force F_N [N]."""
+
+    @property
+    def centre(self) -> np.ndarray:
+        """Return x_C of the middle of the ellipse or box [mm]."""
+
+    @property
+    def pressure_centre(self) -> np.ndarray:
+        """Return x_C of the resultant of the pressure [mm]."""
+
+    @property
+    def area(self) -> np.ndarray:
+        """Return the area of the patch [mm^2]."""
+
+    @property
+    def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return half the width and half the length of the loaded region [mm]."""
+
+    @property
+    def reaches_edge(self) -> np.ndarray:
+        """Return True where the patch ends at an edge of the material."""
+
+    def take(self, index: np.ndarray) -> Self:
+        """Return the patches `index` (integer or boolean array)."""
 
 
 @dataclass(frozen=True)
@@ -213,7 +267,9 @@ def filled(fields: np.ndarray, pressure: np.ndarray) -> np.ndarray:
     return fields[:, :, row, column]
 
 
-def error_of_work(patch: Any, slip: Any, friction, driving: np.ndarray, moment: np.ndarray) -> np.ndarray:
+def error_of_work(
+    patch: Patch, slip: Slip, friction: np.ndarray, driving: np.ndarray, moment: np.ndarray
+) -> np.ndarray:
     """Return the error of the friction work over that of the friction forces over mu F_N, at least 1, (m,) [1].
 
     Errors of F_A by mu F_N and of M_R by mu F_N c change the work by at most mu F_N (|xi| + |phi| c).
@@ -232,13 +288,13 @@ def error_of_work(patch: Any, slip: Any, friction, driving: np.ndarray, moment: 
         return np.asarray(np.fmax(WORK_SHARE * friction * patch.normal_force * speed / np.abs(work), 1.0))
 
 
-def slenderness(patch: Any) -> np.ndarray:
+def slenderness(patch: Patch) -> np.ndarray:
     """Return the larger semi-axis of each patch over the smaller one, (n,) [1]."""
     ratio = patch.semi_axis_rolling / patch.semi_axis_lateral
     return np.maximum(ratio, 1.0 / ratio)
 
 
-def force_scales(patch: Any, friction: np.ndarray) -> np.ndarray:
+def force_scales(patch: Patch, friction: np.ndarray) -> np.ndarray:
     """Return the scales of F_T, F_A and M_R: mu F_N, mu F_N and mu F_N c, (m, 3); 1e-300 where there is no friction."""
     scale = np.empty((len(friction), 3))
     scale[:] = np.maximum(friction * patch.normal_force, 1e-300)[:, None]

@@ -86,6 +86,7 @@ def cross_section(text: str, body: str, radius: float, alpha: float, guide_radiu
 
 
 def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius: float, side: int) -> CrossSection:
+    """Return the cross-section of a body in the frame of contact 1 or 2 (`side`) from its points."""
     points = np.asarray(profile["points"])
     x, z = points[in_order(points)].T
     out = -1.0 if body == "roller_profile" else 1.0

@@ -137,6 +137,7 @@ def convolve(field, p, q, work, out):
     `p` and `q` are the spectra of `Influence`; `work` (2, 2 ny, 2 nx) serves the transforms.
     """
     ny, nx = field.shape
+    # c2c(input, output, axes, forward, factor, threads); only the rows that hold tractions or slips are transformed
     c2c(field, work[0, :ny], np.array([1]), True, 1.0, 1)
     c2c(work[0, :ny], work[1], np.array([0]), True, 1.0, 1)
     _combined(p, q, work[1], work[0])

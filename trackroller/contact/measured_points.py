@@ -185,6 +185,7 @@ def examined(x: np.ndarray, z: np.ndarray) -> Findings:
 
 @lru_cache(maxsize=64)  # a case is checked, asked about and solved with the same points
 def _examined(x_bytes: bytes, z_bytes: bytes) -> Findings:
+    """Examine points whose coordinates are given as bytes, by which the results are kept; see `examined`."""
     x, z = np.frombuffer(x_bytes), np.frombuffer(z_bytes)
     spacing = float(np.median(np.diff(x)))
     if x.size < FEWEST:
@@ -300,6 +301,11 @@ def _random_scatter(x: np.ndarray, z: np.ndarray) -> float:
 
 
 def _is_random(differences: np.ndarray) -> bool:
+    """Return whether the signs of neighbouring differences change as often as those of random scatter, or oftener.
+
+    Few differences change their signs often by chance: 0.6 over the root of their number is 1.2 standard deviations of
+    the share of changes of independent signs.
+    """
     signs = np.sign(differences)
     both = (signs[1:] != 0) & (signs[:-1] != 0)
     if np.count_nonzero(both) < FEWEST - 5:

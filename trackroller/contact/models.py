@@ -18,7 +18,7 @@ from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Rollers
+from trackroller.contact.rollers import Rollers
 from trackroller.contact.sliding_model import SlidingModel
 from trackroller.contact.table.table_model import TableModel
 from trackroller.errors import InputError, check_names

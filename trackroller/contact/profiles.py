@@ -167,6 +167,7 @@ def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | 
 
 
 def _arcs(rows: Any, field: str) -> list[dict[str, float]]:
+    """Return the checked arcs of a profile: radius [mm], and where each but the last ends [mm]."""
     if not isinstance(rows, (list, tuple)) or not rows or not all(isinstance(row, Mapping) for row in rows):
         raise InputError(field, rows, "a list of {radius: mm, to: mm} from inside to outside, the last without `to`")
     out: list[dict[str, float]] = []
@@ -278,6 +279,7 @@ def _edge(value: Any, field: str) -> dict[str, float]:
 
 
 def _worn(value: Any, field: str) -> dict[str, Any]:
+    """Return the checked wear of a profile: depths [mm] at places from `start` on, `step` apart [mm]."""
     allowed = "a mapping with start, step > 0 and depth, lists of numbers >= 0 [mm] for one or both contacts"
     try:
         start, step = float(value["start"]), float(value["step"])

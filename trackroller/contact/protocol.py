@@ -1,74 +1,21 @@
-"""Interfaces of the contact room: the attributes and methods of every contact patch and every contact model.
+"""Interface of a contact model: the methods of every model, and the capabilities that it declares.
 
-The solver uses these two interfaces only and never asks for the class of a patch or of a model. Arrays, units and the
-contact frame are those of `trackroller.contact.common`.
+The solver uses this interface and that of a `Patch` only, and never asks for the class of a model or of a patch.
+Arrays, units and the contact frame are those of `trackroller.contact.common`.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, ClassVar, Protocol
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, SurfaceTractions, Works
+from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import ModelDeclaration
 
 if TYPE_CHECKING:
-    from trackroller.contact.settings import Rollers
-
-
-class Patch(Protocol):
-    """Interface of n contact patches, elliptical (`common.Ellipse`) or not (`grid_patch.GridPatch`).
-
-    Arrays of shape (n,).
-    """
-
-    @property
-    def is_hertzian(self) -> bool:
-        """Return True for the ellipses of Hertz's theory, whose pressure follows from a, b and p_max.
-
-        False if the pressure was solved element by element.
-        """
-
-    @property
-    def semi_axis_lateral(self) -> np.ndarray:
-        """Return the semi-axis a along x_C, or half the width of the box around the patch [mm]."""
-
-    @property
-    def semi_axis_rolling(self) -> np.ndarray:
-        """Return the semi-axis b along y_C, or half the length of the box around the patch [mm]."""
-
-    @property
-    def max_pressure(self) -> np.ndarray:
-        """Return the largest pressure p_max [MPa]."""
-
-    @property
-    def normal_force(self) -> np.ndarray:
-        """Return the normal force F_N [N]."""
-
-    @property
-    def centre(self) -> np.ndarray:
-        """Return x_C of the middle of the ellipse or box [mm]."""
-
-    @property
-    def pressure_centre(self) -> np.ndarray:
-        """Return x_C of the resultant of the pressure [mm]."""
-
-    @property
-    def area(self) -> np.ndarray:
-        """Return the area of the patch [mm^2]."""
-
-    @property
-    def half_extents(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return half the width and half the length of the loaded region [mm]."""
-
-    @property
-    def reaches_edge(self) -> np.ndarray:
-        """Return True where the patch ends at an edge of the material."""
-
-    def take(self, index) -> Any:
-        """Return the patches `index` (integer or boolean array)."""
+    from trackroller.contact.rollers import Rollers
 
 
 class ContactModel:
@@ -114,14 +61,18 @@ class ContactModel:
         """Return the tractions on a grid over each patch."""
         raise NotImplementedError
 
-    def shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+    def shares(
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray] | None:
         """Return tractions over their bound, (m, 2, ., .), on a grid and a coarser one; their difference is an error.
 
         None if the model has tractions at the points of `surface` only.
         """
         return None
 
-    def finer_shares(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+    def finer_shares(
+        self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray, np.ndarray] | None:
         """Return `shares` from twice the elements of the patches, and whether these have converged, (m,).
 
         None if the model does not refine patches.
@@ -139,7 +90,7 @@ class ContactModel:
         """Return the dissipation per distance travelled and the part of it that the pressures supply, (m,)."""
         raise NotImplementedError
 
-    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Any:
+    def settled(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Patch:
         """Return the patches that carry the normal forces of `patch`, with their final pressures."""
         return patch
 

@@ -6,7 +6,7 @@ from trackroller.contact import sliding
 from trackroller.contact.common import Works
 from trackroller.contact.normal.patch_models import GridSlidingModel
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Rollers
+from trackroller.contact.rollers import Rollers
 from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import DECLARED
 

@@ -13,7 +13,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables
+from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
 from trackroller.numerics.variable import LIFE
@@ -119,7 +119,7 @@ def life_at(life: np.ndarray, probability: float, slope: np.ndarray) -> np.ndarr
     return np.asarray(life * (np.log1p(-probability) / np.log(0.9)) ** (1.0 / slope))
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return `bearing_life_hours` (L10) [h], `bearing_static_safety` and `bearing_utilisation` [1], (n,)."""
     loads, b = Loads.of(solved), FIELD.columns(solved.cases["bearing"])
     each = {name: b[name][:, None] for name in ("e", "X", "Y", "X0", "Y0")}
@@ -136,7 +136,7 @@ def evaluate(solved: SolvedRollers) -> Results:
     }
 
 
-def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the utilisation, and the hours at the failure probability, (n, body); the guide has neither."""
     slope = np.array([WEIBULL.get(str(kind), np.nan) for kind in FIELD.columns(solved.cases["bearing"])["kind"]])
     hours = life_at(results["bearing_life_hours"], solved.options["failure_probability"], slope)

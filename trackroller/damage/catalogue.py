@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.bearing import Loads
-from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables
+from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables
 from trackroller.damage.mapping import MappingField
 from trackroller.numerics.variable import LIFE
 
@@ -59,7 +59,7 @@ def catalogue_km(load_factor: np.ndarray, basic_life: np.ndarray, law: np.ndarra
     return np.asarray(np.select([law == word for word in LAWS], lives, np.nan))
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return `catalogue_load_factor` [1] and `catalogue_life_km` [km], (n,)."""
     loads, c = Loads.of(solved), FIELD.columns(solved.cases["catalogue"])
     factor = loads.radial / c["radial"] + loads.axial / c["axial"] + loads.moment / c["moment"]
@@ -69,7 +69,7 @@ def evaluate(solved: SolvedRollers) -> Results:
     }
 
 
-def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return load factor and hours of travel, (n, body); the guide has neither."""
     hours = results["catalogue_life_km"] * 1e3 / (solved.cases["velocity"] * 60.0)
     factor = results["catalogue_load_factor"]

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from trackroller.damage.limit import SN_SCATTER, Limit, Results, SolvedRollers, Verdict, variables, worst
+from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, Values, Verdict, variables, worst
 from trackroller.damage.pair import first_failure
 from trackroller.damage.sn_curve import SNCurve
 from trackroller.numerics.variable import ESTIMATE, LARGEST, LIFE, SMALLEST
@@ -64,7 +64,7 @@ def _without_life(solved: SolvedRollers) -> np.ndarray:
     return np.asarray(_overloaded(solved) | solved.skids)
 
 
-def life(solved: SolvedRollers) -> Results:
+def life(solved: SolvedRollers) -> Values:
     """Return overrollings and hours to failure at 50 % failure probability, and the relative error of the life.
 
     The relative error of the life is the exponent of the S-N curve times the relative error of the stress. A body
@@ -108,7 +108,7 @@ def life(solved: SolvedRollers) -> Results:
     } | ({} if published else {"fatigue_stress": stress})
 
 
-def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the utilisation of the fatigue limit and the life at the failure probability, (n, body)."""
     p = solved.options["failure_probability"]
     curve, stress = curve_of(solved).changed(failure_probability=p), amplitude(solved)

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
+from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, optional, variables, worst
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import LARGEST, SUM
 
@@ -134,7 +134,7 @@ def hysteresis_moments(force: np.ndarray, length: np.ndarray, loss: np.ndarray, 
     return np.asarray(3.0 / 16.0 * (force * length)[:, :, None] * (loss * share)[:, None, :])
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return temperature rises [K], (n, contact, body), partition, hysteresis and pressure-velocity, (n, contact).
 
     `drive_torque` [N mm], (n,), takes in the hysteresis of both contacts.

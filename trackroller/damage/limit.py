@@ -23,7 +23,7 @@ from trackroller.numerics.variable import BODIES, REGIMES, Variable
 
 SN_SCATTER, TRACTIONS = "S-N scatter", "tractions"
 OF_GUIDE = ("guide_overrollings_per_hour",)  # fields of a case that concern the guide alone
-Results = dict[str, np.ndarray]
+Values = dict[str, np.ndarray]  # results by name
 
 
 def missing(column: np.ndarray) -> np.ndarray:
@@ -123,7 +123,10 @@ class SolvedRollers:
 
 @dataclass(frozen=True)
 class Verdict:
-    """How far a limit is used, and the hours until it is reached, (n, body) each; None where a limit has none.
+    """What one limit says: how far it is used, and the hours until it is reached.
+
+    Both have the shape (n, body), and are None where the limit has none. What a study answers over all limits is a
+    `trackroller.results.verdict.Verdict`.
 
     `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a value that is not known.
     `at_once`, (n, body), marks bodies that break at once, so that the limit is reached without a life. `life_low` and
@@ -199,11 +202,11 @@ class Limit:
     name: str
     title: str
     group: str
-    evaluate: Callable[[SolvedRollers], Results]
-    verdict: Callable[[SolvedRollers, Results], Verdict] | None = None
+    evaluate: Callable[[SolvedRollers], Values]
+    verdict: Callable[[SolvedRollers, Values], Verdict] | None = None
     meaning: str = ""
     needs: tuple[str, ...] = ()
-    shared: Callable[[SolvedRollers], Results] | None = None
+    shared: Callable[[SolvedRollers], Values] | None = None
     results: tuple[Variable, ...] = ()
     parameters: tuple[Parameter, ...] = ()
     materials: tuple[Parameter, ...] = ()

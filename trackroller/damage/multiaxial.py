@@ -13,7 +13,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.histories import Tractions, deep_planes, planes
-from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, optional, variables
+from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, optional, variables
 from trackroller.numerics.variable import LARGEST
 
 
@@ -71,7 +71,7 @@ def stress_paths(t: Tractions, case: int, contact: int, poisson_ratio: np.ndarra
     return out
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return stresses [MPa] and utilisations [1] of the criteria, (n, contact, body)."""
     from trackroller.damage.paths import governing  # numba compiles on import, and planning reads only the declaration
 

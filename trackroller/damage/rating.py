@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, optional, variables, worst
+from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, optional, variables, worst
 from trackroller.numerics.variable import LARGEST, LIFE, SMALLEST
 
 RESISTANCE = 1.1  # partial factor of the material, on the force
@@ -50,7 +50,7 @@ def contacts_to_limit(
         return np.asarray(CONTACTS * (limit / np.asarray(pressure, dtype=float)) ** EXPONENT)
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return `rating_utilisation_static` [1] and `rating_life_hours` [h], (n, contact, body); NaN if it skids."""
     m = {name: solved.materials[name][:, None, :] for name in ("hardness", "yield_strength", "surface_hardened")}
     strength = m["hardness"], m["yield_strength"], m["surface_hardened"] == 1
@@ -62,7 +62,7 @@ def evaluate(solved: SolvedRollers) -> Results:
     }
 
 
-def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return utilisation and hours of the worse contact, (n, body)."""
     return Verdict(worst(results["rating_utilisation_static"]), -worst(-results["rating_life_hours"]))
 

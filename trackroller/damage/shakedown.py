@@ -14,7 +14,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.histories import DEPTHS, Tractions, deep_planes
-from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, variables, worst
+from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, variables, worst
 from trackroller.numerics.variable import LARGEST
 
 
@@ -43,7 +43,7 @@ def shears(t: Tractions, poisson_ratio: np.ndarray) -> np.ndarray:
     return t.by_patch(of_patch, 2)
 
 
-def of_mechanics(solved: SolvedRollers) -> Results:
+def of_mechanics(solved: SolvedRollers) -> Values:
     """Return what does not depend on strength and speed.
 
     These are the shear yield stress that just shakes down, `_shaken`, (n, contact, body) [MPa], and the largest |tau|/p
@@ -59,7 +59,7 @@ def of_mechanics(solved: SolvedRollers) -> Results:
     }
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return utilisations, (n, contact, body), and surface fatigue indices, (n, contact) [1].
 
     The indices are mu_used - k/p_max of the weaker body, with mu_used as |F_T, F_A|/F_N of the whole patch and as the

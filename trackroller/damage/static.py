@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from trackroller.damage.limit import Limit, Results, SolvedRollers, Verdict, worst
+from trackroller.damage.limit import Limit, SolvedRollers, Values, Verdict, worst
 
 
-def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the peak von Mises stress over R_m, (n, body) [1]; the limit has no time, and a body above it breaks."""
     used = worst(solved.values["peak_stress"]) / solved.materials["tensile_strength"]
     return Verdict(used, None, used > 1.0)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage.limit import Limit, Results, SolvedRollers, variables
+from trackroller.damage.limit import Limit, SolvedRollers, Values, variables
 from trackroller.damage.pair import first_failure
 from trackroller.numerics.parameter import Parameter
 from trackroller.numerics.variable import BODIES, LIFE
@@ -41,7 +41,8 @@ def _life(
     ends = (("", "", ""), ("_low", "low end of the ", ", low end"), ("_high", "high end of the ", ", high end"))
     more = LIFE | {"of": of}
     return tuple(
-        (name + end, dims, "h", "", head + meaning, more | {"label": label + tail}) for end, head, tail in ends
+        (name + end, dims, "h", "", head + meaning, more | {"end": end[1:], "label": label + tail})
+        for end, head, tail in ends
     )
 
 
@@ -138,7 +139,7 @@ def states(used: np.ndarray, life: np.ndarray, broken: np.ndarray, limits: Seque
     return np.where((bounded & (least > 1.0)) | broken, STATES.index("exceeded"), state)
 
 
-def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Results:
+def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: Sequence[int], unknown: int) -> Values:
     """Return how far each limit is used, hours to each and to the first, their ranges, and which one is first.
 
     Parameters
@@ -184,7 +185,7 @@ def verdict(places: Sequence[SolvedRollers], limits: Sequence[Limit], numbers: S
             if own.at_once is not None:
                 broken[:, i] = own.at_once
     at_once = breaking(np.asarray(broken.any(axis=1)), limits)
-    out: Results = {"utilisation": used[0], "limit_state": states(used, lives[""][0], at_once, limits)}
+    out: Values = {"utilisation": used[0], "limit_state": states(used, lives[""][0], at_once, limits)}
     # the worse and the better place are the last but one and the last one; without placeholders there is one place
     for end, place in zip(ENDS, (0, min(1, len(places) - 1), len(places) - 1), strict=True):
         life = lives[end][place]

@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import TRACTIONS, Limit, Results, SolvedRollers, Verdict, optional, variables, worst
+from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Values, Verdict, optional, variables, worst
 from trackroller.damage.mapping import MappingField
 from trackroller.errors import InputError
 from trackroller.numerics.parameter import Parameter
@@ -179,7 +179,7 @@ def _rates(solved: SolvedRollers, t: Tractions, sliding: np.ndarray) -> list[np.
     return out
 
 
-def of_mechanics(solved: SolvedRollers) -> Results:
+def of_mechanics(solved: SolvedRollers) -> Values:
     """Return what does not depend on coefficients and speed: depths and volumes for a coefficient of 1.
 
     The coefficient is k by Archard's law, and 1/density by the energy law. Results are `_worn_depth` [mm], `wear_place`
@@ -265,7 +265,7 @@ def _worn_areas(solved: SolvedRollers) -> np.ndarray:
     return out
 
 
-def evaluate(solved: SolvedRollers) -> Results:
+def evaluate(solved: SolvedRollers) -> Values:
     """Return depths, volume and life with its range, (n, contact, body), and the run-in distance [km], (n,)."""
     c, v, hourly = solved.cases, solved.values, solved.overrollings_per_hour
     archard = solved.options["wear_law"] == "archard"
@@ -293,7 +293,7 @@ def evaluate(solved: SolvedRollers) -> Results:
     }
 
 
-def verdict(solved: SolvedRollers, results: Results) -> Verdict:
+def verdict(solved: SolvedRollers, results: Values) -> Verdict:
     """Return the required travel over the travel to the permissible depth, and the hours, (n, body)."""
     hours, low, high = (-worst(-results[f"wear_life_hours{end}"]) for end in ("", "_low", "_high"))
     with np.errstate(divide="ignore"):
@@ -364,7 +364,7 @@ LIMIT = Limit(
             "h",
             "",
             "low end of the hours to the permissible wear depth, over closed forms and placeholders",
-            SMALLEST | LIFE | {"label": "wear life, low end"},
+            SMALLEST | LIFE | {"end": "low", "label": "wear life, low end"},
         ),
         (
             "wear_life_hours_high",
@@ -372,7 +372,7 @@ LIMIT = Limit(
             "h",
             "",
             "high end of the hours to the permissible wear depth, over closed forms and placeholders",
-            SMALLEST | LIFE | {"label": "wear life, high end"},
+            SMALLEST | LIFE | {"end": "high", "label": "wear life, high end"},
         ),
     ),
     parameters=(

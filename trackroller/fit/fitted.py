@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import importlib
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -111,8 +110,10 @@ class Group:
             return np.exp(log_strength(self.line, values, self.at))
         if name == "woehler_exponent":
             return np.asarray(values.slope)
-        if name.endswith("_coefficient"):
-            return self.scale * np.exp(-values.level) if self.kind == "wear" else np.exp(values.level)
+        if name == "wear_coefficient":  # a longer travel is a smaller coefficient
+            return self.scale * np.exp(-values.level)
+        if name == "friction_coefficient":
+            return np.exp(values.level)
         deviation = values.log_limit_scatter if name == "scatter_in_stress" else values.log_scatter
         return np.exp(math.log(ln_range(1.0)) * np.exp(deviation))
 
@@ -363,8 +364,9 @@ class Fit:
         InputError
             If the design does not roll, or has another contact model, life criterion or accuracy than the fit.
         """
-        rollers: Any = importlib.import_module("trackroller.fit.bench")
-        stress, per_hour = rollers.worst_stress(design, self.given, self.name)
+        from trackroller.fit.bench import worst_stress
+
+        stress, per_hour = worst_stress(design, self.given, self.name)
         found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
         return Interval(*(float(np.exp(end)) / per_hour for end in found))
 
@@ -447,8 +449,9 @@ class Fit:
         Path
             The file.
         """
-        page: Any = importlib.import_module("trackroller.report.pages.fit")
-        return page.write_fit(self, path)
+        from trackroller.report.pages.fit import write_fit
+
+        return write_fit(self, path)
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")

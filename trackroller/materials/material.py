@@ -162,18 +162,9 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         return (*guessed, FIELD) if table is not None and table.placeholder else tuple(guessed)
 
     @property
-    def guesses_of_limits(self) -> dict[str, str]:
-        """Return the values of single limits that are guesses without a source, with the range that is expected."""
-        return {
-            name: f"{r.note}, " * bool(r.note)
-            + (
-                "no range is given"
-                if r.range is None
-                else f"expected from {r.range[0]:g} to {r.range[1]:g} {r.unit}".rstrip(" -")
-            )
-            for name, r in self.records.items()
-            if r.placeholder and name in OF_LIMITS
-        }
+    def guesses_of_limits(self) -> dict[str, Value]:
+        """Return the values of single limits that are guesses without a source."""
+        return {name: own for name, own in self.records.items() if own.placeholder and name in OF_LIMITS}
 
     @property
     def ends_of_limits(self) -> dict[str, tuple[float, float]]:

@@ -109,7 +109,7 @@ def check_number(prop: Parameter, value: Any, where: str, unit: str = "") -> flo
     remedy = f"Give {prop.name} in {prop.unit}." if prop.unit != "-" else "Correct the value."
     if prop.name in ("woehler_exponent", "second_exponent") and isinstance(value, (int, float)) and -1.0 < value < 0.0:
         remedy = f"If Basquin's b is meant, the exponent is k = -1/b: write {-1.0 / value:.3g}."
-    if prop.name.startswith("scatter"):
+    if prop.name in ("scatter_in_cycles", "scatter_in_stress"):
         remedy = "Give the larger over the smaller value; 1 means no scatter."
     field = f"{where}.{prop.name}"
     number = number_or_nan(value, prop.unit, field)

@@ -287,7 +287,15 @@ def _functions(x: np.ndarray, ordered: bool) -> np.ndarray:
 
 
 def _deviation(kernel: np.ndarray) -> float:
-    """Return the standard deviation of the mean of a symmetric kernel over pairs of different replicates."""
+    """Return the standard deviation of a U-statistic: the mean of a symmetric kernel over pairs of replicates.
+
+    By Hoeffding's decomposition, an entry is the mean, plus an effect of each of both replicates, plus a rest without
+    effects. `jackknifed` is the variance by the effects, which holds the rest twice; `least` is that by the rest alone.
+
+    References
+    ----------
+    Efron and Stein (1981): The jackknife estimate of variance. Ann. Statist. 9, 586–596.
+    """
     count = len(kernel)
     off = ~np.eye(count, dtype=bool)
     rows = np.where(off, kernel, 0.0).sum(axis=1) / (count - 1)

@@ -191,7 +191,11 @@ def next_generation(
 
 
 def _mixed(mother: np.ndarray, father: np.ndarray, genes: Sequence[Gene], rng: np.random.Generator) -> np.ndarray:
-    """Mix the genes of two parents."""
+    """Mix the genes of two parents; a child takes a gene of the mother as it is, or a new one.
+
+    The new gene is the father's, or of an ordered choice a value about both parents by simulated binary crossover (Deb
+    and Agrawal 1995), whose `spread` is 1 at the parents themselves.
+    """
     out = mother.copy()
     mixed = rng.random(len(out)) < CROSSED
     for j, gene in enumerate(genes):

@@ -37,6 +37,8 @@ class Parameter:
         Words that stand for a number of a database.
     role : str
         Who sets the value: the designer (`choice`) or the use of the roller (`condition`).
+    afterwards : bool
+        Whether the value only converts forces and stresses, to hours for example, and changes none of them.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Parameter:
     label: str = ""
     words: tuple[str, ...] = ()
     role: str = "choice"
+    afterwards: bool = False
 
     @property
     def long_name(self) -> str:

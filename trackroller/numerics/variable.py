@@ -36,6 +36,8 @@ class Variable:
         Whether the value is a life: longer is better, 0 and infinity are values, and hours become years of a duty.
     of : str
         `roller`, `guide` or `pair`, if the value is that of one of them and has no dimension `body`.
+    end : str
+        `low` or `high`, if the value is that end of the range of another result.
     estimate : bool
         Whether the value is an estimated error of another result.
     label : str
@@ -54,5 +56,6 @@ class Variable:
     scale: str = "natural"
     life: bool = False
     of: str = ""
+    end: str = ""
     estimate: bool = False
     label: str = ""

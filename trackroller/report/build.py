@@ -17,7 +17,7 @@ from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported, open_study
 from trackroller.study.store.crate import write_crate
 from trackroller.study.store.folder import StudyFolder, reporting
-from trackroller.study.store.ownership import PAGES, UNFINISHED, files_below, remove, remove_empty, standing
+from trackroller.study.store.ownership import PAGES, UNFINISHED, files_below, remove, remove_empty, replaceable
 from trackroller.study.store.seal import put, sealing
 
 log = logging.getLogger("trackroller")
@@ -54,7 +54,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         place = place_of_pages(results, folder)
         for page in (place / name for name in PAGES):
             if not page.is_dir():
-                standing(page, folder.root)  # a file of somebody else is refused before the work
+                replaceable(page, folder.root)  # a file of somebody else is refused before the work
         tell("analyse the results")
         write_analysis(results, place / "sensitivity.nc")
         tell("draw the figures")

@@ -13,28 +13,18 @@ import numpy as np
 import pandas as pd
 
 from trackroller.methods.b10 import b10
-from trackroller.parameters import FIRST_TO_FAIL, PARAMETERS
+from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.design.roles import roles_of
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
 SHARED = 2  # conditions that all designs of a table must have, so that they are compared over these alone
 STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")  # compared in a study without lives
 TIED = 1e-9  # relative difference of lives that count as equal
-
-
-def factor_roles(results: Results) -> dict[str, str]:
-    """Return the role of each factor of a study that varies: `choice` or `condition`."""
-    study, observed = results.study, results.config.method.observed
-    roles = roles_of(results.factors, study.parsed, study.config.roles, study.config.design)
-    # a label of its own in each row of a table names a condition, such as a measured load
-    labels = [n for n in roles if observed and n not in PARAMETERS and results.table[n].nunique() == len(results.table)]
-    return roles | {n: "condition" for n in labels if n not in study.config.roles}
 
 
 def of_one_model(results: Results, rows: np.ndarray, model: str = "") -> np.ndarray:
@@ -151,7 +141,7 @@ class Candidates:
         free : conditions that count as choices here
         model : contact model whose cases are compared, the most exact one if it is not named
         """
-        roles = factor_roles(results) | dict.fromkeys(free, "choice")
+        roles = results.roles | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
         own = of_one_model(results, np.ones(len(results.table), dtype=bool), model)
         place = np.where(own, codes(results.table, choices), -1)

@@ -1,6 +1,6 @@
 """What a study shows beside its verdict: findings as data, each with the rows that carry it.
 
-A finding is made only if the rows can carry it: no effect between factors that go together, no index over a grid with
+A finding is made only if the rows can carry it: no effect between confounded factors, no index over a grid with
 gaps, no "only at" from a sample, no share over several contact models.
 """
 
@@ -86,10 +86,11 @@ def _models(results: Results, rows: np.ndarray) -> tuple[str, ...]:
     return (results.config.contact_model,)
 
 
-def go_together(results: Results, name: str, rows: np.ndarray) -> list[str]:
-    """Return the factors that go with a factor in these rows, so that an effect of one may be that of another.
+def confounded_with(results: Results, name: str, rows: np.ndarray) -> list[str]:
+    """Return the factors that are confounded with a factor in these rows: an effect of one may be that of another.
 
-    Factors go together if the level of one gives that of the other, or by a rank correlation of `CORRELATED`.
+    Factors are confounded if the level of one gives that of the other, or by a rank correlation of `CORRELATED`.
+    `trackroller.methods.correlation.correlated_pairs` says which factors of a whole design are correlated.
     """
     table = results.table[rows]
     own = codes(table, (name,))
@@ -206,7 +207,7 @@ def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
         return []
     values = {kind: found for kind, of in OF_ANALYSIS.items() if (found := of(sens, output)) is not None}
     large = [r.factor for r in values["index"]["ranks"] if r not in values["index"]["small"]]
-    if results.config.method.observed and any(go_together(results, name, results.counted) for name in large):
+    if results.config.method.observed and any(confounded_with(results, name, results.counted) for name in large):
         values.pop("index")  # the share of one factor may be that of another
     if "index" in values:
         values["index"]["outside"] = int((results.counted & ~results.valid).sum())
@@ -357,7 +358,7 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
         for one, other, r in results.config.rank_correlations
         if factor in (one, other) and r
     ]
-    if set(go_together(results, factor, rows)) - set(asked):
+    if set(confounded_with(results, factor, rows)) - set(asked):
         return None
     return _of_classes(results, column, effect, rows, asked)
 
@@ -442,7 +443,7 @@ def slip_law(results: Results) -> Finding | None:
     return finding(results, "slip_law", "all", looked, what="full_slip", **values)
 
 
-def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
+def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None:
     """Say how often an event occurs and at which levels of the factors.
 
     That it occurs only at some levels is said of a grid, in which every combination was tried, and of a sample if one
@@ -450,7 +451,7 @@ def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
 
     Parameters
     ----------
-    hit : whether the event occurs, shape (n,) bool
+    event : whether it occurs, shape (n,) bool
     what : name of the event
 
     Returns
@@ -458,8 +459,8 @@ def occurrence(results: Results, hit: np.ndarray, what: str) -> Finding | None:
     Finding or None
         None if the event never occurs.
     """
-    looked = of_one_model(results, np.ones(len(hit), dtype=bool))
-    hit, whole, cases = hit & looked, int(looked.sum()), int((hit & looked).sum())
+    looked = of_one_model(results, np.ones(len(event), dtype=bool))
+    hit, whole, cases = event & looked, int(looked.sum()), int((event & looked).sum())
     if not cases:
         return None
     values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
@@ -542,7 +543,7 @@ def most_frequent(
         gap = high[1] / high[2] - low[1] / low[2]
         noise = 3 * np.sqrt(sum(k * (n - k) / n**3 for _, k, n in (high, low)))
         larger = gap > max(noise, 0.1) and (best is None or gap > best[0])
-        if larger and _shared(results, name, hit, among, (high, low)) and not go_together(results, name, among):
+        if larger and _shared(results, name, hit, among, (high, low)) and not confounded_with(results, name, among):
             best = gap, name, high, low
     return None if best is None else best[1:]
 

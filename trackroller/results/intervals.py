@@ -11,7 +11,7 @@ import numpy as np
 from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
-from trackroller.results.by_tests import POSITIONS, probability_of
+from trackroller.results.by_tests import POSITIONS, ByTests, probability_of
 from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE, first_at, first_limit
@@ -130,16 +130,16 @@ class Cases:
 
         At a position all cases share the values of a material. `ends` holds the band over all positions.
         """
-        if not self._moves:
+        own, chance = self._tests, self._probability
+        if own is None:
             return [self.ends]
-        own, chance = self.results.by_tests, self._probability
         at = [own.at(draw, probability=chance) for draw in POSITIONS]
         return [self._between((shift, "_low"), (shift, "_high")) for shift in at]
 
     @property
-    def _moves(self) -> bool:
-        """Return whether the goal is a life by a material that was fitted to tests."""
-        return self.candidates.rising and self.results.by_tests is not None
+    def _tests(self) -> ByTests | None:
+        """Return the fits of materials to tests; None if the goal is no life, or no material was fitted."""
+        return self.results.by_tests if self.candidates.rising else None
 
     @property
     def _probability(self) -> float:
@@ -148,18 +148,19 @@ class Cases:
     @cached_property
     def _shifts(self) -> dict[str, np.ndarray]:
         """Return the shift of ln life by fatigue of each body at both ends of the band by the tests, (2, n)."""
-        return {body: self.results.by_tests.ends(body, self._probability) for body in BODIES}
+        own = self._tests
+        return {} if own is None else {body: own.ends(body, self._probability) for body in BODIES}
 
     def _by_tests(self, end: int) -> Any:
         """Return the shifts of ln life by body at an end of the band by the tests; None without fitted materials."""
-        return (lambda body: self._shifts[body][end]) if self._moves else None
+        return (lambda body: self._shifts[body][end]) if self._shifts else None
 
     @cached_property
     def tested(self) -> dict[str, np.ndarray]:
         """Return the cases whose range the tests of each fitted material widen, (n,) bool by its name."""
-        if not self._moves:
+        own = self._tests
+        if own is None:
             return {}
-        own = self.results.by_tests
         ended = {end: self.at_end(end) for end in ("_low", "_high")}
         out = {name: np.zeros(len(self.reason), dtype=bool) for name in own.fits}
         for names, guide in ended.values():
@@ -171,9 +172,9 @@ class Cases:
     @cached_property
     def beyond_tests(self) -> np.ndarray:
         """Return the cases whose life by a fitted material lies beyond its tests, (n,)."""
-        if not self._moves:
+        own, fatigue = self._tests, self.low_end[0] == "fatigue"
+        if own is None:
             return np.zeros(len(self.reason), dtype=bool)
-        own, fatigue = self.results.by_tests, self.low_end[0] == "fatigue"
         return np.asarray(fatigue & np.where(self.low_end[1], own.beyond("guide"), own.beyond("roller")))
 
     def _column(self, end: str, shift: Any = None) -> np.ndarray:
@@ -186,7 +187,8 @@ class Cases:
         if end and f"{name}{end}" in self.results.data:
             found = flat(self.results.data, f"{name}{end}", self.results.dims).astype(float)
             value = np.where(np.isnan(found), value, found)
-        return np.asarray(value if shift is None else self.results.by_tests.lives(name, value, shift, end))
+        own = self.results.by_tests
+        return np.asarray(value if shift is None or own is None else own.lives(name, value, shift, end))
 
     @cached_property
     def guessed(self) -> np.ndarray:
@@ -254,8 +256,8 @@ class Cases:
         """
         if self.candidates.goal != FIRST_LIMIT or f"life_hours_by_limit{end}" not in self.results.data:
             return self.first, self.guide
-        shift = self._by_tests(("_low", "_high").index(end))
-        names, guide = first_at(self.results, end, None if shift is None else self.results.by_tests.reached(shift, end))
+        shift, own = self._by_tests(("_low", "_high").index(end)), self.results.by_tests
+        names, guide = first_at(self.results, end, None if own is None or shift is None else own.reached(shift, end))
         known = names != ""
         return np.where(known, names, self.first), np.where(known, guide, self.guide)
 

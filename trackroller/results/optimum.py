@@ -164,44 +164,41 @@ def _choices(study: Study) -> dict[str, Factor]:
 def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tell) -> Ledger:
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
     study, choices = search.study, _choices(search.study)
-    many, usable = len(decided.genes), decided.violation.min() < 1  # a design that is never valid is no optimum
-    decided = _polished(search, decided, choices) if usable else decided
-    front = np.flatnonzero(nondominated_ranks(decided.costs, decided.violation) == 0)
-    best = decided.take(front)
+    usable = decided.violation.min() < 1  # a design that is never valid is no optimum
+    designs = _polished(search, decided, choices) if usable else decided
+    front = np.flatnonzero(nondominated_ranks(designs.costs, designs.violation) == 0)
+    best = designs.take(front)
     chosen = recommended(best)
     shown = np.union1d(spread(best.costs, REPORTED), [chosen]) if usable else np.empty(0, int)
-    exact = {"accuracy": "reference"}
-    if study.config.contact_model == TABLE:
-        exact["contact_model"] = ELEMENTS
+    exact = {"accuracy": "reference"} | ({"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {})
     checked = search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
     around = _neighbours(choices, best.genes[chosen]) if usable else []
     moved = search.judged(study, np.array([genes for *_, genes in around])) if around else best.take(np.empty(0, int))
-    beside = (
-        f"polished designs ({len(decided.genes) - many}), neighbours of the recommended design ({len(around)}) and "
-    )
-    beside += f"optima at reference ({len(shown)})"
+    polished = f"polished designs ({len(designs.genes) - len(decided.genes)})"
+    beside = f"{polished}, neighbours of the recommended design ({len(around)}) and optima at reference ({len(shown)})"
     tell(f"solved beside the budget: {beside}" if usable else "no design is valid, so there is no optimum to check")
-    final = search.of(study, decided.genes)
-    goals = goals_of_search(solved_results(search.ledger(final)))
+    final = search.of(study, designs.genes)
+    optima = [
+        {
+            "design": int(front[row]),
+            "values": best.values[row].tolist(),
+            "reference": checked.values[i].tolist(),
+            "violation": [float(best.violation[row]), float(checked.violation[i])],
+        }
+        for i, row in enumerate(shown)
+    ]
+    neighbours = [
+        {"choice": name, "step": step, "values": values.tolist(), "violation": float(violation)}
+        for (name, step, _), values, violation in zip(around, moved.values, moved.violation, strict=True)
+    ]
     result = facts | {
         "beside": beside if usable else "",
-        "goals": goals,
+        "goals": goals_of_search(solved_results(search.ledger(final))),
         "front": len(front),
-        "decided": len(decided.genes),
+        "decided": len(designs.genes),
         "recommended": int(front[chosen]),
-        "optima": [
-            {
-                "design": int(front[row]),
-                "values": best.values[row].tolist(),
-                "reference": checked.values[i].tolist(),
-                "violation": [float(best.violation[row]), float(checked.violation[i])],
-            }
-            for i, row in enumerate(shown)
-        ],
-        "neighbours": [
-            {"choice": name, "step": step, "values": values.tolist(), "violation": float(violation)}
-            for (name, step, _), values, violation in zip(around, moved.values, moved.violation, strict=True)
-        ],
+        "optima": optima,
+        "neighbours": neighbours,
     }
     with search.runner.solved(final) as ledger:
         gather(ledger, tell, {OPTIMUM: json.dumps(result)})

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import importlib
 import json
 import logging
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pandas as pd
@@ -26,10 +25,17 @@ from trackroller.results.lives import FIRST_LIMIT, LIVES, OF_PAIR, body_lives, p
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.roles import roles_of
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import Output, case_dims, of_fatigue, of_first_limit
+
+if TYPE_CHECKING:
+    from trackroller.results.by_tests import ByTests
+    from trackroller.results.candidates import Candidates
+    from trackroller.results.findings import Finding
+    from trackroller.results.verdict import Verdict
 
 log = logging.getLogger("trackroller")
 SAME_ENDS = 1e-6  # relative difference of the two ends of a life below which it is one number
@@ -83,7 +89,7 @@ class Results:
         """Return whether some cases of the study are not solved yet."""
         return "missing_cases" in self.data.attrs
 
-    # The files of analysis and report import `Results`. Importing them here, and not by name, would be a circle.
+    # The files of analysis and report import `Results`, so that this file imports them inside functions only.
 
     def indices(self) -> xr.Dataset:
         """Return the sensitivity indices of every output, see `trackroller.results.sensitivity.analyse`.
@@ -99,8 +105,9 @@ class Results:
     def _indices(self) -> xr.Dataset:
         if self.known_indices is not None:
             return self.known_indices
-        computed: xr.Dataset = _of("results.sensitivity", "analyse")(self)
-        return computed
+        from trackroller.results.sensitivity import analyse
+
+        return analyse(self)
 
     @cached_property
     def analysis(self) -> xr.Dataset | None:
@@ -145,16 +152,18 @@ class Results:
         """
         if objectives is None and constraints is None:
             return self._pareto
+        from trackroller.results.pareto import pareto
+
         limits = self.config.constraints if constraints is None else constraints
-        allowed: xr.Dataset = _of("results.pareto", "pareto")(self, objectives or self.goals, limits)
-        return allowed
+        return pareto(self, objectives or self.goals, limits)
 
     @cached_property
     def _pareto(self) -> xr.Dataset | None:
-        front: xr.Dataset | None = _of("results.pareto", "study_pareto")(self)
-        return front
+        from trackroller.results.pareto import study_pareto
 
-    def candidates(self, free: tuple[str, ...] = ()) -> Any:
+        return study_pareto(self)
+
+    def candidates(self, free: tuple[str, ...] = ()) -> Candidates | None:
         """Return the combinations of choices, each judged over its conditions.
 
         Parameters
@@ -167,16 +176,18 @@ class Results:
         Candidates or None
             See `trackroller.results.candidates.Candidates`; None without a valid case that has a life or a stress.
         """
+        from trackroller.results.candidates import Candidates
+
         if free not in self._candidates:  # a report asks for them seven times
-            self._candidates[free] = _of("results.candidates", "Candidates").of(self, free)
+            self._candidates[free] = Candidates.of(self, free)
         return self._candidates[free]
 
     @cached_property
-    def _candidates(self) -> dict[tuple[str, ...], Any]:
+    def _candidates(self) -> dict[tuple[str, ...], Candidates | None]:
         return {}
 
     @cached_property
-    def verdict(self) -> Any:
+    def verdict(self) -> Verdict | None:
         """Return which candidate to build, or why the study cannot say so.
 
         Returns
@@ -184,10 +195,12 @@ class Results:
         Verdict or None
             See `trackroller.results.verdict.Verdict`; None for a search and without a life or a stress.
         """
-        return _of("results.verdict", "verdict_of")(self)
+        from trackroller.results.verdict import verdict_of
+
+        return verdict_of(self)
 
     @cached_property
-    def by_tests(self) -> Any:
+    def by_tests(self) -> ByTests | None:
         """Return the fits of the materials of the study that hold for it.
 
         Returns
@@ -195,10 +208,12 @@ class Results:
         ByTests or None
             See `trackroller.results.by_tests.ByTests`; None without a material that was fitted to tests.
         """
-        return _of("results.by_tests", "by_tests_of")(self)
+        from trackroller.results.by_tests import by_tests_of
+
+        return by_tests_of(self)
 
     @cached_property
-    def findings(self) -> dict[str, list[Any]]:
+    def findings(self) -> dict[str, list[Finding]]:
         """Return what the study shows beside its verdict, as data.
 
         Returns
@@ -207,7 +222,9 @@ class Results:
             `why` one design lasts longer than another, the most important finding first, and where rolling `ends`;
             lists of `trackroller.results.findings.Finding`.
         """
-        return {name: _of("results.findings", name)(self) for name in ("why", "ends")}
+        from trackroller.results.findings import ends, why
+
+        return {"why": why(self), "ends": ends(self)}
 
     def best(self, count: int = 5) -> pd.DataFrame:
         """Return the best designs over all their conditions, the best one first.
@@ -246,15 +263,22 @@ class Results:
 
     def export(self, path: Path | str) -> Path:
         """Write the cases with every limit, as a workbook (.xlsx) or as CSV by the name, and return the path."""
-        return Path(_of("report.workbook", "write_results")(self, Path(path)))
+        from trackroller.report.workbook import write_results
+
+        return write_results(self, Path(path))
 
     def report(self, path: Path | str) -> Path:
         """Write the report as one HTML file, or as PDF by the name of the file, and return its path."""
-        return Path(_of("report.html", "write_page")(Path(path), _of("report.build", "report_text")(self)))
+        from trackroller.report.build import report_text
+        from trackroller.report.html import write_page
+
+        return write_page(Path(path), report_text(self))
 
     def explore(self, path: Path | str) -> Path:
         """Write the explorer as one HTML file that works without a network, and return its path."""
-        return Path(_of("report.explorer.page", "write_explorer")(self, Path(path)))
+        from trackroller.report.explorer.page import write_explorer
+
+        return write_explorer(self, Path(path))
 
     # the cases as a table
 
@@ -276,6 +300,15 @@ class Results:
     def factors(self) -> tuple[str, ...]:
         """Return the names of the factors that vary."""
         return tuple(factor_names(self.data, self.dims, self.design, self.table))
+
+    @cached_property
+    def roles(self) -> dict[str, str]:
+        """Return the role of each factor that varies: `choice` of the designer, or `condition` of the use."""
+        given, method = self.config.roles, self.config.method
+        roles = roles_of(self.factors, self.study.parsed, given, method.name)
+        # a label of its own in each row of a table names a condition, such as a measured load
+        own = [n for n in roles if n not in PARAMETERS and self.table[n].nunique() == len(self.table)]
+        return roles | {n: "condition" for n in own if method.observed and n not in given}
 
     @cached_property
     def grid(self) -> bool:
@@ -586,8 +619,3 @@ def _usual_goals(ds: xr.Dataset) -> dict[str, str]:
         if name in ds and len(goals) == 1:
             goals[name] = "min"
     return goals if len(goals) == 2 else {}
-
-
-def _of(place: str, name: str) -> Any:
-    """Return a function of another file that takes `Results`; an import of the file itself would be a circle."""
-    return getattr(importlib.import_module(f"trackroller.{place}"), name)

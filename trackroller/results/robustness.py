@@ -142,6 +142,7 @@ def material_deviations(results: Results) -> dict[str, np.ndarray]:
 
 
 def _coordinates(design: Design, columns: list[Output]) -> dict[str, Any]:
+    """Return the coordinates of the outputs and of the design points, with the values of the outer factors there."""
     first = [rows.start for rows in design.points]
     outer = {name: ("point", readable(design.columns[name][first])) for name in design.meta["outer"]}
     point = [", ".join(in_words(n, outer[n][1][i]) for n in outer) or "all" for i in range(len(first))]

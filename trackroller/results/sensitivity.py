@@ -8,6 +8,8 @@ inner/outer array design gets distributions of life (`robustness`).
 from __future__ import annotations
 
 import logging
+from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -15,21 +17,25 @@ import xarray as xr
 from trackroller.errors import InputError
 from trackroller.methods import Design, Method, convergence
 from trackroller.methods.correlation import correlated_pairs
+from trackroller.methods.factor import label
 from trackroller.methods.method import Estimated, Estimates
+from trackroller.methods.saltelli import all_groups
 from trackroller.results.by_tests import bands
 from trackroller.results.labels import (
     RELIABLE,
     correlated,
+    factor_name,
     first_order_sums,
     labelled,
     note,
+    stacked,
     treatment,
 )
-from trackroller.results.parts import parts_of
 from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations, robustness
 from trackroller.results.targets import targets
 from trackroller.roller.dataset import file_attributes
+from trackroller.study.file.goals import Analysis
 from trackroller.study.outputs import Output, outputs, regimes
 
 log = logging.getLogger("trackroller")
@@ -59,11 +65,11 @@ def analyse(results: Results) -> xr.Dataset:
         Dimensions output, factor, factor_2 and sample_size. By method: S1, ST, S2 (saltelli); mu, mu_star, sigma
         (morris); main_share, interaction_share, higher_share (grid); effect, curvature, interaction (response
         surfaces); first, delta, prcc (given data). A random sample also has interaction_share by a polynomial
-        that predicts `fit_share` of the variance. The keys `groups` and `conditional_on` add the variables of
-        `trackroller.results.parts.parts_of`. Indices have _low, _high and their course with the sample size. For
-        each output: used_share, reliable, take_times, and `note`, which states the rows left out and why;
-        first_order_sum, and first_order_sum_note, which explains a sum above 100 %. An
-        inner/outer array design gives the result of `trackroller.results.robustness.robustness`.
+        that predicts `fit_share` of the variance. The key `groups` adds group_S1 and group_ST, and
+        `conditional_on` conditional_S1 and conditional_ST of each factor within each level of a category. Indices have
+        _low, _high and their course with the sample size. For each output: used_share, reliable, take_times, and
+        `note`, which states the rows left out and why; first_order_sum, and first_order_sum_note, which explains a sum
+        above 100 %. An inner/outer array design gives the result of `trackroller.results.robustness.robustness`.
 
     Raises
     ------
@@ -93,7 +99,7 @@ def analyse(results: Results) -> xr.Dataset:
         if "replicates" in design.meta:
             by_output[-1] = _of_replicates(by_output[-1], column.values, design)
     result = labelled(design, columns, [one.estimates for one in by_output], by_output[0].sizes)
-    result = result.merge(parts_of(design, columns, given))
+    result = result.merge(_of_groups_and_levels(design, columns, given))
     result = result.assign(_quality(result, design, columns, by_output))
     if tied := {name for pair in correlated_pairs(design) for name in pair[:2]}:
         words = {"long_name": "1 for a factor that is correlated with another factor", "units": "1"}
@@ -111,6 +117,66 @@ def analyse(results: Results) -> xr.Dataset:
         "study": results.study.merged(),
     }
     return result.merge(aims, combine_attrs="override")
+
+
+def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Analysis) -> xr.Dataset:
+    """Compute the indices of groups and within the levels of a category that a study file asks for.
+
+    Parameters
+    ----------
+    design : the design
+    columns : the outputs
+    asked : the key `analysis` of the study file, with `groups` and `conditional_on`
+
+    Returns
+    -------
+    group_S1, group_ST (output, group) and conditional_S1, conditional_ST (output, level, factor), each with _low and
+    _high, and conditional_rows (output, level). Empty if the study file asks for neither. A grid has no interval, a
+    random sample or a table no conditional_ST.
+    """
+    variables: dict[str, Any] = {}
+    coords: dict[str, Any] = {}
+    if asked.groups:
+        groups = all_groups(asked.groups, design.factors)
+        coords["group"] = np.array(list(groups), dtype=object)
+        words = [factor_name(name) if name in design.factors else name.replace("_", " ") for name in groups]
+        coords["group_name"] = ("group", np.array(words, dtype=object))
+        members = [", ".join(map(factor_name, names)) for names in groups.values()]
+        coords["group_members"] = ("group", np.array(members, dtype=object))
+        estimates = [design.method.group_indices(column.values, design, groups) for column in columns]
+        variables |= stacked(estimates, ("output", "group"))
+    if category := asked.conditional_on:
+        levels = design.factors[category].levels
+        coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
+        coords["factor"] = np.array(list(design.factors), dtype=object)
+        estimates = [within_levels(column.values, design, category) for column in columns]
+        variables |= stacked(estimates, ("output", "level", "factor"))
+    return xr.Dataset(variables, coords | {"output": np.array([c.name for c in columns], dtype=object)})
+
+
+def within_levels(y: np.ndarray, design: Design, category: str) -> Estimates:
+    """Estimate the indices of all other factors within each level of a category.
+
+    Parameters
+    ----------
+    y : output, shape (n,), NaN where unusable
+    design : a grid, a Saltelli design, a random sample or a table
+    category : a factor with a list of values
+
+    Returns
+    -------
+    conditional_S1 with _low and _high, shape (levels, k), NaN for the category itself; conditional_ST too from a grid
+    and a Saltelli design; conditional_rows, the blocks, cells or rows of each level, shape (levels,).
+
+    Notes
+    -----
+    The variance is that among the rows of the level. Valid for independent factors, as the index over all rows.
+    """
+    place, levels = list(design.factors).index(category), design.factors[category].levels
+    code = {level: i for i, level in enumerate(levels)}
+    level_of = np.array([code[value] for value in design.columns[category].tolist()])
+    by_level = [design.method.level_indices(y, design, place, level_of == i) for i in range(len(levels))]
+    return {name: np.stack([part[name] for part in by_level]) for name in by_level[0]}
 
 
 def _quality(

@@ -22,10 +22,10 @@ from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import BESIDE, Cases
-from trackroller.results.limit_notes import Placeholder, placeholders_of
 from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
+from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.roller.output_names import is_life
 from trackroller.roller.record import names_not_given
 from trackroller.study.outputs import flat

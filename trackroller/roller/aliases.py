@@ -43,10 +43,10 @@ def renamed(values: Mapping[Any, Any]) -> dict[Any, Any]:
 
 
 def overridden(values: Mapping[str, Any], given: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the values of a file with those of the command line in their place, whichever name each of them has.
+    """Return the values of a case file, overridden by those of the command line.
 
-    An axis distance takes the place of both radii of the roller, which must be lengths all the same, and a radius takes
-    the place of the axis distance.
+    A value overrides that of its other name, such as `mu` that of `friction_coefficient`. An axis distance overrides
+    the radii of the roller (`RADII`), and a radius the axis distance; radii that are overridden are checked, too.
     """
     given = renamed(given)
     for name in RADII if "axis_distance" in given else ():

@@ -156,17 +156,24 @@ def _moment(ds: xr.Dataset, name: str) -> xr.DataArray:
     return _load(ds, name) * _axis(ds)
 
 
-def _patch(ds: xr.Dataset, name: str) -> xr.DataArray:
+def _patch(ds: xr.Dataset, name: str, *along: str) -> xr.DataArray:
     """Return the semi-axis of the patch along a length, the larger one for depths [mm].
 
     It is about a hundredth of the distance of the roller's axis if the data set does not hold the patches.
     """
-    along = [axis for axis in ("lateral", "rolling") if name.endswith((axis, "_x" if axis == "lateral" else "_y"))]
     sides = [f"semi_axis_{axis}" for axis in along or ("lateral", "rolling")]
     if not all(side in ds.variables for side in sides):
         return 0.01 * _axis(ds) + 0.0 * abs(ds[name]).fillna(0.0)
     first, *more = (_inside(ds, side, _dims(name)) for side in sides)
     return _larger(first, more[0]) if more else first
+
+
+def _lateral(ds: xr.Dataset, name: str) -> xr.DataArray:
+    return _patch(ds, name, "lateral")
+
+
+def _rolling(ds: xr.Dataset, name: str) -> xr.DataArray:
+    return _patch(ds, name, "rolling")
 
 
 def _creepage(ds: xr.Dataset, name: str) -> xr.DataArray:
@@ -192,8 +199,10 @@ _OF_SEARCH: Kind = SEARCH, "the value", _own
 _OF_LIFE: Kind = LIFE, "the value", _own
 _OF_ONE: Kind = ROUNDING, "1", _one
 _ESTIMATED: Kind = ESTIMATE, "1", _one
-_LENGTH: Kind = ROUNDING, "the semi-axis of the patch", _patch
-_PLACED: Kind = PLACE, "the semi-axis of the patch", _patch
+_LENGTH, _LATERAL, _ROLLING = ((ROUNDING, "the semi-axis of the patch", own) for own in (_patch, _lateral, _rolling))
+_PLACED, _PLACED_LATERAL, _PLACED_ROLLING = (
+    (PLACE, "the semi-axis of the patch", own) for own in (_patch, _lateral, _rolling)
+)
 _CREEPAGE: Kind = ROUNDING, "the creepage in the patch", _creepage
 _STRESS: Kind = ROUNDING, "the largest pressure", _stress
 _SECTIONED: Kind = SECTION, "the largest pressure", _stress
@@ -204,8 +213,9 @@ _BY_UNIT: dict[str, Kind] = {
     "h": _OF_LIFE,
 }
 _BY_NAME: dict[str, Kind] = {
-    **dict.fromkeys(("rolling_radius_shift", "pressure_centre", "spin_pole_lateral", "spin_pole_rolling"), _LENGTH),
-    **dict.fromkeys(("patch_x", "patch_y"), _LENGTH),
+    **dict.fromkeys(("rolling_radius_shift", "pressure_centre"), _LENGTH),
+    **dict.fromkeys(("spin_pole_lateral", "patch_x"), _LATERAL),
+    **dict.fromkeys(("spin_pole_rolling", "patch_y"), _ROLLING),
     **dict.fromkeys(("slip", "slip_lateral", "slip_rolling"), _CREEPAGE),
     **dict.fromkeys(("pressure", "shear_lateral", "shear_rolling", "max_shear"), _STRESS),
     # zero in adhesion
@@ -213,7 +223,9 @@ _BY_NAME: dict[str, Kind] = {
     **dict.fromkeys(("residual", "energy_residual", "stick_area_fraction", "heat_partition"), _OF_ONE),
     **dict.fromkeys(("surface_fatigue_index", "surface_fatigue_index_local"), _OF_ONE),
     "peak_stress": _OF_SEARCH,
-    **dict.fromkeys(("peak_x", "peak_y", "peak_z", "wear_place", "xz_x", "xz_z", "yz_y", "yz_z"), _PLACED),
+    **dict.fromkeys(("peak_z", "wear_place", "xz_z", "yz_z"), _PLACED),
+    **dict.fromkeys(("peak_x", "xz_x"), _PLACED_LATERAL),
+    **dict.fromkeys(("peak_y", "yz_y"), _PLACED_ROLLING),
     **dict.fromkeys(("von_mises_xz", "von_mises_yz", "stress_xz", "stress_yz"), _SECTIONED),
     **dict.fromkeys(("life_cycles", "catalogue_life_km"), _OF_LIFE),
     "hysteresis_moment": _OF_SEARCH,  # no lever arm: far smaller than the moments of forces

@@ -94,7 +94,7 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
             kind = f" for the family {material.family} (material '{material.name}')"
             sentences += [_unusual(name, number, PROPERTIES[name].unit, usual, kind)] if number is not None else []
         sentences += [_exponent(material, name) for name in ("woehler_exponent", "second_exponent")]
-    sentences += _ratings(values)
+    sentences += ratings(values)
     guide_radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
@@ -131,7 +131,7 @@ def _exponent(material: Material, name: str) -> str:
     return f"{name} = {k:.4g} of the material '{material.name}' is {off}{ask}."
 
 
-def _ratings(values: Mapping[str, Any]) -> list[str]:
+def ratings(values: Mapping[str, Any]) -> list[str]:
     """Return a sentence for each rating of a bearing or catalogue that is smaller than the smallest radial force."""
     loads = [abs(v) for v in np.ravel(values.get("radial_force", math.nan)).tolist() if isinstance(v, (int, float))]
     load = min((v for v in loads if v > 0.0 and math.isfinite(v)), default=0.0)

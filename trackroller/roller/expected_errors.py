@@ -13,7 +13,7 @@ import numpy as np
 
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.models import CLASSES
-from trackroller.contact.settings import converged_up_to
+from trackroller.contact.rollers import converged_up_to
 from trackroller.numerics.numbers import rounded_up
 from trackroller.parameters import OPTIONS
 from trackroller.parameters.accuracy import PEAK_OUTPUTS, RUNGS, settings_of

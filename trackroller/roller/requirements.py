@@ -20,9 +20,6 @@ from trackroller.roller.case import CaseTable
 if TYPE_CHECKING:
     from trackroller.roller.equilibrium import ContactLaw
 
-# these parameters only convert forces and stresses to power, cycles and hours
-AFTERWARDS = ("velocity", "guide_overrollings_per_hour", *OF_LIMITS)
-
 
 def is_mirror_symmetric(table: CaseTable) -> np.ndarray:
     """Return True for rollers whose contact 2 is the mirror image of contact 1, (n,).
@@ -50,7 +47,8 @@ def distinct_mechanics(table: CaseTable) -> tuple[np.ndarray, np.ndarray]:
     number : numpy.ndarray of int, shape (n,)
         Number of the group of each case.
     """
-    columns = [getattr(table, name) for name in PARAMETERS if name not in AFTERWARDS]
+    mechanical = [name for name, own in PARAMETERS.items() if not (own.afterwards or name in OF_LIMITS)]
+    columns = [getattr(table, name) for name in mechanical]
     columns += [m.youngs_modulus for m in (table.roller, table.guide)]
     columns += [m.poisson_ratio for m in (table.roller, table.guide)]
     columns.append(np.where(table.friction_law != "", table.velocity, 0.0))

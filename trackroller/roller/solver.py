@@ -22,6 +22,7 @@ from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
+from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options, model_in_use, options_of_cases
 from trackroller.roller.record import with_design, with_inputs
 from trackroller.roller.reflection import handed, reflect
@@ -30,7 +31,7 @@ from trackroller.roller.stages import outcome as stages_outcome
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import finer_across
-from trackroller.roller.stages.scene import Results
+from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
 
@@ -180,16 +181,16 @@ def _solve_design(cases: xr.Dataset, given: Mapping[str, Any], database: Materia
 def _solve_table(table: CaseTable, options: Options, single: bool) -> xr.Dataset:
     """Solve checked cases with the same options."""
     _check_cases(table, options)
-    table, lost = with_travel(table, options)
-    windows = [_solve_window(part, options) for part in _cut(table, WINDOW)]
+    worn, lost = with_travel(table, options)
+    windows = [_solve_window(part, options) for part in _cut(worn, WINDOW)]
     block = join(windows)
     block.fail(list(lost))
-    ds = with_reasons(assemble(block, options, single), table, options, temperature.reasons(block) | lost)
-    tell_errors(ds, table, options)
+    ds = with_reasons(assemble(block, options, single), worn, options, temperature.reasons(block) | lost)
+    tell_errors(ds, worn, options)
     checks_limits = verdict.GROUP in options.outputs or options.life_criterion in fatigue.STRESS_OF
-    warm = temperature.notes(table, block)
+    warm = temperature.notes(worn, block)
     if checks_limits or warm or any(limit.shared for limit in asked(options.outputs)):
-        ds.attrs[NOTES] = "\n".join([*stages_outcome.notes_on_limits(table, options), *warm])
+        ds.attrs[NOTES] = "\n".join([*notes_on_limits(worn, options), *warm])
     return ds
 
 
@@ -213,20 +214,18 @@ def _cut(table: CaseTable, size: int) -> Iterator[CaseTable]:
 
 def _solve_window(table: CaseTable, options: Options) -> Block:
     """Solve each distinct mechanics once; then compute power, life and warnings of every case."""
-    mirrored = np.zeros(len(table), bool)
-    if options.shortcuts:
-        table, mirrored = handed(table)
+    one_handed, mirrored = handed(table) if options.shortcuts else (table, np.zeros(len(table), bool))
 
     def solve_all(cases: CaseTable) -> Block:
         return join([meet(few, options, _solve_block) for few in _cut(cases, BLOCK)])
 
-    distinct, number = table, np.arange(len(table))
+    distinct, number = one_handed, np.arange(len(table))
     # limits of patches depend on the speed and on all values of the materials
-    if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(table, options)):
-        rows, number = requirements.distinct_mechanics(table)
-        distinct = table.take(rows)
-    table, block = temperature.settle(table, solve_all(distinct).take(number), options, solve_all)
-    stages_outcome.finish(table, block, options)
+    if options.shortcuts and len(table) > 1 and not stages_outcome.of_patches(_limits(one_handed, options)):
+        rows, number = requirements.distinct_mechanics(one_handed)
+        distinct = one_handed.take(rows)
+    at_temperature, block = temperature.settle(one_handed, solve_all(distinct).take(number), options, solve_all)
+    stages_outcome.finish(at_temperature, block, options)
     reflect(block.values, mirrored)
     return block
 
@@ -261,10 +260,10 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
 
 def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
-    return block_of(Results.start(scene, balance(scene)), options)
+    return block_of(StageResults.start(scene, balance(scene)), options)
 
 
-def block_of(results: Results, options: Options) -> Block:
+def block_of(results: StageResults, options: Options) -> Block:
     """Return the results of balanced rollers with the stages that the outputs need."""
     scene = results.scene
     wanted = set(options.outputs)

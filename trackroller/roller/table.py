@@ -31,7 +31,7 @@ class MaterialArrays(_OptionalValues):  # type: ignore[misc, valid-type]
     """Values of one body's material, arrays of shape (n,): name, E [MPa], nu [1], R_m, sigma_D [MPa], N_Rm, N_k [1].
 
     The base class adds the optional values of a material, NaN where they are not given. `guesses` holds the values of
-    limits that are placeholders, a mapping of names to words for each material, and `ends` the ends of their ranges
+    limits that are placeholders, a mapping of names to `Value` for each material, and `ends` the ends of their ranges
     over the values. `temperature_dependence` holds the tables over temperature as JSON, "" for none, and
     `sn_points` the points of S-N curves as JSON, "" for none.
     """

@@ -16,12 +16,13 @@ from trackroller.numerics.numbers import number_in
 from trackroller.parameters import OPTIONS
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import NOTES
+from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options
 from trackroller.roller.record import CASE, MATERIALS, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.solver import assemble, block_of
 from trackroller.roller.stages import outcome as stages_outcome
-from trackroller.roller.stages.scene import Results
+from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.wearing import ENDS, Groove, Wearing, between, travel_to_depth
 
 if TYPE_CHECKING:
@@ -172,7 +173,7 @@ class _Record:
         place = between(one, two, travel)
         return ("permissible" if deep < self.to else "travel"), place
 
-    def _add(self, state: Groove, turned: Groove, results: Results, onward: float) -> None:
+    def _add(self, state: Groove, turned: Groove, results: StageResults, onward: float) -> None:
         """Add the row of a solved state; `turned` has the inclination by its own pressure."""
         block = block_of(results, self.options)
         stages_outcome.finish(self.table, block, self.options)
@@ -222,7 +223,7 @@ class _Record:
         if "life_cycles" in ds:
             ds = ds.assign(_of_lives(ds, self.wearing.per_km))
         ds.attrs |= {"title": "A roller and its guide while they wear", "end": end, "to": self.to}
-        ds.attrs[NOTES] = "\n".join(stages_outcome.notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
+        ds.attrs[NOTES] = "\n".join(notes_on_limits(self.table, self.options.changed(outputs=("wear",))))
         ds.attrs |= {"wear_per_km": self.wearing.rates.tolist(), "end_meaning": ENDS.get(end, "")}
         return with_inputs(ds, self.case, self.database)
 
@@ -256,7 +257,7 @@ class _Record:
         return state, float(last.next_step)
 
 
-def _pressure_error(state: Groove, results: Results) -> np.ndarray:
+def _pressure_error(state: Groove, results: StageResults) -> np.ndarray:
     """Return the estimated relative error of the largest pressure, (2,) [1]; 0 for the new groove."""
     patch: Any = results.patch
     out = np.zeros(2)

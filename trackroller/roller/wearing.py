@@ -29,7 +29,7 @@ from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.mechanics import dissipation, prepare
 from trackroller.roller.stages.models import bodies, finer_across
-from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.stages.scene import StageResults, surface_tractions
 from trackroller.roller.table import CaseTable
 
 REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
@@ -175,18 +175,18 @@ class Wearing:
         lateral = np.array([self._gap(table, k + 1).lateral(self.places) for k in range(self.contacts)])
         return np.broadcast_to(lateral - lateral.min(axis=1, keepdims=True), (2, self.places.size))
 
-    def solve(self, state: Groove) -> Results:
+    def solve(self, state: Groove) -> StageResults:
         """Return balance and patches of a state."""
         if state.balance is None or state.boxes is None:
             scene = prepare(self.worn_table(state), self.options, self._across)
-            return Results.start(scene, balance(scene))
+            return StageResults.start(scene, balance(scene))
         nan, boxes = np.full((3, 1, 2), np.nan), np.broadcast_to(state.boxes, (2, 3)).tolist()
         shift, normal, rolls = state.balance[:1], state.balance[None, 1:], np.full(1, eq.ROLLING, np.int8)
         near = eq.Equilibrium(rolls, rolls > 0, nan[0, :, 0], rolls > 0, shift, normal, Resultants(*nan))
         scene = prepare(self.worn_table(state), self.options, self._across, [Box(*row) for row in boxes])
-        return Results.start(scene, balance(scene, near))
+        return StageResults.start(scene, balance(scene, near))
 
-    def end(self, results: Results) -> str:
+    def end(self, results: StageResults) -> str:
         """Return why the groove cannot be followed beyond these results; "" if it can."""
         name = REGIMES[int(results.regime[0])]
         if name == "rolling":
@@ -194,7 +194,7 @@ class Wearing:
             return "" if results.converged[0] or results.values["residual"][0] <= BALANCED else "failed"
         return name
 
-    def turned(self, state: Groove, results: Results) -> Groove:
+    def turned(self, state: Groove, results: StageResults) -> Groove:
         """Return a solved state with its own inclination, balance and boxes, from which the next state starts."""
         patch: Any = results.patch
         side = np.array([1.0, -1.0])[: self.contacts]
@@ -212,7 +212,7 @@ class Wearing:
         texts = str(table.guide_profile[0]), str(table.roller_profile[0])
         return gap(*texts, g, r, alpha, radius, float(table.guide_curve_radius[0]), side)
 
-    def _patches(self, results: Results, table: CaseTable) -> list[WearingPatch]:
+    def _patches(self, results: StageResults, table: CaseTable) -> list[WearingPatch]:
         t, out = surface_tractions(results), []
         energy = dissipation(results)[0][0]
         for k in range(self.contacts):
@@ -231,7 +231,7 @@ class Wearing:
             out.append(WearingPatch(self._gap(table, k + 1), x, t.y[k], *fields, self.modulus))
         return out
 
-    def _leaning(self, results: Results, table: CaseTable) -> np.ndarray:
+    def _leaning(self, results: StageResults, table: CaseTable) -> np.ndarray:
         """Return the mean slope of the guide under the pressure, (m,) [1]; elastic slopes have no mean."""
         patch: Any = results.patch
         out = []
@@ -272,7 +272,7 @@ class Wearing:
 
     def march(
         self, state: Groove | None = None, step: float = 0.0, states: int = 1
-    ) -> Iterator[tuple[Groove, Results, float, str]]:
+    ) -> Iterator[tuple[Groove, StageResults, float, str]]:
         """Yield states with their results, the next step [km], and at the last one why it cannot go on.
 
         A state and its next step determine all that follows, so that a march that goes on has the same bits. Without

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.contact.settings import converged_up_to
+from trackroller.contact.rollers import converged_up_to
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.solver import solve
 from validation.extremes.scenes import FORCES, Scene, mirrored, scaled

@@ -9,7 +9,6 @@ equilibrium (deferred correction). From two solutions of a patch on, the differe
 from __future__ import annotations
 
 import dataclasses
-from typing import Any, cast
 
 import numpy as np
 
@@ -18,8 +17,7 @@ from trackroller.contact.common import Elastic, Ellipse, Resultants, Works, forc
 from trackroller.contact.kalker import extrapolation
 from trackroller.contact.kalker.patch import on_elements, solve_patch
 from trackroller.contact.kalker.problem import KalkerSettings, PatchSolution, Store
-from trackroller.contact.protocol import Patch
-from trackroller.contact.settings import converged_up_to
+from trackroller.contact.rollers import converged_up_to
 from trackroller.contact.slip import Creepage, Slip
 from trackroller.contact.wedge import determinant
 from trackroller.numerics.knots import rise
@@ -85,7 +83,7 @@ class Correction:
         self.store = Store(2 * n)  # solutions
         self.finer = Store(2 * n)  # solutions on twice the elements
 
-    def _table(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
+    def _table(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> tuple[np.ndarray, ...]:
         """Return the table's forces (m, 3) over mu F_N and mu F_N c, the place of the slip, and its validity, (m,)."""
         elastic = self.elastic.take(rows)
         return table.nearest_forces(patch, slip.longitudinal, slip.spin, friction, elastic)
@@ -96,14 +94,14 @@ class Correction:
         step = np.minimum(np.maximum(step, -reach), reach)
         return forces + self.offset[rows, side] + self.slope[rows, side] * step[:, None]
 
-    def law(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool = True) -> Resultants:
+    def law(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray, fine: bool = True) -> Resultants:
         """Return the resultants on the roller by the corrected table, arrays (m,)."""
         forces, place, _ = self._table(patch, slip, friction, rows)
         forces = self._corrected(forces, place, rows, _side(slip))
         scale = force_scales(patch, friction)
         return Resultants(*(forces * scale).T)
 
-    def solve(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    def solve(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Solve patches by elements and correct the law there.
 
         Returns
@@ -129,13 +127,13 @@ class Correction:
             change[pick] = np.max(np.abs(forces[pick] + offset - before), axis=1)
         return np.where(held, change, OUTSIDE * change)
 
-    def _share(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    def _share(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> np.ndarray:
         """Return the share of the elements in the forces of patches inside the table, (m,), see `TABLE_SERVES`."""
         with np.errstate(divide="ignore", invalid="ignore"):
             error = table.stored().force_error("p99") * friction * patch.normal_force / self._turned(patch, slip, rows)
         return rise(np.nan_to_num(error), TABLE_SERVES)
 
-    def _turned(self, patch: Patch, slip: Slip, rows: np.ndarray) -> np.ndarray:
+    def _turned(self, patch: Ellipse, slip: Slip, rows: np.ndarray) -> np.ndarray:
         """Return the change of F_T in patches that changes F_N of the other contact by all of it, (m,) [N]."""
         side, sign = _side(slip), np.sign(slip.sine)
         self.normal[rows, side] = patch.normal_force
@@ -153,7 +151,9 @@ class Correction:
         self.reach[rows, side] = np.where(known, REACH * np.abs(change), 0.0)
         self.offset[rows, side], self.place[rows, side] = offset, place
 
-    def _elements(self, patch: Patch, slip: Slip, friction, rows: np.ndarray, place=np.nan, forces=True) -> np.ndarray:
+    def _elements(
+        self, patch: Ellipse, slip: Slip, friction, rows: np.ndarray, place=np.nan, forces=True
+    ) -> np.ndarray:
         """Return the forces (m, 3) of the elements over mu F_N and mu F_N c; keep the solutions.
 
         Without `forces` only the tractions are needed, so that nothing is extrapolated.
@@ -186,7 +186,7 @@ class Correction:
             self.store.put(slot, solution)
         return exact
 
-    def _refined(self, patch: Any, slip: Slip, friction, rows: np.ndarray, solution: PatchSolution):
+    def _refined(self, patch: Ellipse, slip: Slip, friction, rows: np.ndarray, solution: PatchSolution):
         """Return the forces (m, 3) [N, N, N mm] of patches and their estimated error (m,) [N].
 
         They are those of the solutions `solution`, or of two or three times the elements where the error counts. In the
@@ -228,7 +228,7 @@ class Correction:
         return value, force_error
 
     def on_finer(
-        self, patch: Any, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
+        self, patch: Ellipse, slip: Slip, friction, rows: np.ndarray, coarse: PatchSolution, forces: bool = False
     ) -> PatchSolution:
         """Solve patches on twice the elements of the solutions `coarse`, arrays (m,), from the tractions at hand."""
         slot, creep = 2 * rows + _side(slip), Creepage.of_slip(slip, self.settings.profile_slip)
@@ -246,19 +246,18 @@ class Correction:
             self.finer.put(slot, solution)
         return solution
 
-    def solution(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
+    def solution(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> PatchSolution:
         """Return the last solutions of patches, arrays (m,); patches without one are solved."""
         slot = 2 * rows + _side(slip)
         if not slot.size:
-            ellipse = cast(Ellipse, patch)  # the correction is made for ellipses only
-            return solve_patch(ellipse, Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings)
+            return solve_patch(patch, Creepage.of_slip(slip), friction, self.elastic.take(rows), self.settings)
         missing = np.flatnonzero(~self.store.known[slot])
         if missing.size:
             given = patch.take(missing), slip.take(missing), friction[missing], rows[missing]
             self._elements(*given, forces=not self.trusts_table)
         return self.store.get(slot)
 
-    def works(self, patch: Patch, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
+    def works(self, patch: Ellipse, slip: Slip, friction: np.ndarray, rows: np.ndarray) -> Works:
         """Return the dissipation and the work of the pressures at the given slip, arrays (m,)."""
         solution = self.solution(patch, slip, friction, rows)
         if self.settings.profile_slip:

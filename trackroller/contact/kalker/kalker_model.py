@@ -11,7 +11,7 @@ from trackroller.contact.kalker.patch import shares, to_tractions
 from trackroller.contact.kalker.problem import KalkerSettings
 from trackroller.contact.normal.patch_models import GridKalkerModel
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Rollers
+from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Creepage
 from trackroller.parameters.accuracy import Accuracy
 from trackroller.parameters.contact_models import DECLARED

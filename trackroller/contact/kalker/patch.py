@@ -125,6 +125,7 @@ def _integrals(ellipse, friction, solution: batch.Found, settings: KalkerSetting
 
 
 def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSettings, start) -> PatchSolution:
+    """Solve patches at once, see `solve_patch`: on all elements, and on half as many for the extrapolation."""
     n, elements = friction.size, settings.elements
     if start is not None:
         traction = np.array(start, float)
@@ -156,23 +157,23 @@ def _solve_block(ellipse, creep, friction, elastic, travel, settings: KalkerSett
     # the moment is about the nominal point, wherever the patch lies
     value = np.stack([value[:, 0], value[:, 1], value[:, 2] + ellipse.centre * value[:, 1]], axis=1)
     return PatchSolution(
-        Resultants(value[:, 0], value[:, 1], value[:, 2]),
-        solution.traction,
-        solution.slip,
-        solution.stick,
-        solution.factor,
-        stick + limit[:, 3],
-        work,
-        pressed,
-        energy,
-        limit,
-        np.abs(change),
-        force_error,
-        fine.own_slip,
-        fine.residual,
-        fine.steps,
-        fine.products,
-        fine.residual <= settings.tolerance,
+        resultants=Resultants(value[:, 0], value[:, 1], value[:, 2]),
+        traction=solution.traction,
+        slip=solution.slip,
+        stick=solution.stick,
+        factor=solution.factor,
+        stick_fraction=stick + limit[:, 3],
+        friction_energy_per_distance=work,
+        pressure_work=pressed,
+        energy_residual=energy,
+        limit=limit,
+        error_estimate=np.abs(change),
+        force_error=force_error,
+        own_slip=fine.own_slip,
+        residual=fine.residual,
+        steps=fine.steps,
+        products=fine.products,
+        converged=fine.residual <= settings.tolerance,
     )
 
 
@@ -182,6 +183,7 @@ def _full(value, n: int) -> np.ndarray:
 
 
 def _prepared(ellipse: Ellipse | GridPatch, friction, elastic: Elastic) -> tuple[Any, np.ndarray, Elastic]:
+    """Return patches, friction and constants as arrays (n,) of one memory layout."""
     n = np.size(ellipse.semi_axis_lateral)
     if ellipse.is_hertzian:
         ellipse = Ellipse(

@@ -192,11 +192,13 @@ class Family:
         start: np.ndarray | None = None,
         lift: np.ndarray | None = None,
     ) -> NormalSolution:
+        """Return the pressure under a load over a box; `lift` is a further gap, `start` a pressure to start from."""
         x, y, hx, hy = box.grid(*shape)
         gap = self.gap.field(x, y)
         return solve_normal(gap if lift is None else gap + lift, hx, hy, load, start=start)
 
     def _solve(self, load: float) -> Node:
+        """Solve the patch under a load in a box that is fitted to it in a few turns."""
         box, solution = self._around(load), None
         for attempt in range(6):
             solution = self._pressure(box, load, self.shape, None if solution is None else solution.pressure)

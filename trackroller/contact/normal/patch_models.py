@@ -12,15 +12,15 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import Resultants, SurfaceTractions, Works
+from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import patch_sliding as normal_sliding
 from trackroller.contact.normal.measure import roughness
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
-from trackroller.contact.protocol import ContactModel, Patch
-from trackroller.contact.settings import Rollers
+from trackroller.contact.protocol import ContactModel
+from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import DECLARED
 

@@ -18,7 +18,7 @@ import numpy as np
 from scipy import fft
 
 from trackroller.contact.influence import displacements, pressure_displacements
-from trackroller.contact.settings import CONVERGED_PRESSURE
+from trackroller.contact.rollers import CONVERGED_PRESSURE
 
 # the iteration ends when the largest gap in the patch, divided by the approach, is below
 TOLERANCE = CONVERGED_PRESSURE

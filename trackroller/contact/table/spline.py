@@ -17,9 +17,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, Resultants
+from trackroller.contact.common import Elastic, Patch, Resultants
 from trackroller.contact.linear import chebyshev
-from trackroller.contact.protocol import Patch
 from trackroller.contact.table.coordinates import HALF_WAY, Rolling, coordinates, in_range
 from trackroller.numerics.compiled import compiled, fast
 from trackroller.numerics.knots import interval
@@ -198,7 +197,15 @@ def nearest_forces(
 
 
 def _looked_up(patches: Rolling) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Return what `_look_up` writes: `unit` (n, 4), `place` (n,) and `held` (n,)."""
+    """Look n patches up in the stored table.
+
+    Returns
+    -------
+    unit : numpy.ndarray, shape (n, 4)
+        F_T/(mu N), F_A/(mu N), M_R/(mu N c) and the share of the adhesion area.
+    place, held : numpy.ndarray, shape (n,)
+        Place of the slip, and whether the table holds the patch; see `nearest_forces`.
+    """
     n, tables, linear = patches.lateral.size, stored(), chebyshev()
     out = np.empty((n, 4)), np.empty(n), np.empty(n, bool)
     share_rows(lambda first, last: _look_up(first, last, patches, linear, tables.forces, tables.poisson, out), n, 512)

@@ -9,16 +9,15 @@ solver serves the loaded contact, because a small error of its friction force is
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, SurfaceTractions, Works
+from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.kalker.correction import SERVING
 from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.kalker.subgrid import PARTS
 from trackroller.contact.protocol import ContactModel
-from trackroller.contact.settings import Rollers
+from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.contact.table import spline as table
 from trackroller.parameters.accuracy import Accuracy
@@ -61,10 +60,10 @@ class TableModel(ContactModel):
         median, p99 = (table.stored().force_error(level) for level in ("median", "p99"))
         return dict.fromkeys(("friction_force", "spin_moment"), (median, p99, p99, p99))
 
-    def _table(self, patch: Any, slip: Slip, friction, rows) -> table.TableSolution:
+    def _table(self, patch: Patch, slip: Slip, friction, rows) -> table.TableSolution:
         return table.solve_patch(patch, slip.longitudinal, slip.spin, friction, self.given.elastic.take(rows))
 
-    def law(self, patch: Any, slip: Slip, friction, rows, fine: bool) -> Resultants:
+    def law(self, patch: Patch, slip: Slip, friction, rows, fine: bool) -> Resultants:
         """Return the resultants on the roller, arrays (m,)."""
         looked_up = self._table(patch, slip, friction, rows)
         rest = np.flatnonzero(~looked_up.known)
@@ -74,20 +73,20 @@ class TableModel(ContactModel):
         other = self.served.law(patch.take(rest), slip.take(rest), friction[rest], rows[rest], fine)
         return looked_up.resultants.replaced(rest, other)
 
-    def surface(self, patch: Any, slip: Slip, friction, rows) -> SurfaceTractions:
+    def surface(self, patch: Patch, slip: Slip, friction, rows) -> SurfaceTractions:
         """Return the tractions of the exact solver on a grid over each patch."""
         return self.exact.surface(patch, slip, friction, rows)
 
-    def shares(self, patch: Any, slip: Slip, friction, rows):
+    def shares(self, patch: Patch, slip: Slip, friction, rows):
         """Return the tractions of the exact solver on few elements over their bound, see `ContactModel.shares`."""
         return self.rough.shares(patch, slip, friction, rows)
 
-    def finer_shares(self, patch: Any, slip: Slip, friction, rows):
+    def finer_shares(self, patch: Patch, slip: Slip, friction, rows):
         """Return `shares` from twice the elements, see `ContactModel.finer_shares`; None if they come from all."""
         own = self.rough
         return None if own is self.exact else own.finer_shares(patch, slip, friction, rows, PARTS)
 
-    def stick(self, patch: Any, slip: Slip, friction, rows) -> np.ndarray:
+    def stick(self, patch: Patch, slip: Slip, friction, rows) -> np.ndarray:
         """Return the adhesion area over the area of each patch, shape (m,)."""
         looked_up = self._table(patch, slip, friction, rows)
         share, rest = np.where(friction > 0.0, looked_up.stick_fraction, 0.0), np.flatnonzero(~looked_up.known)
@@ -95,7 +94,7 @@ class TableModel(ContactModel):
             share[rest] = self.exact.stick(patch.take(rest), slip.take(rest), friction[rest], rows[rest])
         return share
 
-    def power(self, patch: Any, slip: Slip, friction, rows) -> Works:
+    def power(self, patch: Patch, slip: Slip, friction, rows) -> Works:
         """Return the dissipation: the work of the creepages, and of the pressures on unlike materials.
 
         The table does not hold the work of the pressures, so the exact solver gives it on unlike materials.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import textwrap
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
@@ -108,10 +109,10 @@ _WAYS = {"max": "up", "min": "down"}
 _ARROWS = {"max": "→", "min": "←"}
 
 
-def _given(front: xr.Dataset) -> str:
+def _given(front: xr.Dataset, roles: Mapping[str, str]) -> str:
     """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
     names = front.attrs["factors"].split(", ")
-    given = [plain(n) for n in names if ROLE_OF.get(n) == "condition" or "load" in n or "drive" in n]
+    given = [plain(n) for n in names if roles.get(n) == "condition"]
     warning = f" Factors that the use sets and a designer cannot choose: {listing(given)}." if given else ""
     models = [long_name(n) for n in names if n in OPTION_FACTORS]
     return warning + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")
@@ -143,7 +144,8 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     entries.append(("Pareto set", {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"}))
     legend(figure, entries)
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
-    caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front)}"
+    roles = ROLE_OF if results is None else results.roles
+    caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front, roles)}"
     return figure, style.FigureInfo("pareto-front", caption)
 
 

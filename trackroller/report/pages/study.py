@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections import defaultdict
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
@@ -42,15 +42,36 @@ from trackroller.study.store.seal import put_text, sealing
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
-SECTIONS = {  # the figures of each section by the beginning of their names; the others stand in the folder alone
-    "verdict": ("designs",),
-    "decide": ("pareto-front",),
-    "why": ("morris-", "bands-", "tornado-"),  # the first of them that is drawn
-    "ends": ("regime_map",),
-    "models": ("models-",),
+
+
+class Section(NamedTuple):
+    """A section of the page; it is left out where it has no sentence, figure or table.
+
+    Attributes
+    ----------
+    title : its head on the page
+    link : its name in the contents; the title if it is not given
+    said : heads of `in_short` whose sentences it shows
+    figures : beginnings of the names of its figures, of which the first one that is drawn is shown
+    every : whether all figures of these names are shown
+    listed : whether its sentences are the entries of a list
+    """
+
+    title: str
+    said: tuple[str, ...] = ()
+    figures: tuple[str, ...] = ()
+    every: bool = False
+    listed: bool = False
+    link: str = ""
+
+
+SECTIONS = {
+    "verdict": Section("Verdict", ("Verdict", "Best"), ("designs",)),
+    "decide": Section("Decide", ("Decide",), ("pareto-front",)),
+    "why": Section("Why", ("Why",), ("morris-", "bands-", "tornado-"), listed=True),
+    "ends": Section("Where it ends", ("Where it ends",), ("regime_map",)),
+    "models": Section("Contact models compared", figures=("models-",), every=True, link="Contact models"),
 }
-PLACES = tuple(SECTIONS)
-HEADS = {"verdict": ("Verdict", "Best"), "decide": ("Decide",), "why": ("Why",), "ends": ("Where it ends",)}
 _ELSEWHERE = (
     "notice study materials friction comment title coordinates Conventions life_conventions sign_conventions design"
 )
@@ -84,7 +105,11 @@ def write_report(results: Results, figures_dir: Path, out_html: Path) -> Path:
 def page_text(results: Results, content: dict[str, Any], figures_dir: Path) -> str:
     """Return the report as HTML from its `contents`, its figures and its explorer."""
     without = () if content["said"]["why"] else ("why",)  # a figure without a finding says nothing
-    shown = content | {"figures": figures(Path(figures_dir), without), "explorer": explorer(results)}
+    shown = content | {
+        "figures": figures(Path(figures_dir), without),
+        "explorer": explorer(results),
+        "sections": SECTIONS,
+    }
     return secured(render("report.html.j2", shown, cell=cell))
 
 
@@ -130,7 +155,7 @@ def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     """
     sens, error = results.analysis, friction_error(results)
     summary = in_short(results, models.get("short", []))
-    said = {key: [s for head, listed in summary if head in heads for s in listed] for key, heads in HEADS.items()}
+    said = {key: [s for head, own in summary if head in one.said for s in own] for key, one in SECTIONS.items()}
     decide: list[Table | None] = [optima_table(results) or best_table(results), rows_table(results)]
     decide.append(first_limit_table(results))
     front = given_pareto(results)
@@ -217,10 +242,10 @@ def figures(folder: Path, without: tuple[str, ...] = ()) -> dict[str, list[dict[
     listed: list[dict[str, Any]] = []
     if (folder / "index.json").is_file():
         listed = json.loads((folder / "index.json").read_text(encoding="utf-8"))
-    placed: dict[str, list[dict[str, Any]]] = {key: [] for key in PLACES}
-    for section, starts in SECTIONS.items():
-        found = [item for start in starts for item in listed if item["name"].startswith(start)]
-        for item in [] if section in without else found if section == "models" else found[:1]:
+    placed: dict[str, list[dict[str, Any]]] = {key: [] for key in SECTIONS}
+    for section, one in SECTIONS.items():
+        found = [item for start in one.figures for item in listed if item["name"].startswith(start)]
+        for item in [] if section in without else found if one.every else found[:1]:
             drawn = folder / f"{item['name']}.svg"
             drawn = drawn if drawn.stat().st_size <= MAX_SVG else drawn.with_suffix(".png")
             placed[section].append(item | {"source": data_uri(drawn)})

@@ -19,9 +19,9 @@ from trackroller.parameters import BODIES
 from trackroller.report.numbers import between, capital, listing, number, rounded, row_unit
 from trackroller.report.tables.lives import overrollings
 from trackroller.report.words.by_tests import worst
-from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of, placeholders_of
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
+from trackroller.roller.limit_notes import Placeholder, lacks_of, notes_of, placeholders_of
 from trackroller.roller.regime_limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
@@ -357,12 +357,8 @@ def unchecked(ds: xr.Dataset) -> list[str]:
 def not_checked(ds: xr.Dataset) -> list[str]:
     """Return what was not checked and what it lacks, and the limits that the user left out."""
     lacking: dict[str, list[str]] = {}
-    for note in notes_of(ds):
-        if GUESSES not in note and not note.startswith(temperature.HEAD):
-            name, _, text = note.partition(": ")
-            what = text.partition(". ")[0].removeprefix("the case gives no ")
-            given = not text.startswith("the case gives no ")
-            lacking.setdefault(name, []).append(what if given else f"give {what}")
+    for lack in lacks_of(ds):
+        lacking.setdefault(lack.limit, []).append(lack.words if lack.material else f"give {lack.name}")
     for_guide = [name for name, texts in lacking.items() if texts == [f"give {OF_GUIDE[0]}"]]
     parts = [f"{name} ({', '.join(texts)})" for name, texts in lacking.items() if name not in for_guide]
     parts += [f"{listing(for_guide)} of the guide (give {OF_GUIDE[0]})"] if for_guide else []
@@ -374,10 +370,15 @@ def not_checked(ds: xr.Dataset) -> list[str]:
 
 def placeholders(ds: xr.Dataset) -> list[str]:
     """Return the placeholders of materials on which the limits rest, one sentence for a material."""
-    by_material: dict[str, list[str]] = {}
-    for limit, material, values in guessed_values(ds):
-        by_material.setdefault(material, []).append(f"{limit} with {values}")
-    return [f"Placeholders of material {name}: {'; '.join(parts)}." for name, parts in by_material.items()]
+    found: dict[str, dict[str, list[Placeholder]]] = {}
+    for one in placeholders_of(ds):
+        found.setdefault(one.material, {}).setdefault(one.limit, []).append(one)
+    return [
+        f"Placeholders of material '{material}': "
+        + "; ".join(f"{limit} with {', '.join(one.words for one in own)}" for limit, own in by_limit.items())
+        + "."
+        for material, by_limit in found.items()
+    ]
 
 
 def at_temperature(ds: xr.Dataset) -> list[str]:

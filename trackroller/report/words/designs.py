@@ -29,13 +29,13 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
-from trackroller.results.candidates import FEWEST, Candidates, factor_roles
+from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
-from trackroller.results.limit_notes import placeholders_of
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
+from trackroller.roller.limit_notes import placeholders_of
 
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
@@ -98,7 +98,7 @@ def size_words(results: Results) -> str:
 
 def unanswered(candidates: Candidates) -> Sentence:
     """Say why a study cannot compare designs, and which design of experiments can."""
-    roles = factor_roles(candidates.results)
+    roles = candidates.results.roles
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     method = plain(candidates.results.config.design)

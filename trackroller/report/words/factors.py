@@ -10,6 +10,7 @@ from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.effects import Effect
 from trackroller.results.findings import Finding
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import NAMED
 
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
@@ -19,11 +20,11 @@ def effect_words(results: Results, finding: Finding) -> Sentence:
     """Say how an output changes with a factor."""
     effect, column = finding.values["effect"], finding.values["column"]
     output = _words(results, column)
-    values = {**vars(effect), "words": output, "fold": times(effect.ratio), "verb": _change(output, effect.ratio)[0]}
+    values = {**vars(effect), "words": output, "fold": times(effect.ratio), "verb": _change(column, effect.ratio)[0]}
     values["beyond"] = _beyond(finding)
     if finding.kind.startswith("pairs"):
-        return say("factors", finding.kind, **{**finding.values, **values, **_of_pairs(results, finding, output)})
-    return say("factors", finding.kind, **{**finding.values, **values, **_of_classes(results, finding, output)})
+        return say("factors", finding.kind, **{**finding.values, **values, **_of_pairs(results, finding)})
+    return say("factors", finding.kind, **{**finding.values, **values, **_of_classes(results, finding)})
 
 
 def _words(results: Results, column: str) -> str:
@@ -52,20 +53,20 @@ def _span(results: Results, effect: Effect) -> str:
     return f"{capital(long_name(effect.factor))} {high} instead of {low}"
 
 
-def _change(words: str, ratio: float) -> tuple[str, str]:
+def _change(column: str, ratio: float) -> tuple[str, str]:
     """Return the verb and the adjective of a change: 'lengthens', 'longer' for a life."""
-    if "life" in words:
+    if is_life(column):
         return ("lengthens", "longer") if ratio > 1 else ("shortens", "shorter")
     return ("raises", "higher") if ratio > 1 else ("lowers", "lower")
 
 
-def _within(parts: Strata, words: str) -> list[str]:
+def _within(parts: Strata, column: str) -> list[str]:
     """Return the words on the change within each level: '2.1-fold longer with PA6 on itself'."""
     said = [(setting(c, v), e.ratio) for c, v, e in parts]
-    return [f"{times(r)} {_change(words, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
+    return [f"{times(r)} {_change(column, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
 
 
-def _of_pairs(results: Results, finding: Finding, words: str) -> dict[str, Any]:
+def _of_pairs(results: Results, finding: Finding) -> dict[str, Any]:
     """Return the words of the median change of cases that differ in one factor only."""
     values = finding.values
     changed = [long_name(name) for name in values["changed"]]
@@ -74,11 +75,11 @@ def _of_pairs(results: Results, finding: Finding, words: str) -> dict[str, Any]:
         changed, follow = ["loads of the rollers"], "follow"  # a row holds those of one roller in one load case
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that {follow} from it" if changed else ""
-    medians = _within(values["apart"], words)
+    medians = _within(values["apart"], values["column"])
     return {"span": _span(results, values["effect"]), "pairs": pairs, "medians": medians}
 
 
-def _of_classes(results: Results, finding: Finding, words: str) -> dict[str, Any]:
+def _of_classes(results: Results, finding: Finding) -> dict[str, Any]:
     """Return the words of the change of the median between the lowest and the highest third of a factor."""
     effect, values = finding.values["effect"], finding.values
     low, high = finding.spans[effect.factor][0], finding.spans[effect.factor][-1]
@@ -86,7 +87,7 @@ def _of_classes(results: Results, finding: Finding, words: str) -> dict[str, Any
         "low_class": at_most(effect.factor, effect.low, low),
         "high_class": at_least(effect.factor, effect.high, high),
         "name": long_name(effect.factor),
-        "turns": _within(values.get("turns", []), words),
+        "turns": _within(values.get("turns", []), values["column"]),
         "kinds": [long_name(name) for name in values.get("kinds", ())],
         "correlated": [long_name(name) for name in values["correlated"]],
     }

@@ -11,9 +11,9 @@ from trackroller.report.words.designs import design_words, limit_title, within_w
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.findings import Finding
 from trackroller.results.first_limits import COEFFICIENT, POSITION, deciding, first_limit
-from trackroller.results.limit_notes import guessed_lines, guessed_values
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
+from trackroller.roller.limit_notes import guessed_lines, placeholders_of
 
 
 def limit_words(results: Results, finding: Finding) -> Sentence:
@@ -23,7 +23,9 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
         counts = {limit_title(name): cases for name, cases in values["counts"].items()}
         return say("limits", "first_limits", counts=counts, valid=values["of"])
     if finding.kind == "turned":
-        return say("limits", "turned", **values, name=design_words(results.candidates(), values["design"]))
+        candidates = results.candidates()
+        assert candidates is not None  # the finding is about their order
+        return say("limits", "turned", **values, name=design_words(candidates, values["design"]))
     return say("limits", "whichever_first", **values, **_unsure(results, values["factors"]))
 
 
@@ -32,8 +34,8 @@ def guesses(results: Results) -> Sentence | None:
     placed: dict[str, dict[str, None]] = {}
     if lines := guessed_lines(results.data):
         placed[limit_title("fatigue")] = dict.fromkeys(lines)
-    for limit, material, _ in guessed_values(results.data):
-        placed.setdefault(limit_title(limit), {})[material.strip("'")] = None
+    for one in placeholders_of(results.data):
+        placed.setdefault(limit_title(one.limit), {})[one.material] = None
     return say("limits", "guesses", placed={limit: list(own) for limit, own in placed.items()}) if placed else None
 
 

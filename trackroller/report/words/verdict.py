@@ -31,9 +31,9 @@ from trackroller.report.words.designs import (
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
-from trackroller.results.limit_notes import guessed_lines
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
+from trackroller.roller.limit_notes import guessed_lines
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
@@ -270,7 +270,7 @@ class _Words:
         own = self.results.by_tests
         shown = [*found.best[:MOST], *([] if found.next is None else [found.next])]
         named = list(dict.fromkeys(name for one in shown for name in one.tested))
-        if not named or not found.goal_rises:
+        if own is None or not named or not found.goal_rises:
             return None
         far = next((one for one in shown if one.beyond_tests and one.tested), None)
         values = {"tests": own.words(named), "far": "", "stress": ""}

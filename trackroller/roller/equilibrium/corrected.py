@@ -74,17 +74,17 @@ def balance_again(loads: Loads, law: ContactLaw, rows: np.ndarray, balance: Equi
         good = (near.residual <= loads.converged) & ~roller.lifts(near.normal)
         good &= roller.wedged(near.normal, near.forces)
     again = Equilibrium(
-        np.full(rows.size, ROLLING, np.int8),
-        near.residual <= loads.converged,
-        np.fmax(near.residual, digits_of_forces(roller, near)),
-        roller.grips(near.normal, near.forces),
-        roller.shift(near.w),
-        near.normal.T,
-        Resultants(*near.forces.transpose(0, 2, 1)),
+        regime=np.full(rows.size, ROLLING, np.int8),
+        converged=near.residual <= loads.converged,
+        residual=np.fmax(near.residual, digits_of_forces(roller, near)),
+        jamming=roller.grips(near.normal, near.forces),
+        shift=roller.shift(near.w),
+        normal_force=near.normal.T,
+        forces=Resultants(*near.forces.transpose(0, 2, 1)),
     )
-    balance = merged(balance, rows[good], again, np.flatnonzero(good))
+    found = merged(balance, rows[good], again, np.flatnonzero(good))
     lost = rows[~good]
-    return merged(balance, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else balance
+    return merged(found, lost, solve_some(loads, law, lost), np.arange(lost.size)) if lost.size else found
 
 
 def solve_some(loads: Loads, law: ContactLaw, rows: np.ndarray) -> Equilibrium:

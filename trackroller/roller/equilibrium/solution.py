@@ -254,8 +254,7 @@ def _solve_full_slip(loads: Loads, law: ContactLaw, rows: np.ndarray, answer: _A
 
     ASSUME: the slip speed is beyond the range of the friction law, so that friction has its value at high speed.
     """
-    loads = replace(loads, friction=loads.friction * loads.at_high_speed)
-    roller = Roller(loads, law, rows)
+    roller = Roller(replace(loads, friction=loads.friction * loads.at_high_speed), law, rows)
     n = roller.without_friction()
     answer.regime[rows] = np.where(roller.lifts(n), LIFT_OFF, FULL_SLIP)
     direction = -np.sign(roller.motor_force)

@@ -1,4 +1,4 @@
-"""The stages of a solution up to the tractions; each stage takes the `Results` so far and adds its quantities.
+"""The stages of a solution up to the tractions; each stage takes the `StageResults` so far and adds its quantities.
 
 The stages that compute stresses stand in `stages.stress`; friction power, life and warnings stand in `stages.outcome`.
 """
@@ -24,7 +24,7 @@ from trackroller.roller.geometry import contact_geometry, lever_arms
 from trackroller.roller.options import Options
 from trackroller.roller.requirements import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.roller.stages.models import bodies, model_of
-from trackroller.roller.stages.scene import Results, Scene, surface_tractions
+from trackroller.roller.stages.scene import Scene, StageResults, surface_tractions
 from trackroller.roller.stop import stops_at
 
 SIGN_CONVENTIONS = (
@@ -80,7 +80,7 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
     return Scene(table, loads, model, unit, Mirror(twins), bare, len(table), turning, turned if turned.any() else None)
 
 
-def forces(results: Results) -> None:
+def forces(results: StageResults) -> None:
     """Add the forces of both contacts and the resulting moments, eqs (8)-(14).
 
     Where the resultant of the pressure lies beside the nominal point of contact, its offset adds F_N x_p to the tilting
@@ -107,7 +107,7 @@ def forces(results: Results) -> None:
     v["drive_torque"] = v["drilling_torque"] + v["transmitted_force"] * loads.rolling_radius
 
 
-def force_error(results: Results, options: Options) -> None:
+def force_error(results: StageResults, options: Options) -> None:
     """Add the estimated errors of F_N, and of the friction forces over mu F_N.
 
     Models without an estimate give the measured bound.
@@ -133,7 +133,7 @@ def force_error(results: Results, options: Options) -> None:
         v[name] = np.where(np.isfinite(v["lateral_force"]), estimate, np.nan)
 
 
-def _load_error(results: Results, of_ratio: np.ndarray) -> np.ndarray:
+def _load_error(results: StageResults, of_ratio: np.ndarray) -> np.ndarray:
     """Return the relative errors of F_N that errors (n, 2) of the ratios F_T/F_N cause by eqs (7), (9), (n, 2)."""
     v, loads = results.values, results.scene.loads
     normal, (one, two) = v["normal_force"], (v["lateral_force"] / v["normal_force"]).T
@@ -142,7 +142,7 @@ def _load_error(results: Results, of_ratio: np.ndarray) -> np.ndarray:
     return (own * of_ratio + (of_ratio * normal)[:, ::-1] / normal) / wedge[:, None]
 
 
-def contact(results: Results, options: Options) -> None:
+def contact(results: StageResults, options: Options) -> None:
     """Add extent, pressure, shear, adhesion area and spin pole of both contacts."""
     v, patch, model = results.values, results.patch, results.scene.model
     wide, long = patch.half_extents
@@ -163,7 +163,7 @@ def contact(results: Results, options: Options) -> None:
         v["stick_area_fraction"] = _stick_share(results)
 
 
-def _spin_pole(results: Results, options: Options) -> tuple[np.ndarray, np.ndarray]:
+def _spin_pole(results: StageResults, options: Options) -> tuple[np.ndarray, np.ndarray]:
     """Return the spin pole x, y [mm] of the model's slip field, (2 n,), eqs (22), (23)."""
     patch, pole_x = results.patch, results.slip.pole_lateral
     with np.errstate(invalid="ignore"):
@@ -173,7 +173,7 @@ def _spin_pole(results: Results, options: Options) -> tuple[np.ndarray, np.ndarr
     return pole_x, np.where(np.isfinite(pole_x), pole_y, np.nan)
 
 
-def steep_friction(results: Results, options: Options) -> None:
+def steep_friction(results: StageResults, options: Options) -> None:
     """Flag cases with mu p_max v max(-df/dv)/G > 1: their friction law falls too steeply for a unique solution.
 
     An element under the traction tau moves elastically by about tau/G of the distance travelled. If this motion lowers
@@ -196,7 +196,7 @@ def steep_friction(results: Results, options: Options) -> None:
         results.flag("steep_friction", loads.friction * pressure * fall / shear_modulus > 1.0)
 
 
-def _stick_share(results: Results) -> np.ndarray:
+def _stick_share(results: StageResults) -> np.ndarray:
     """Return the share of the adhesion area in both patches of each roller [1], 0 in full slip, (n, 2)."""
     mirror, rolls = results.scene.mirror, results.good & (results.slides_along == 0)
     share = results.scene.model.stick(*results.of(mirror.asked(rolls)))
@@ -207,7 +207,7 @@ def _stick_share(results: Results) -> np.ndarray:
     return results.by_contact(out)
 
 
-def _largest_shear(results: Results) -> np.ndarray:
+def _largest_shear(results: StageResults) -> np.ndarray:
     """Return the largest |tau| of each existing patch [MPa].
 
     Under an ellipse the grid misses the largest shear as it misses the largest pressure, which is known: the ratio of
@@ -220,7 +220,7 @@ def _largest_shear(results: Results) -> np.ndarray:
     return largest * results.patch.max_pressure[results.good] / np.max(t.pressure, axis=(1, 2))
 
 
-def dissipation(results: Results) -> tuple[np.ndarray, np.ndarray]:
+def dissipation(results: StageResults) -> tuple[np.ndarray, np.ndarray]:
     """Return the friction energy int |tau| |v| per distance, and the work that the pressures supply, (n, 2) [N]."""
     per_distance, pressed = np.full(2 * results.scene.n, np.nan), np.zeros(2 * results.scene.n)
     rolls = results.good & (results.slides_along == 0)
@@ -234,7 +234,7 @@ def dissipation(results: Results) -> tuple[np.ndarray, np.ndarray]:
     return results.by_contact(per_distance), results.by_contact(pressed)
 
 
-def friction_work(results: Results, options: Options) -> None:
+def friction_work(results: StageResults, options: Options) -> None:
     """Add the friction energy per distance travelled, its estimated error, and the energy balance."""
     v, model = results.values, results.scene.model
     v["friction_energy_per_distance"], pressed = dissipation(results)
@@ -248,7 +248,7 @@ def friction_work(results: Results, options: Options) -> None:
         v["friction_energy_error_estimate"] = np.where(told > 0.0, told * factor + lost, told)
 
 
-def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) -> None:
+def _energy_balance(results: StageResults, local: np.ndarray, pressed: np.ndarray) -> None:
     """Add the dissipation that the resultants imply, and the difference between the local dissipation and the work.
 
     The resultants dissipate -(xi F_A + phi M_R). The motor puts in, less the work of the transmitted force per
@@ -271,7 +271,7 @@ def _energy_balance(results: Results, local: np.ndarray, pressed: np.ndarray) ->
     v["energy_residual"] = np.where(loads.friction > 0, residual, np.nan)
 
 
-def settle(results: Results) -> None:
+def settle(results: StageResults) -> None:
     """Take the mark of convergence from rolling rows with a force, a pressure or a peak that is no finite number."""
     v, rolls = results.values, results.regime == eq.ROLLING
     for name in FINITE & v.keys():
@@ -280,7 +280,7 @@ def settle(results: Results) -> None:
         results.converged = results.converged & (given | ~rolls | unsearched)
 
 
-def tractions(results: Results, options: Options) -> None:
+def tractions(results: StageResults, options: Options) -> None:
     """Add pressure, shear, slip and friction energy over the patches."""
     t = surface_tractions(results)
     fields = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import partial
 from typing import TYPE_CHECKING
 
@@ -11,17 +11,16 @@ import numpy as np
 
 from trackroller.contact.drawn_profiles import gap
 from trackroller.contact.slip import pole_split
-from trackroller.damage import LIMITS, asked, computed, judged, verdict
+from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import Tractions
-from trackroller.damage.limit import SN_SCATTER, TRACTIONS, Limit, SolvedRollers, Verdict, missing
+from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.materials.material import UNNAMED
 from trackroller.numerics.rows import distinct
-from trackroller.parameters import BODIES, CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
+from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import rolling_radius
-from trackroller.roller.stages.scene import Results, surface_tractions
+from trackroller.roller.stages.scene import StageResults, surface_tractions
 from trackroller.roller.table import TEXTS
 
 if TYPE_CHECKING:
@@ -117,8 +116,8 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
     places = [solved]
     if any(limit.moves(solved) for limit in wanted):
         places += [_at_end(solved, wanted, end) for end in (0, 1)]
-        for end, place in zip(verdict.ENDS[1:], places[1:], strict=True):
-            names = [one.name for limit in wanted for one in limit.results if one.name.endswith(end)]
+        for end, place in zip(("low", "high"), places[1:], strict=True):
+            names = [one.name for limit in wanted for one in limit.results if one.end == end]
             v |= {name: place.values[name] for name in names}
     if verdict.GROUP in options.outputs:
         names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
@@ -146,7 +145,7 @@ def _at_end(solved: SolvedRollers, wanted: tuple[Limit, ...], end: int) -> Solve
     return dataclasses.replace(moved, values=values)
 
 
-def patch_limits(results: Results, options: Options, wanted: tuple[Limit, ...]) -> None:
+def patch_limits(results: StageResults, options: Options, wanted: tuple[Limit, ...]) -> None:
     """Add the results of the limits that need the tractions of the patches, or what these limits share.
 
     Limits that rest on placeholders are also computed at both ends of their ranges, as `_0_NAME` and `_1_NAME`.
@@ -173,69 +172,6 @@ def patch_limits(results: Results, options: Options, wanted: tuple[Limit, ...]) 
     for limit in shared:
         assert limit.shared is not None
         results.values |= limit.shared(solved)
-
-
-def _how_to_give(name: str) -> str:
-    """Say how a field of a case is entered: its meaning with its unit, or with an example of a mapping."""
-    if name in MAPPING_FIELDS:
-        return f"Add it to the case, or with --set: {MAPPING_FIELDS[name]}."
-    parameter = PARAMETERS[name]
-    return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
-
-
-def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> list[str]:
-    """Return one sentence for each value that a limit requires and that a case or a material does not have.
-
-    Parameters
-    ----------
-    limit : Limit
-        The limit.
-    solved : SolvedRollers
-        The cases.
-    names : mapping of str to numpy.ndarray
-        Names of the materials by body, (n,) each.
-    """
-    out = []
-    for name in limit.required(solved.options):
-        column = solved.cases.get(name)
-        if column is not None and missing(column).any():
-            out.append(f"{limit.name}: the case gives no {name}. {_how_to_give(name)}")
-    values = list(limit.required_of(solved))
-    if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
-        # The scatter of the strength gives that of the life.
-        values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
-    for name, here in values:
-        unknown = np.isnan(solved.materials[name]) & here
-        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
-            how = (
-                f"Add {name}: NUMBER to the material of the case."
-                if material == UNNAMED
-                else f"Enter it in config/materials.yaml under materials.{material}, or in the case: "
-                f"{{like: {material}, {name}: NUMBER}}."
-            )
-            out.append(f"{limit.name}: material '{material}' has no {name}. {how}")
-    return out
-
-
-def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
-    """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
-    solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
-    names = {body: own.name for body, own in bodies.items()}
-    guesses = dict.fromkeys(
-        (str(name), tuple(own.items()))
-        for body in bodies.values()
-        for name, own in zip(body.name, body.guesses, strict=True)
-    )
-    out, served = [], to_compute(solved, options)
-    for limit in asked(options.outputs, options.not_checked):
-        out += _lacks(limit, solved, names)
-        required = dict(limit.required_of(solved)) if limit in served else {}
-        for material, placeholders in guesses:
-            of = np.stack([own.name == material for own in bodies.values()], axis=1)
-            guessed = [f"{n} ({words})" for n, words in placeholders if n in required and np.any(required[n] & of)]
-            if guessed:
-                out.append(f"{limit.name}: placeholders of material '{material}': {', '.join(guessed)}.")
-    return list(dict.fromkeys(out))
 
 
 def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:

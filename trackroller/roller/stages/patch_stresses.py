@@ -9,7 +9,7 @@ import numpy as np
 if TYPE_CHECKING:
     from trackroller.halfspace.peak import Peak
     from trackroller.roller.options import Options
-    from trackroller.roller.stages.scene import Results
+    from trackroller.roller.stages.scene import StageResults
 
 
 class PatchStresses:
@@ -20,7 +20,7 @@ class PatchStresses:
     poisson_ratio : of roller and guide below each patch, (2 n, 2) [1]
     """
 
-    def __init__(self, results: Results, options: Options) -> None:
+    def __init__(self, results: StageResults, options: Options) -> None:
         self.results, self.options = results, options
         table = results.scene.table
         nu = np.stack([table.roller.poisson_ratio, table.guide.poisson_ratio], axis=1)

@@ -1,4 +1,4 @@
-"""Hold a block of cases on its way through the stages: inputs (`Scene`) and results (`Results`).
+"""Hold a block of cases on its way through the stages: inputs (`Scene`) and results (`StageResults`).
 
 Arrays have the case as first axis (n,), then contact (2) and body (2: roller, guide). Flat arrays (2 n,) hold contact 1
 of all cases, then contact 2.
@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants, SurfaceTractions
-from trackroller.contact.protocol import ContactModel, Patch
+from trackroller.contact.common import Patch, Resultants, SurfaceTractions
+from trackroller.contact.protocol import ContactModel
 from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
@@ -31,7 +31,7 @@ class Scene:
     ----------
     table, loads, model : the cases, the input of the equilibrium, and the contact model
     unit : unit of length in which each roller is solved, (n,) [mm]. In the loads, the patches and all results of the
-        stages, mm stands for this unit and N for MPa unit^2, until `Results.in_mm`
+        stages, mm stands for this unit and N for MPa unit^2, until `StageResults.in_mm`
     mirror : marks rollers whose two contacts are mirror images
     frictionless : True if all cases have zero friction, so that no tractions are computed
     n : number of cases
@@ -70,7 +70,7 @@ class Scene:
 
 
 @dataclass
-class Results:
+class StageResults:
     """Quantities found so far for one block.
 
     Attributes
@@ -103,7 +103,7 @@ class Results:
     refined: np.ndarray = field(default_factory=lambda: np.zeros(0, bool))
 
     @classmethod
-    def start(cls, scene: Scene, balance: eq.Equilibrium) -> Results:
+    def start(cls, scene: Scene, balance: eq.Equilibrium) -> StageResults:
         """Make patches and slips from the normal forces and rolling radius shifts of the equilibrium."""
         both = np.tile(np.arange(scene.n), 2)
         ellipse, slip = scene.contacts(balance)
@@ -163,7 +163,7 @@ class Results:
         self.bits |= np.where(condition, validity_bit(name), 0).astype(np.int32)
 
 
-def surface_tractions(results: Results) -> SurfaceTractions:
+def surface_tractions(results: StageResults) -> SurfaceTractions:
     """Return the tractions of the existing patches on a grid; they are computed at the first call."""
     if results.surface is None:
         good, mirror = results.good, results.scene.mirror

@@ -9,18 +9,18 @@ from trackroller.roller.options import Options
 from trackroller.roller.stages.ellipse_stresses import EllipseStresses
 from trackroller.roller.stages.grid_stresses import GridStresses
 from trackroller.roller.stages.patch_stresses import PatchStresses
-from trackroller.roller.stages.scene import Results
+from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.stop import PEAK, compared, holds, parse_condition
 
 SECTION_SIDES, SECTION_DEPTH = 1.5, 2.0  # extent of the sections over the semi-axis and over the smaller semi-axis
 
 
-def stresses_of(results: Results, options: Options) -> PatchStresses:
+def stresses_of(results: StageResults, options: Options) -> PatchStresses:
     """Return the stresses below the patches of a block, for ellipses or for solved patches."""
     return (EllipseStresses if results.patch.is_hertzian else GridStresses)(results, options)
 
 
-def stop(results: Results, options: Options) -> None:
+def stop(results: StageResults, options: Options) -> None:
     """Mark the cases for which the condition of `stop_if` already holds; the following stages leave them out."""
     if options.stop_if is None:
         return
@@ -33,7 +33,7 @@ def stop(results: Results, options: Options) -> None:
         results.stopped |= holds(comparison, value, results.scene.table)
 
 
-def peak_bound(results: Results, options: Options) -> np.ndarray:
+def peak_bound(results: StageResults, options: Options) -> np.ndarray:
     """Return a lower bound of the peak stress of each contact and body, (n, 2, 2) [MPa]."""
     wanted = results.good & ~np.tile(results.stopped, 2)
     out = np.full((2 * results.scene.n, 2), np.nan)
@@ -44,7 +44,7 @@ def peak_bound(results: Results, options: Options) -> np.ndarray:
     return results.by_contact(out)
 
 
-def peak_stress(results: Results, options: Options) -> None:
+def peak_stress(results: StageResults, options: Options) -> None:
     """Add the peak von Mises stress of each contact and body, its place and its error estimate."""
     good = results.good & ~np.tile(results.stopped, 2)
     mirror = results.scene.mirror
@@ -66,7 +66,7 @@ def peak_stress(results: Results, options: Options) -> None:
         results.values[name] = full
 
 
-def subsurface(results: Results, options: Options) -> None:
+def subsurface(results: StageResults, options: Options) -> None:
     """Add all stress components on the two section planes through each peak."""
     m, n, v = options.settings.section_points, results.scene.n, results.values
     depths = (m + 1) // 2
@@ -84,7 +84,7 @@ def subsurface(results: Results, options: Options) -> None:
 
 
 def _sections(
-    results: Results, options: Options, stresses: PatchStresses, flat: int, place: tuple[int, int, int]
+    results: StageResults, options: Options, stresses: PatchStresses, flat: int, place: tuple[int, int, int]
 ) -> None:
     """Fill the two sections through the peak at `place`: number of the case, contact and body."""
     v, patch, (case, contact, body) = results.values, results.patch, place

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -190,24 +190,30 @@ def _check_materials(study: Study) -> None:
 def named_materials(
     base: Mapping[str, Any], factors: Mapping[str, Any], database: MaterialDatabase
 ) -> dict[str, dict[str, Material]]:
-    """Return the materials of each body by name; raise the errors of all names that the database lacks together.
+    """Return the materials of each body by name; raise the errors of all names that the database lacks together."""
+    wrong = Collector()
+    named: dict[str, dict[str, Material]] = {body: {} for body in BODIES}
+    for where, body, name in _names_of_materials(base, factors):
+        with wrong.part():
+            named[body][name] = database.material(name, where)
+    wrong.check()
+    return named
+
+
+def _names_of_materials(base: Mapping[str, Any], factors: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Yield each name of a material with the key of the study file and the body.
 
     Entries of another form are left out: they are refused elsewhere.
     """
-    wrong = Collector()
-    named: dict[str, dict[str, Material]] = {body: {} for body in BODIES}
-    for field in (*MATERIAL_FIELDS, "material_pair"):
+    roller, guide = MATERIAL_FIELDS
+    for field, bodies in ((roller, BODIES[:1]), (guide, BODIES[1:]), ("material_pair", BODIES)):
         spec = factors.get(field)
         listed = spec.get("values") if isinstance(spec, Mapping) else ()
-        listed = listed if isinstance(listed, (list, tuple)) else ()
-        for where, value in ((f"base.{field}", base.get(field)), *((f"factors.{field}.values", one) for one in listed)):
-            bodies = BODIES if field == "material_pair" else (field.removesuffix("_material"),)
-            for body, name in zip(bodies, value if isinstance(value, (list, tuple)) else (value,), strict=False):
-                with wrong.part():
-                    if isinstance(name, str):
-                        named[body][name] = database.material(name, where)
-    wrong.check()
-    return named
+        entries = [(f"base.{field}", base.get(field))]
+        entries += [(f"factors.{field}.values", one) for one in listed] if isinstance(listed, (list, tuple)) else []
+        for where, entry in entries:
+            names = entry if isinstance(entry, (list, tuple)) else (entry,)
+            yield from ((where, body, name) for body, name in zip(bodies, names, strict=False) if isinstance(name, str))
 
 
 def check_cells(study: Study) -> None:

@@ -429,7 +429,11 @@ def _read_numbers(table: UserTable, numbers: list[int], units: list[str]) -> Non
 
 
 def _beside_units(cell: str, unit: str) -> str:
-    """Return a cell of a column in which others have units; a number without one could be in their unit, too."""
+    """Return a cell of a column in which other cells have units.
+
+    A number without a unit is returned as `Refused`, because it could be in their unit; its message is raised where the
+    cell is used.
+    """
     if not _without_unit(cell) or number_or_nan(cell) == 0.0:
         return cell
     remedy = f"Write {cell} {unit}, or the unit at the head of the column."

@@ -194,7 +194,7 @@ def files_below(root: Path) -> list[Path]:
     return sorted(Path(place, name) for place, _, names in os.walk(root) for name in names)
 
 
-def standing(path: Path, root: Path | None = None, same: str = "", known: Digests | None = None) -> bool:
+def replaceable(path: Path, root: Path | None = None, same: str = "", known: Digests | None = None) -> bool:
     """Return whether a file of a study may be replaced as it stands, True also if there is none or no study.
 
     Parameters
@@ -251,9 +251,9 @@ def _has_damaged_record(root: Path, path: Path) -> bool:
 def make_way(
     path: Path, root: Path | None = None, tell: Tell = warnings.warn, same: str = "", known: Digests | None = None
 ) -> None:
-    """Make sure that a file of a study may be written: what was changed moves to `aside/`, see `standing`."""
+    """Make sure that a file of a study may be written: what was changed moves to `aside/`, see `replaceable`."""
     root = root or root_of(path)
-    if root is not None and not standing(path, root, same, known):
+    if root is not None and not replaceable(path, root, same, known):
         tell(f"{path} was altered after it was written: it is kept as {set_aside(root, path)}")
 
 
@@ -402,7 +402,7 @@ def free_for_workflow(root: Path, tell: Tell) -> None:
     paths += [*(root / "plan").glob("*.solved"), *([] if figures.is_dir() else [figures])]
     paths += [file for place in ("figures", "logs", "looks") for file in files_below(root / place)]
     known = listed(root)
-    changed = [path for path in paths if not standing(path, root, known=known)]
+    changed = [path for path in paths if not replaceable(path, root, known=known)]
     for path in changed:
         make_way(path, root, tell, known=known)
     if any(figures in path.parents for path in changed):  # the other figures must go too, or none is drawn again

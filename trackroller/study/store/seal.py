@@ -95,7 +95,7 @@ def _put(path: Path, beside: Path, root: Path | None) -> None:
     digests = {goal: sha256(file) for goal, file in made.items()}
     known = listed(home)
     for goal, digest in digests.items():
-        ownership.standing(goal, home, digest, known)
+        ownership.replaceable(goal, home, digest, known)
     new = {goal.relative_to(home).as_posix(): {digest} for goal, digest in digests.items()}
     if read_record(record) == (True, new) and all(digest_of_file(goal) == digest for goal, digest in digests.items()):
         return  # what stands there keeps its date

@@ -12,8 +12,7 @@ from trackroller.methods.saltelli import pairs_sharing, sobol
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import part_tables
 from trackroller.results.findings import level_values
-from trackroller.results.parts import within_levels
-from trackroller.results.sensitivity import analyse
+from trackroller.results.sensitivity import analyse, within_levels
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study, without_former
 from validation.benchmarks.known_indices import functions

@@ -1,0 +1,220 @@
+"""Notes on the limits of a result: values that a limit lacks, and placeholders of materials that it rests on.
+
+A data set keeps the notes as sentences, a line each, which a user reads and which results of several cases unite. Each
+note writes its sentence and reads it back, so that no other file depends on the words.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from trackroller.damage import asked
+from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
+from trackroller.materials.material import UNNAMED
+from trackroller.materials.properties import Value
+from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS
+from trackroller.roller.case import CaseTable
+from trackroller.roller.dataset import NOTES
+from trackroller.roller.stages.outcome import solved_of, to_compute
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from trackroller.roller.options import Options
+
+OF_SN_LINE = (
+    *("fatigue_limit", "fatigue_strength_ratio", "cycles_at_fatigue_limit", "cycles_at_tensile_strength"),
+    *("woehler_exponent", "second_exponent"),
+)
+_LACK = re.compile(
+    r"(?P<limit>\w+): (?:the case gives|material '(?P<material>.+?)' has) no (?P<name>\w+)\. (?P<remedy>.*)"
+)
+_PLACEHOLDERS = re.compile(r"(?P<limit>\w+): placeholders of material '(?P<material>.+?)': (?P<values>.*)\.")
+_VALUE = re.compile(
+    r"(?P<name>\w+) \((?:(?P<note>.+?), )??"
+    r"(?:expected from (?P<low>\S+) to (?P<high>[^\s)]+)(?: (?P<units>.+?))?|no range is given)\)(?=, \w+ \(|$)"
+)
+
+
+@dataclass(frozen=True)
+class Lack:
+    """A value that a limit requires and that a case or a material does not have.
+
+    Attributes
+    ----------
+    limit, name : str
+        Name of the limit and of the value.
+    material : str
+        Name of the material; an empty text for a value of the case.
+    remedy : str
+        How to give the value.
+    """
+
+    limit: str
+    name: str
+    material: str = ""
+    remedy: str = ""
+
+    @property
+    def words(self) -> str:
+        """Return what is missing."""
+        return f"material '{self.material}' has no {self.name}" if self.material else f"the case gives no {self.name}"
+
+    @property
+    def line(self) -> str:
+        """Return the sentence in a data set."""
+        return f"{self.limit}: {self.words}. {self.remedy}"
+
+
+@dataclass(frozen=True)
+class Placeholder:
+    """A value of a material without a source, on which a limit rests.
+
+    Attributes
+    ----------
+    limit, material, name : str
+        Name of the limit, of the material, and of its value.
+    note : str
+        Note on the value; that of a value of a pair begins with 'on' and the other material.
+    low, high : float
+        Range in which the value is expected; NaN if no range is given.
+    units : str
+        Unit of the range.
+    """
+
+    limit: str
+    material: str
+    name: str
+    note: str = ""
+    low: float = np.nan
+    high: float = np.nan
+    units: str = ""
+
+    @classmethod
+    def of(cls, limit: str, material: str, name: str, guess: Value) -> Placeholder:
+        """Return the placeholder of a limit for a guess of a material."""
+        return cls(limit, material, name, guess.note, *(guess.range or (np.nan, np.nan)), units=guess.unit)
+
+    @property
+    def on(self) -> str:
+        """Return the material that it runs on if the value is that of a pair, otherwise an empty text."""
+        first = self.note.partition(", ")[0]
+        return first.removeprefix("on ") if first.startswith("on ") else ""
+
+    @property
+    def words(self) -> str:
+        """Return the name with the note and the range."""
+        span = "no range is given"
+        if not np.isnan(self.low):
+            span = f"expected from {self.low:g} to {self.high:g} {self.units}".rstrip(" -")
+        return f"{self.name} ({', '.join(filter(None, (self.note, span)))})"
+
+
+def placeholder_line(placeholders: list[Placeholder]) -> str:
+    """Return the sentence in a data set on the placeholders of one material on which one limit rests."""
+    first = placeholders[0]
+    values = ", ".join(one.words for one in placeholders)
+    return f"{first.limit}: placeholders of material '{first.material}': {values}."
+
+
+def notes_of(ds: xr.Dataset) -> list[str]:
+    """Return the notes of a data set, a sentence each; those on temperature included."""
+    return [note for note in str(ds.attrs.get(NOTES, "")).split("\n") if note]
+
+
+def lacks_of(ds: xr.Dataset) -> list[Lack]:
+    """Return the values that the limits of a result lack."""
+    return [Lack(**found.groupdict(default="")) for note in notes_of(ds) if (found := _LACK.fullmatch(note))]
+
+
+def placeholders_of(ds: xr.Dataset) -> list[Placeholder]:
+    """Return the placeholders of materials on which the limits of a result rest."""
+    out = []
+    for note in notes_of(ds):
+        if (found := _PLACEHOLDERS.fullmatch(note)) is not None:
+            for one in _VALUE.finditer(found["values"]):
+                low, high = (float(one[end]) if one[end] else np.nan for end in ("low", "high"))
+                texts = found["limit"], found["material"], one["name"], one["note"] or ""
+                out.append(Placeholder(*texts, low, high, one["units"] or ""))
+    return out
+
+
+def guessed_lines(ds: xr.Dataset) -> dict[str, list[str]]:
+    """Return the materials whose S-N line rests on guesses without a source, with the names of these values.
+
+    Such values have no range, so that a life by fatigue stays one number, and the notes on limits do not name them.
+    """
+    stored = json.loads(str(ds.attrs.get("materials", "{}")))
+    own = {name: [n for n in values.get("guesses", ()) if n in OF_SN_LINE] for name, values in stored.items()}
+    return {name: guesses for name, guesses in own.items() if guesses}
+
+
+def notes_on_limits(table: CaseTable, options: Options) -> list[str]:
+    """Return one sentence for each value that a limit asked for lacks, and for each that is a placeholder."""
+    solved, bodies = solved_of(table, {}, options), {"roller": table.roller, "guide": table.guide}
+    names = {body: own.name for body, own in bodies.items()}
+    guesses = dict.fromkeys(
+        (str(name), tuple(own.items()))
+        for body in bodies.values()
+        for name, own in zip(body.name, body.guesses, strict=True)
+    )
+    out, served = [], to_compute(solved, options)
+    for limit in asked(options.outputs, options.not_checked):
+        out += [lack.line for lack in _lacks(limit, solved, names)]
+        required = dict(limit.required_of(solved)) if limit in served else {}
+        for material, guessed in guesses:
+            of = np.stack([own.name == material for own in bodies.values()], axis=1)
+            used = [(name, guess) for name, guess in guessed if name in required and np.any(required[name] & of)]
+            if used:
+                out.append(placeholder_line([Placeholder.of(limit.name, material, *one) for one in used]))
+    return list(dict.fromkeys(out))
+
+
+def _lacks(limit: Limit, solved: SolvedRollers, names: Mapping[str, np.ndarray]) -> Iterator[Lack]:
+    """Yield each value that a limit requires and that a case or a material does not have.
+
+    Parameters
+    ----------
+    limit : Limit
+        The limit.
+    solved : SolvedRollers
+        The cases.
+    names : mapping of str to numpy.ndarray
+        Names of the materials by body, (n,) each.
+    """
+    for name in limit.required(solved.options):
+        column = solved.cases.get(name)
+        if column is not None and missing(column).any():
+            yield Lack(limit.name, name, remedy=_remedy_of_field(name))
+    values = list(limit.required_of(solved))
+    if limit.distribution == SN_SCATTER and solved.options["failure_probability"] != 0.5:
+        # The scatter of the strength gives that of the life.
+        values.append(("scatter_in_cycles", np.isnan(solved.materials["scatter_in_stress"])))
+    for name, here in values:
+        unknown = np.isnan(solved.materials[name]) & here
+        for material in dict.fromkeys(m for i, body in enumerate(BODIES) for m in names[body][unknown[:, i]]):
+            yield Lack(limit.name, name, material, _remedy_of_value(name, material))
+
+
+def _remedy_of_field(name: str) -> str:
+    """Say how a field of a case is entered: its meaning with its unit, or with an example of a mapping."""
+    if name in MAPPING_FIELDS:
+        return f"Add it to the case, or with --set: {MAPPING_FIELDS[name]}."
+    parameter = PARAMETERS[name]
+    return f"Add it to the case, or with --set {name}=NUMBER: {parameter.long_name} [{parameter.unit}]."
+
+
+def _remedy_of_value(name: str, material: str) -> str:
+    """Say how a value of a material is entered."""
+    if material == UNNAMED:
+        return f"Add {name}: NUMBER to the material of the case."
+    return (
+        f"Enter it in config/materials.yaml under materials.{material}, or in the case: "
+        f"{{like: {material}, {name}: NUMBER}}."
+    )
