@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.methods.b10 import b10
-from trackroller.parameters import FIRST_TO_FAIL, PARAMETERS
+from trackroller.parameters import FIRST_TO_FAIL, ROLE_OF, expressions
 from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
@@ -30,11 +30,29 @@ TIED = 1e-9  # relative difference of lives that count as equal
 
 def factor_roles(results: Results) -> dict[str, str]:
     """Return the role of each factor of a study that varies: `choice` or `condition`."""
-    study, observed = results.study, results.config.method.observed
+    study, table = results.study, results.table
     roles = roles_of(results.factors, study.parsed, study.config.roles, study.config.design)
-    # a label of its own in each row of a table names a condition, such as a measured load
-    labels = [n for n in roles if observed and n not in PARAMETERS and results.table[n].nunique() == len(results.table)]
-    return roles | {n: "condition" for n in labels if n not in study.config.roles}
+    if not results.config.method.observed:
+        return roles
+    used = {n for own in study.parsed.values() if own.text for n in expressions.names(own.text, "factors")}
+    labels = [n for n in roles if n not in ROLE_OF and n not in used and n not in study.config.roles]
+    own = {role: [n for n in roles if n not in labels and roles[n] == role] for role in ("choice", "condition")}
+    return roles | {n: "condition" for n in labels if _names_a_condition(table, n, own["choice"], own["condition"])}
+
+
+def _names_a_condition(table: pd.DataFrame, label: str, choices: list[str], conditions: list[str]) -> bool:
+    """Return whether a column of a table that is no parameter names conditions, such as the block of a measured load.
+
+    It does if each row has a label of its own, or if rows of the same conditions share their label and rows of the same
+    design do not.
+    """
+    if table[label].nunique() == len(table):
+        return True
+
+    def decided_by(names: list[str]) -> bool:
+        return bool(table.groupby(codes(table, names))[label].nunique().max() == 1)
+
+    return decided_by(conditions) and not decided_by(choices)
 
 
 def of_one_model(results: Results, rows: np.ndarray, model: str = "") -> np.ndarray:
