@@ -238,6 +238,19 @@ class Candidates:
         of the rolling cases; with random conditions `b10`, the life that nine of ten cases reach if cases that are not
         valid count as 0, with its 95 % interval; `rank`, equal for ties.
         """
+        found = self.results.verdict
+        if found is None or (found.goal, self.choices) != (self.goal, found.choices):
+            return self.by_life  # of other choices, or by another life
+        return _in_order(self._listed[0], found)
+
+    @cached_property
+    def by_life(self) -> pd.DataFrame:
+        """Return the rows of `table` in the order of the lives alone, without target and ranges."""
+        return _ranked(*self._listed)
+
+    @cached_property
+    def _listed(self) -> tuple[pd.DataFrame, pd.Series, pd.Series, pd.Series]:
+        """Return the rows of `table` in the order of their numbers, and what ranks them: see `_ranked`."""
         results = self.results
         table = self.members.copy()
         table["cases"] = self.size
@@ -261,10 +274,7 @@ class Candidates:
             table = table.assign(**self._quantile())
             sure = table["b10"] > 0
             key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
-        found = results.verdict
-        if found is None or (found.goal, self.choices) != (self.goal, found.choices):
-            return _ranked(table, held, key, sign * table["median"])  # of other choices, or by another life
-        return _in_order(table, found)
+        return table, held, key, sign * table["median"]
 
     def cases_of(self, design: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""

@@ -23,7 +23,9 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
         counts = {limit_title(name): cases for name, cases in values["counts"].items()}
         return say("limits", "first_limits", counts=counts, valid=values["of"])
     if finding.kind == "turned":
-        return say("limits", "turned", **values, name=design_words(results.candidates(), values["design"]))
+        design = values["design"]
+        name = "" if design is None else design_words(results.candidates(), design)
+        return say("limits", "turned", **values, name=name)
     return say("limits", "whichever_first", **values, **_unsure(results, values["factors"]))
 
 
