@@ -170,8 +170,9 @@ class Verdict:
     target : targets of the study; empty without them
     candidates : all candidates, the best first
     named : number of the first candidates that the verdict names: one, or all that the study cannot tell apart
-    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`, or
-        `sample` where the interval of the sampled conditions holds the target
+    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`,
+        `accuracy` where the error of the solution holds the target, or `sample` where the interval of the sampled
+        conditions does
     next : the next best candidate, None without one
     out_of_reach : conditions that no candidate meets, None without one
     fails : where the first candidate misses the target, or its conditions; None if it does not
@@ -184,6 +185,7 @@ class Verdict:
     unconstrained : candidate that would be named without the constraints of the study; None if that is the same one
     by_model : candidate that each other contact model of the study would name
     longest : row with the longest life, where no row meets the target and designs do not repeat; otherwise -1
+    within_error : row of the first candidate whose error leaves the target open, otherwise -1
     """
 
     kind: str
@@ -205,6 +207,7 @@ class Verdict:
     unconstrained: Candidate | None = None
     by_model: Mapping[str, Candidate] = field(default_factory=dict)
     longest: int = -1
+    within_error: int = -1
 
     @property
     def best(self) -> tuple[Candidate, ...]:
@@ -438,14 +441,19 @@ def _logarithm(lives: np.ndarray | float) -> np.ndarray:
         return np.asarray(np.clip(np.log(lives), -100.0, 100.0))
 
 
-def _targeted(cases: Cases) -> tuple[float, np.ndarray, np.ndarray]:
+Targeted = tuple[np.ndarray, ...]  # cases that surely meet the target, and cases that may meet it
+
+
+def _targeted(cases: Cases, exact: bool = True) -> tuple[float, np.ndarray, np.ndarray]:
     """Return the required hours, the cases that surely meet the target, and the cases that may meet it.
 
     A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one limit
-    is of no use if another limit comes first.
+    is of no use if another limit comes first. Unless `exact`, the error of the solution widens the range of each life.
     """
     results = cases.results
     low, high = cases.ends
+    error = 1.0 if exact else 1.0 + cases.error
+    low, high = low / error, high * error
     required, others = np.nan, np.ones(len(low), dtype=bool)
     for name, ends in results.config.analysis.target.items():
         if name in OF_PAIR and cases.candidates.goal[2] == "h" and set(ends) == {"min"}:
@@ -492,11 +500,15 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     size = cases.conditions_in(counted)
     met = size - cases.conditions_in(counted & ~good)
     rows = [np.flatnonzero(counted & (candidates.place == i)) for i in range(len(size))]
-    status = np.array([_status(cases, own, sure, may) if target else "" for own in rows])
+    within = _targeted(cases, exact=False)[1:]
+    status = np.array([_status(cases, own, *within) if target else "" for own in rows])
     order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
-    if kind == "measure" and target and _status(cases, rows[first[0]], sure, may, of_all=False) != "open":
-        kind, why = "cannot_tell", "sample"  # no value is missing, but conditions are
+    if kind == "measure" and target:  # unless no value is missing, but a finer solution or conditions are
+        decided = [_status(cases, rows[first[0]], sure, may, of_all) != "open" for of_all in (True, False)]
+        if any(decided):
+            kind, why = "cannot_tell", "accuracy" if decided[0] else "sample"
+    unsure = _within_error(cases, rows[first[0]], (sure, may), within) if why == "accuracy" else -1
     order = np.array([*first, *(i for i in order if i not in first)])
     if kind == "none":  # of all conditions, those without any candidate included
         size, met = cases.conditions_in(wanted), cases.conditions_in(wanted) - cases.conditions_in(wanted & ~good)
@@ -513,6 +525,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
         why=why,
         next=left[0] if left and first else None,
         out_of_reach=_misses(cases, wanted & reach, wanted, cases.reason) if (wanted & reach).any() else None,
+        within_error=unsure,
         **_shared(cases),
     )
     if kind == "none":
@@ -520,6 +533,13 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
         reason = np.where(cases.reason == "", cases.first, cases.reason)
         return replace(found, fails=_misses(cases, own & ~good, own, reason))
     return replace(found, turns=_turns(cases, found)) if kind == "measure" else found
+
+
+def _within_error(cases: Cases, rows: np.ndarray, exact: Targeted, within: Targeted) -> int:
+    """Return the row among those whose error changes whether the target is met that lasts shortest within its error."""
+    changed = [rows[(a != b)[rows]] for a, b in zip(exact, within, strict=True)]
+    own = next(own for own in changed if len(own))
+    return int(own[np.argmin((cases.ends[0] / (1.0 + cases.error))[own])])
 
 
 def rows_of(candidates: Candidates, one: Candidate, kept: np.ndarray) -> np.ndarray:

@@ -127,9 +127,9 @@ def best_table(results: Results) -> Table | None:
         places = candidates.table.index[: len(best)]
         ranged = results.ranged and bool(results.judged_targets)
         cells = [part_of(met[i], candidates.size[i]) for i in places]
-        if ranged:  # what meets the target at the high end only is neither met nor missed
-            known = _of_verdict(candidates, best) or [None] * len(best)
-            cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
+        # what meets the target at the high end only, or within its error, is neither met nor missed
+        known = _of_verdict(candidates, best) or [None] * len(best)
+        cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
         rows.append([f"Meets the targets{' for certain' * ranged} in", *cells])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Candidate {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]

@@ -22,6 +22,7 @@ from trackroller.report.words.designs import (
     condition_words,
     design_words,
     ended_by,
+    ends_text,
     ends_words,
     lasting_one,
     span_words,
@@ -31,6 +32,7 @@ from trackroller.report.words.designs import (
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
+from trackroller.results.intervals import Cases
 from trackroller.results.limit_notes import guessed_lines
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
@@ -137,7 +139,7 @@ class _Words:
         if found.kind == "give":
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
-            return [self.by_sample() if found.why == "sample" else None]
+            return [self.by_sample() if found.why == "sample" else self.by_error() if found.within_error >= 0 else None]
         if found.kind == "none":
             return [self.nearest() if found.candidates else self.nowhere()]
         if found.kind == "measure":
@@ -238,6 +240,18 @@ class _Words:
         fails = found.fails or Misses(0, 0, {})
         values = {"target": self.target(), "why": _reasons(fails), "lives": lives, "name": name}
         return say("verdict", "nowhere", cases=fails.of, **values)
+
+    def by_error(self) -> Sentence:
+        """Say that the error of the solution holds the target, and where."""
+        found, one, own = self.found, self.found.best[0], Cases(self.candidates)
+        low, high = (float(end[found.within_error]) for end in own.ends)
+        values = {
+            "name": self.name(one) if len(found.candidates) > 1 else "",
+            "lives": ends_text(low, high, "", found.goal[2]),
+            "error": float(own.error[found.within_error]),
+            "where": condition_words(self.candidates, found.within_error) if self.candidates.conditions else "",
+        }
+        return say("verdict", "accuracy", **values, target=self.target(), accuracy=self.results.config.accuracy)
 
     def by_sample(self) -> Sentence:
         """Say that the interval of the sampled conditions holds the target."""
@@ -362,7 +376,7 @@ class _Words:
         """Say whether the other contact models of a study name the same candidate."""
         found, others = self.found, self.found.by_model
         named = (found if found.rest is None else found.rest).best
-        if not others or len(self.candidates.size) < 2 or len(named) != 1:
+        if not others or len(self.candidates.size) < 2 or len(named) != 1 or found.kind == "cannot_tell":
             return None
         agree = [model for model, one in others.items() if one.choices == named[0].choices]
         apart = [(model, self.name(one)) for model, one in others.items() if model not in agree]
