@@ -21,9 +21,9 @@ from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
-from trackroller.results.intervals import BESIDE, Cases
+from trackroller.results.intervals import BESIDE, Cases, OnTarget
 from trackroller.results.limit_notes import Placeholder, placeholders_of
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
@@ -261,7 +261,7 @@ def verdict_of(results: Results) -> Verdict | None:
     if not candidates.comparable:
         reach: np.ndarray = np.zeros(len(results.table), dtype=bool)
         turns = _given(cases, reach)
-        required, _, may = _targeted(cases)
+        required, _, may = cases.on_target()
         if results.config.analysis.target and not may[cases.own].any():
             fails = _misses(cases, cases.own & ~may, cases.own, np.where(cases.reason == "", cases.first, cases.reason))
             facts = {"required": required, "fails": fails, "longest": _longest(candidates), **_shared(cases)}
@@ -441,33 +441,6 @@ def _logarithm(lives: np.ndarray | float) -> np.ndarray:
         return np.asarray(np.clip(np.log(lives), -100.0, 100.0))
 
 
-Targeted = tuple[np.ndarray, ...]  # cases that surely meet the target, and cases that may meet it
-
-
-def _targeted(cases: Cases, exact: bool = True) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the required hours, the cases that surely meet the target, and the cases that may meet it.
-
-    A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one limit
-    is of no use if another limit comes first. Unless `exact`, the error of the solution widens the range of each life.
-    """
-    results = cases.results
-    low, high = cases.ends
-    error = 1.0 if exact else 1.0 + cases.error
-    low, high = low / error, high * error
-    required, others = np.nan, np.ones(len(low), dtype=bool)
-    for name, ends in results.config.analysis.target.items():
-        if name in OF_PAIR and cases.candidates.goal[2] == "h" and set(ends) == {"min"}:
-            required = float(np.fmax(required, ends["min"]))
-        else:
-            others &= results.meets(name)
-    least = 0.0 if np.isnan(required) else required
-    uncertain = np.any([np.zeros(len(low), dtype=bool), *cases.open_limits.values()], axis=0)
-    judged = cases.judged
-    sure = judged & (cases.reason == "") & (low >= least) & others & ~uncertain
-    may = np.where(judged, (cases.reason == "") & (high >= least) & others, True)
-    return required, sure, np.asarray(may)
-
-
 def _status(cases: Cases, rows: np.ndarray, sure: np.ndarray, may: np.ndarray, of_all: bool = True) -> str:
     """Return whether a candidate meets a target in its cases: `met`, `missed`, or `open`.
 
@@ -495,12 +468,12 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     kept = wanted & ~reach
     kept = kept if kept.any() else wanted
     scores = _scores(cases, kept)
-    required, sure, may = _targeted(cases)
+    required, sure, may = cases.on_target()
     counted, good = (wanted, sure) if target else (kept, cases.ends[0] > 0)
     size = cases.conditions_in(counted)
     met = size - cases.conditions_in(counted & ~good)
     rows = [np.flatnonzero(counted & (candidates.place == i)) for i in range(len(size))]
-    within = _targeted(cases, exact=False)[1:]
+    within = cases.on_target(exact=False)[1:]
     status = np.array([_status(cases, own, *within) if target else "" for own in rows])
     order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
@@ -535,7 +508,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     return replace(found, turns=_turns(cases, found)) if kind == "measure" else found
 
 
-def _within_error(cases: Cases, rows: np.ndarray, exact: Targeted, within: Targeted) -> int:
+def _within_error(cases: Cases, rows: np.ndarray, exact: OnTarget, within: OnTarget) -> int:
     """Return the row among those whose error changes whether the target is met that lasts shortest within its error."""
     changed = [rows[(a != b)[rows]] for a, b in zip(exact, within, strict=True)]
     own = next(own for own in changed if len(own))

@@ -34,6 +34,7 @@ from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.limit_notes import guessed_lines
+from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 
@@ -186,15 +187,7 @@ class _Words:
 
     def target(self) -> str:
         """Write the targets of the study."""
-        found, texts = self.found, []
-        if math.isfinite(found.required):
-            texts.append(quantity(found.required, "h"))
-        for name, ends in found.target.items():
-            unit, words = self.results.quantity(name)[1:]
-            if not (unit == "h" and set(ends) == {"min"} and math.isfinite(found.required)):
-                parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
-                texts.append(f"{words} {' and '.join(parts)}")
-        return ", ".join(texts)
+        return targets_in_words(self.results, self.found.goal[2])
 
     def following(self) -> Sentence | None:
         """Name the next best candidate by the same measure."""
@@ -403,6 +396,19 @@ class _Words:
         names = [SHORT.get(name) or ended_by(name) for name in self.found.not_checked]
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
         return say("verdict", "not_checked", names=names) if names else None
+
+
+def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
+    """Write the targets of a study: the largest life that they ask of the pair, then the others by their names."""
+    lives, texts = [], []
+    for name, ends in results.config.analysis.target.items():
+        unit, words = results.quantity(name)[1:]
+        if name in OF_PAIR and set(ends) == {"min"} and unit_of_goal == "h":
+            lives.append(ends["min"])
+        else:
+            parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
+            texts.append(f"{words} {' and '.join(parts)}")
+    return ", ".join([*([quantity(max(lives), "h")] if lives else []), *texts])
 
 
 def _what(turn: Turn) -> str:
