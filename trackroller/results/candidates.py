@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.methods.b10 import b10
-from trackroller.parameters import FIRST_TO_FAIL, ROLE_OF, expressions
+from trackroller.parameters import FIRST_TO_FAIL, REGIMES, ROLE_OF, expressions
 from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
@@ -93,7 +93,7 @@ def lift_off_margin(results: Results) -> np.ndarray:
     loads = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio: np.ndarray = np.min(loads, axis=0) / np.max(loads, axis=0)
-    return ratio
+    return np.where(results.regime == REGIMES.index("lift_off"), 0.0, ratio)
 
 
 def _input(results: Results, name: str) -> np.ndarray:
@@ -234,9 +234,9 @@ class Candidates:
 
         Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
         goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
-        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins
-        of the rolling cases; with random conditions `b10`, the life that nine of ten cases reach if cases that are not
-        valid count as 0, with its 95 % interval; `rank`, equal for ties.
+        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins, at most 0
+        where a case slips or lifts off; with random conditions `b10`, the life that nine of ten cases reach if cases
+        that are not valid count as 0, with its 95 % interval; `rank`, equal for ties.
         """
         found = self.results.verdict
         if found is None or (found.goal, self.choices) != (self.goal, found.choices):
@@ -264,8 +264,11 @@ class Candidates:
             case = self._least(results.column(name), self.usable)
             table[f"worst_{body}"] = np.where(case < 0, np.nan, results.column(name)[case])
             table[f"worst_{body}_beyond"] = (case >= 0) & results.beyond_data(name)[case]
-        for name, margin in (("slip_margin", slip_margin(results)), ("lift_off_margin", lift_off_margin(results))):
-            case = self._least(margin, results.rolling)
+        for name, margin, lost in (
+            ("slip_margin", slip_margin(results), "full_slip"),
+            ("lift_off_margin", lift_off_margin(results), "lift_off"),
+        ):
+            case = self._least(margin, results.rolling | (results.regime == REGIMES.index(lost)))
             table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
         key = sign * table["worst"]

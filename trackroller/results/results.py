@@ -401,7 +401,7 @@ class Results:
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
         """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of the guide."""
-        return LIVES[0 if self.has("guide_life_hours") else 1 :]
+        return LIVES[0 if self.knows("guide_life_hours") else 1 :]
 
     @cached_property
     def regime(self) -> np.ndarray:
@@ -561,6 +561,10 @@ class Results:
             return column.values
         body = body_of(column.name) if self.by_body else ""
         return np.where(self.counted & self.flagged("static", body), 0.0, column.values)
+
+    def knows(self, column: str) -> bool:
+        """Say whether a column is there with at least one number, or a life without an end."""
+        return bool(column in self.table and self.table[column].notna().any())
 
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""

@@ -52,7 +52,8 @@ class Candidate:
     error : relative error of `low` by the solution [1]
     interval : 95 % interval of `low` where it is the life that nine of ten sampled conditions reach, else NaN
     case, case_high : row of the worst condition, for the low and for the high end
-    ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; and the body
+    ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; '' where nothing
+        does; and the body
     ends_high : what ends it there at the high end of the ranges of the placeholders
     met, conditions : number of conditions that it meets, and of all conditions that count
     status : `met`, `open` or `missed` of the target; '' without a target
@@ -604,8 +605,8 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         error=float(scores.error[i]),
         interval=(float(interval[0]), float(interval[1])),
         case=case,
-        ends=str(cases.reason[case] or cases.low_end[0][case]),
-        ends_high=str(cases.reason[highest] or cases.high_end[highest]),
+        ends=str(cases.reason[case] or ("" if np.isinf(cases.ends[0][case]) else cases.low_end[0][case])),
+        ends_high=str(cases.reason[highest] or ("" if np.isinf(cases.ends[1][highest]) else cases.high_end[highest])),
         body="guide" if cases.low_end[1][case] else "roller",
         met=int(facts["met"][i]),
         conditions=int(facts["conditions"][i]),
@@ -679,15 +680,27 @@ def not_checked(results: Results, lives: bool = True) -> tuple[str, ...]:
     ----------
     results : the solved study
     lives : whether the study compares lives
+
+    Notes
+    -----
+    The life by fatigue is known at a failure probability other than 0.5 only for materials that state their scatter:
+    `fatigue of the guide` names a body whose material does not.
     """
-    known = {"static", "fatigue"} if lives else {"static"}
+    first = results.life == FIRST_LIMIT
+    known = {"static", "fatigue"} if lives and not first else {"static"}
+    hours = results.knows("guide_life_hours")
+    some: list[str] = []
     if "limit" in results.data.dims:
         names = results.data["limit"].values.tolist()
         values = [results.data[n] for n in ("utilisation", "life_hours_by_limit") if n in results.data]
         known |= {name for i, name in enumerate(names) if any(v.isel(limit=i).notnull().any() for v in values)}
+        if first and "fatigue" in known:
+            fatigue = results.data["life_hours_by_limit"].sel(limit="fatigue")
+            bodies = [body for body in BODIES if body != "guide" or hours]
+            some = [f"fatigue of the {body}" for body in bodies if not fatigue.sel(body=body).notnull().any()]
     wanted = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in BESIDE]
     missing = [name for name in wanted if name not in known]
-    return tuple(missing + ["guide"] * (lives and not results.has("guide_life_hours")))
+    return tuple(missing + some + ["guide"] * (lives and not hours))
 
 
 def _misses(cases: Cases, bad: np.ndarray, among: np.ndarray, reason: np.ndarray) -> Misses:

@@ -75,7 +75,7 @@ def within_words(results: Results) -> str:
 
 def alone(candidates: Candidates) -> bool:
     """Return whether the roller stands for the pair in every case, because the guide's hours are unknown."""
-    return candidates.rising and not candidates.results.has("guide_life_hours")
+    return candidates.rising and not candidates.results.knows("guide_life_hours")
 
 
 def lasting_one(candidates: Candidates) -> str:
@@ -101,7 +101,8 @@ def unanswered(candidates: Candidates) -> Sentence:
     roles = factor_roles(candidates.results)
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
-    method = plain(candidates.results.config.design)
+    method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
+    values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
@@ -119,7 +120,8 @@ def best_table(results: Results) -> Table | None:
     rows += _judged(candidates, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
-            rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
+            margins = [("none" if row[name] <= 0 else percent(row[name])) for row in best]
+            rows.append([words, *(m if np.isfinite(row[name]) else "–" for m, row in zip(margins, best, strict=True))])
     several, met = bool(candidates.conditions), candidates.targets_met()
     if several:
         rows.append(["Valid in", *(part_of(row["valid"], row["cases"]) for row in best)])
@@ -205,7 +207,7 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
-        worst = [condition_words(candidates, int(row["worst_case"])) for row in best]
+        worst = ["–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"])) for row in best]
         if spans:
             worst = [
                 text if one is None else worst_words(candidates, one) for text, one in zip(worst, known, strict=True)

@@ -12,7 +12,7 @@ from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import SHORT, targets_in_words
+from trackroller.report.words.verdict import targets_in_words, unchecked_words
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.judging import (
@@ -183,7 +183,7 @@ def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
     """Name the limits that the search did not check, where a goal is a life."""
     if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
         return None
-    names = [SHORT.get(name) or ended_by(name) for name in not_checked(results)]
+    names = unchecked_words(results, not_checked(results))
     return say("verdict", "not_checked", names=names) if names else None
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
     level_text,
     long_name,
+    percent,
     plain,
     quantity,
     rounded,
@@ -124,6 +126,7 @@ class _Words:
             shared = {n: v for n, v in found.best[0].choices.items() if n not in free}
             name = ", ".join(setting(n, v) for n, v in shared.items())
             return say("verdict", "any", name=name, free=[long_name(n) for n in free], many=len(named))
+        values |= {"unlimited": bool(found.best) and math.isinf(found.best[0].low), "sampled": found.sampled}
         return say("verdict", found.kind, **values, what=what, lives=lives, who=who, rises=found.goal_rises)
 
     def without_effect(self) -> list[str]:
@@ -170,6 +173,7 @@ class _Words:
             tie=found.why == "tie",
             error=one.error,
             repeats=found.kind == "lasts",
+            unlimited=math.isinf(one.low),
         )
 
     def body(self, one: Candidate) -> str:
@@ -207,7 +211,8 @@ class _Words:
             return None
         given = [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
         given = given if self.found.kind != "give" else []
-        return say("verdict", "out", misses=misses, where=_levels(misses), why=_reasons(misses), not_given=given)
+        values = {"where": _levels(misses), "why": _reasons(misses), "alone": len(self.candidates.size) == 1}
+        return say("verdict", "out", misses=misses, **values, not_given=given)
 
     def nearest(self) -> Sentence:
         """Say that no candidate is enough, which one is nearest, and where it fails."""
@@ -393,9 +398,18 @@ class _Words:
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
-        names = [SHORT.get(name) or ended_by(name) for name in self.found.not_checked]
+        names = unchecked_words(self.results, self.found.not_checked)
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
         return say("verdict", "not_checked", names=names) if names else None
+
+
+def unchecked_words(results: Results, names: Iterable[str]) -> list[str]:
+    """Name the limits that were not checked, with what fatigue lacks at a failure probability other than 0.5."""
+    words = [SHORT.get(name) or ended_by(name) for name in names]
+    chance = results.config.failure_probability
+    lacks = f" at {percent(chance)} failures (give `scatter_in_cycles`)"
+    left_out = "fatigue" in results.config.not_checked
+    return [word + lacks * (word.startswith("fatigue") and chance != 0.5 and not left_out) for word in words]
 
 
 def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
