@@ -12,7 +12,7 @@ from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import targets_in_words, unchecked_words
+from trackroller.report.words.verdict import bearing_words, targets_in_words, unchecked_words
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.judging import (
@@ -50,6 +50,7 @@ def optimum_sentences(results: Results) -> list[Sentence]:
     said = [_invalid(results, search, least) if least else None]
     if best is not None:
         said += [_recommended(results, search, best), _unreached(results, search), _guessed(results, search, best)]
+        said.append(bearing_words(results, _limits(results, search, best)))
     said.append(_unchecked(results, search))
     return [sentence for sentence in said if sentence is not None]
 

@@ -8,6 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from trackroller.damage import LIMITS
+from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
     level_text,
@@ -84,6 +85,7 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.untried(),
         words.open_limits(),
         words.guessed(),
+        words.bearings(),
         words.unchecked(),
     ]
     return _fitting([sentence for sentence in said if sentence is not None])
@@ -396,11 +398,26 @@ class _Words:
         material = str(self.results.material(found.best[0].body)[found.best[0].case])
         return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
 
+    def bearings(self) -> Sentence | None:
+        """Say that half of the bearings reach a life that the bearing ends, while makers state that of nine of ten."""
+        found = self.found if self.found.rest is None else self.found.rest
+        return bearing_words(self.results, [name for one in found.best[:MOST] for name in (one.ends, one.ends_high)])
+
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
         names = unchecked_words(self.results, self.found.not_checked)
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
         return say("verdict", "not_checked", names=names) if names else None
+
+
+def bearing_words(results: Results, limits: Iterable[str]) -> Sentence | None:
+    """Say what share of a bearing's life nine of ten bearings reach; None where no bearing ends a median life."""
+    own = results.config.base.get("bearing")
+    if "bearing" not in limits or results.config.failure_probability != 0.5 or not own:
+        return None
+    slope = np.array([WEIBULL[str(kind)] for kind in FIELD.columns(np.array([own], dtype=object))["kind"]])
+    share = 1.0 / float(life_at(np.ones(1), 0.5, slope)[0])
+    return say("verdict", "bearing", share=share)
 
 
 def unchecked_words(results: Results, names: Iterable[str]) -> list[str]:
