@@ -103,6 +103,13 @@ def _input(results: Results, name: str) -> np.ndarray:
     return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
 
 
+def _mixed(results: Results) -> np.ndarray:
+    """Return the rows of a random design that are no draws of their own, such as the mixtures of Saltelli's; (n,)."""
+    out = np.ones(len(results.table), dtype=bool)
+    out[results.design.method.independent_rows(results.design)] = False
+    return out
+
+
 def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
     """Mark the rows whose conditions every design has once; none if there are fewer than `SHARED` such conditions.
 
@@ -129,7 +136,8 @@ class Candidates:
     results : the solved study
     choices, conditions : names of the factors by role
     goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller
-    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model
+    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model, and for those
+        that are no draws of their own
     matched : whether each design has the same conditions, each once
     untried : rows of a table whose conditions were not tried with every design, shape (n,) bool; no design has them
     """
@@ -175,6 +183,9 @@ class Candidates:
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)
+        if conditions and (mixed := _mixed(results)).any():
+            place = np.where(mixed, -1, place)
+            place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
         shared = _shared(place, use) if results.config.method.observed else np.zeros(len(use), dtype=bool)
         untried = own & ~shared if shared.any() else shared
         place = np.where(untried, -1, place)
@@ -197,7 +208,13 @@ class Candidates:
     @property
     def comparable(self) -> bool:
         """Return whether the designs can be compared: they share their conditions, or each has a sample of them."""
-        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST)
+        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST and self.weighted)
+
+    @property
+    def weighted(self) -> bool:
+        """Return whether the rows stand for the use: drawn by their probability, or the user's own."""
+        method = self.results.config.method
+        return method.weighted or method.observed
 
     @property
     def rising(self) -> bool:

@@ -103,6 +103,7 @@ def unanswered(candidates: Candidates) -> Sentence:
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
+    values["weighted"] = candidates.weighted or values["least"] < FEWEST
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
