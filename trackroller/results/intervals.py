@@ -18,6 +18,7 @@ from trackroller.results.first_limits import UNSURE, first_at, first_limit
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.results import Results
+from trackroller.results.robustness import material_deviations
 from trackroller.study.outputs import flat
 
 # limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
@@ -115,7 +116,30 @@ class Cases:
     @cached_property
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the goal of each case, as a life or as 1/stress, shape (n,) each."""
-        return self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
+        low, high = self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
+        return (low, high) if self.scatter is None else (low * self.scatter[0], high * self.scatter[1])
+
+    @cached_property
+    def scatter(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return the factors on both ends, shape (n,) each, by which the material's own scatter changes B10.
+
+        None unless the study asks for this scatter, and conditions are sampled. A factor is that of the design of a
+        case: B10 with the scatter over B10 without it. A life that fatigue does not end has no such scatter.
+        """
+        own = material_deviations(self.results) if self.sampled and not self._moves else {}
+        if not own:
+            return None
+        lives = self._between((None, "_low"), (None, "_high"))
+        factors = np.ones((2, len(self.reason)))
+        for end, values, factor in zip(("_low", "_high"), lives, factors, strict=True):
+            names, guide = self.at_end(end)
+            deviation = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0)) * (names == "fatigue")
+            for i in range(len(self.candidates.size)):
+                rows = self.candidates.place == i
+                plain = b10(values[rows])[0]
+                if 0.0 < plain < np.inf:
+                    factor[rows] = b10(values[rows], deviation[rows])[0] / plain
+        return factors[0], factors[1]
 
     def _between(self, *shifted: tuple[Any, str]) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the goal of each case, with the lives by fatigue moved at each end."""

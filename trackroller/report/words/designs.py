@@ -144,6 +144,7 @@ def best_table(results: Results) -> Table | None:
         "shown": {row[0] for row in rows},
         "many": len(best),
     }
+    facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
@@ -190,8 +191,14 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if rising and candidates.drawn:
         known = _of_verdict(candidates, best)
         tested = any(one is not None and one.tested for one in known)
-        rows.append(row_of("b10", f"Nine of ten reach{', low end by the tests' * tested}"))
-        rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
+        ranged = not tested and any(one is not None and one.high > one.low * (1 + SAME) for one in known)
+        if ranged:
+            cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
+            rows.append(["Nine of ten reach", *cells])
+        else:
+            rows.append(row_of("b10", f"Nine of ten reach{', low end by the tests' * tested}"))
+        intervals = (f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)
+        rows.append([f"95 % interval{' of the low end' * ranged}", *intervals])
         if tested:
             cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
             rows.append(["Nine of ten reach, 90 % by the tests", *cells])
@@ -202,8 +209,8 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if spans:  # the ends of the range say more than a value within it
         rows.append([f"{capital(candidates.goal[1])}, worst condition", *spans])
         places.pop("worst")
-    if candidates.results.ranged and "median" in places:
-        places["median"] = "median, within the ranges"
+    if candidates.results.ranged:
+        places = {key: f"{place}, within the ranges" if place else place for key, place in places.items()}
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])

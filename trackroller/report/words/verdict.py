@@ -116,6 +116,11 @@ class _Words:
             return quantity(one.low, unit)
         return span_words(one, unit)
 
+    @property
+    def scattered(self) -> bool:
+        """Return whether the lives hold the material's own scatter, so that nine of ten rollers reach them."""
+        return self.found.sampled and Cases(self.candidates).scatter is not None
+
     def head(self) -> Sentence:
         """Say what to do."""
         found = self.found
@@ -129,6 +134,7 @@ class _Words:
             name = ", ".join(setting(n, v) for n, v in shared.items())
             return say("verdict", "any", name=name, free=[long_name(n) for n in free], many=len(named))
         values |= {"unlimited": bool(found.best) and math.isinf(found.best[0].low), "sampled": found.sampled}
+        values["scattered"] = self.scattered
         return say("verdict", found.kind, **values, what=what, lives=lives, who=who, rises=found.goal_rises)
 
     def without_effect(self) -> list[str]:
@@ -176,6 +182,7 @@ class _Words:
             error=one.error,
             repeats=found.kind == "lasts",
             unlimited=math.isinf(one.low),
+            scattered=self.scattered,
         )
 
     def body(self, one: Candidate) -> str:
@@ -229,7 +236,8 @@ class _Words:
         life = self.span(one) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
-        return say("verdict", "nearest", **values, sampled=found.sampled, alone=one.conditions == 1)
+        values |= {"scattered": self.scattered, "alone": one.conditions == 1}
+        return say("verdict", "nearest", **values, sampled=found.sampled)
 
     def nowhere(self) -> Sentence:
         """Say that no case of a study whose designs cannot be compared meets the target, and what the best reaches."""
@@ -258,7 +266,7 @@ class _Words:
         found, one = self.found, self.found.best[0]
         values = {"candidate": one, "name": self.name(one) if len(found.candidates) > 1 else ""}
         values |= {"lives": self.span(one), "interval": [rounded(end) for end in one.interval], "unit": found.goal[2]}
-        return say("verdict", "sample", **values, target=self.target())
+        return say("verdict", "sample", **values, target=self.target(), scattered=self.scattered)
 
     def range_of(self) -> Sentence:
         """State the ranges of the candidates between which the measurement decides."""
