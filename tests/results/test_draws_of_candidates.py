@@ -48,7 +48,7 @@ def test_trajectories_of_morris_are_no_sample_of_the_use():
 
 
 def test_the_scatter_of_the_material_enters_verdict_and_target():
-    """Of a million rollers at the sampled conditions, each with a life of its own, nine of ten reach the stated life."""
+    """Of a million rollers at the sampled conditions, each with its own life, nine of ten reach the stated one."""
     deviation = math.log10(4) / 2.5631  # T_N = N_90 / N_10
     keys = {"analysis": {"material_scatter": 4}}
     results = run("inner_outer", 64, **keys)

@@ -378,11 +378,11 @@ def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Ser
 
 
 def _in_order(table: pd.DataFrame, found: Any) -> pd.DataFrame:
-    """Sort designs as the verdict of the study does, and rank them; designs with equal lives tie.
+    """Sort designs as the verdict of the study does, those without a valid case last; designs with equal lives tie.
 
     `found` is a `Verdict`, whose file imports this one.
     """
-    listed = found.candidates
+    listed = sorted(found.candidates, key=lambda one: not table.at[one.number, "valid"])  # they have no number
     # of lives of 0 and without end, what the candidate reaches elsewhere decides
     beside = [one.holds if one.low in (0.0, np.inf) else 0.0 for one in listed]
     alike = [(one.status, one.low, one.met, more) for one, more in zip(listed, beside, strict=True)]

@@ -32,6 +32,7 @@ from trackroller.study.outputs import flat
 
 OF_MATERIALS = ("material_pair", *MATERIAL_FIELDS)
 CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}  # input that brings a condition out of reach
+LOADS = ("radial_force", "axial_force", "motor_force")  # on which each life rests
 MANY = 0.5  # share of conditions out of reach by an input that was not given, from which on the input is asked for
 RESAMPLES = 400  # of the sampled conditions, for the error of a difference of B10
 TAIL = 0.025  # share of the resamples below the 95 % interval
@@ -105,7 +106,8 @@ class Misses:
     reasons : why, each with the number of its cases, the most frequent first
     where : levels of one or more factors that hold together exactly in these conditions; empty if no levels do, and for
         sampled conditions, whose values coincide by chance
-    not_given : inputs among the causes that were not given, with the values that were used
+    not_given : inputs among the causes that were not given, or where no candidate is enough all such loads, with the
+        values that were used
     """
 
     count: int
@@ -505,7 +507,9 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     if kind == "none":
         own = rows_of(candidates, listed[0], wanted)
         reason = np.where(cases.reason == "", cases.first, cases.reason)
-        return replace(found, fails=_misses(cases, own & ~good, own, reason))
+        fails = _misses(cases, own & ~good, own, reason)
+        loads = {n: float(cases.results.base[n]) for n in LOADS if _unnamed(cases.results, n)}
+        return replace(found, fails=replace(fails, not_given=loads))
     return replace(found, turns=_turns(cases, found)) if kind == "measure" else found
 
 

@@ -218,8 +218,7 @@ class _Words:
         """Name the conditions that no candidate meets, and why."""
         if misses is None or not misses.count:
             return None
-        given = [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
-        given = given if self.found.kind != "give" else []
+        given = _not_given(misses) if self.found.kind != "give" else []
         values = {"where": _levels(misses), "why": _reasons(misses), "alone": len(self.candidates.size) == 1}
         return say("verdict", "out", misses=misses, **values, not_given=given)
 
@@ -235,6 +234,7 @@ class _Words:
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = self.span(one) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
+        values |= {"not_given": _not_given(fails)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
         values |= {"scattered": self.scattered, "alone": one.conditions == 1}
         return say("verdict", "nearest", **values, sampled=found.sampled)
@@ -247,6 +247,7 @@ class _Words:
             name = design_words(self.candidates, self.results.table.iloc[found.longest])
         fails = found.fails or Misses(0, 0, {})
         values = {"target": self.target(), "why": _reasons(fails), "lives": lives, "name": name}
+        values |= {"not_given": _not_given(fails)}
         return say("verdict", "nowhere", cases=fails.of, **values)
 
     def by_error(self) -> Sentence:
@@ -461,6 +462,11 @@ def _what(turn: Turn) -> str:
     if turn.what in ("placeholder_position", "placeholder"):
         return f"the placeholders of {turn.of}"
     return f"the {plain(turn.what)} of {turn.of}" + f" on {'itself' if turn.on == turn.of else turn.on}" * bool(turn.on)
+
+
+def _not_given(misses: Misses) -> list[str]:
+    """Write the values of the paper's example among what keeps conditions from being met: 'axial force 30 N'."""
+    return [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
 
 
 def _levels(misses: Misses) -> str:
