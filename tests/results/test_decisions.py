@@ -122,13 +122,13 @@ def test_a_pair_without_a_change_neither_rises_nor_falls():
 
 @pytest.mark.parametrize(("sizes", "comparable"), [((FEWEST, 90), True), ((FEWEST - 1, 90), False)])
 def test_each_design_needs_a_sample_of_its_conditions(sizes, comparable):
-    candidates = SimpleNamespace(conditions=("axial_force",), matched=False, size=np.array(sizes))
+    candidates = SimpleNamespace(conditions=("axial_force",), matched=False, size=np.array(sizes), weighted=True)
     assert Candidates.comparable.fget(candidates) is comparable
 
 
 def test_the_margin_to_lift_off_is_the_light_contact_over_the_heavy_one():
     loads = {"normal_force_1": np.array([30.0, 80.0]), "normal_force_2": np.array([120.0, 20.0])}
-    assert lift_off_margin(SimpleNamespace(column=loads.get)).tolist() == [0.25, 0.25]
+    assert lift_off_margin(SimpleNamespace(column=loads.get, regime=np.zeros(2, dtype=int))).tolist() == [0.25, 0.25]
 
 
 @pytest.mark.parametrize(("value", "low", "high"), [(123.45, 123, 124), (-0.067891, -0.0679, -0.0678), (0.0, 0, 0)])

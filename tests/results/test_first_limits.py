@@ -26,6 +26,7 @@ STUDY = {
     "accuracy": "preview",
     "outputs": ["forces", "contact", "peak_stress", "life", "rating", "limits"],
 }
+TARGET = {"analysis": {"target": {"min": 50}}}
 FACTORS = list(STUDY["factors"])
 
 
@@ -77,13 +78,30 @@ def test_designs_are_ranked_by_the_first_limit_and_the_turn_is_a_rank_correlatio
     best = designs.table.iloc[0]
     own = tuple(best[n] for n in FACTORS[:2])
     assert worst["low"].idxmax() == own and best["worst"] == worst["first"].loc[own]
-    order, by_fatigue = (
-        turn(designs),
-        (-worst["fatigue"]).argsort().tolist(),
-    )  # groups stand in the order of the designs
-    assert order.after == tuple(designs.table.index) and list(order.before) == by_fatigue
+    order = turn(designs)
+    by_first, by_fatigue = ((-worst[n]).argsort().tolist() for n in ("first", "fatigue"))  # groups as the designs stand
+    assert list(order.after) == by_first and list(order.before) == by_fatigue
     places = [by_fatigue.index(design) for design in order.after]
     assert order.correlation == pytest.approx(spearmanr(range(len(places)), places)[0], abs=1e-12)
+
+
+def test_a_target_and_ranges_do_not_enter_the_turned_order(solved):
+    """Lives at the values of the placeholders rank the designs, and of two that change places none does so most."""
+    assert turn(solved.candidates()) == turn(tr.run(parse_study(STUDY | TARGET), progress=False).candidates())
+    base = {"radial_force": -30, "axial_force": 2, "guide_curve_radius": np.inf, "permissible_wear_depth": 0.2}
+    base |= {"motor_force": 0, "guide_overrollings_per_hour": 100, "contact_angle": 42, "guide_material": "C45"}
+    base |= {"guide_profile_radius": 10, "roller_profile_radius": -11.5, "axis_distance": 30}
+    materials = {"values": ["POM-H", "PA66-dry", "PU"]}
+    study = {"name": "range", "base": base, "factors": {"roller_material": materials}, "contact_model": "sliding"}
+    results = tr.run(study | {"accuracy": "preview"}, progress=False)
+    worst = [results.column(n) for n in ("pair_life_hours", "pair_life_to_first_limit_hours")]
+    before, after = (np.argsort(-lives).tolist() for lives in worst)
+    order = turn(results.candidates())
+    assert (list(order.before), list(order.after)) == (before, after)
+    told = [one.text for one in contents(results)["said"]["why"] if one.kind == "turned"]
+    moved = sum(a != b for a, b in zip(before, after, strict=True))
+    assert len(told) == (moved > 0) and all(f"{moved} of the best 3" in text for text in told)
+    assert not any("most of all" in text for text in told) or moved != 2
 
 
 def test_the_factors_that_decide_the_limit_carry_its_information(solved):

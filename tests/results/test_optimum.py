@@ -15,6 +15,7 @@ from trackroller.methods.optimise import (
     next_generation,
     nondominated_ranks,
 )
+from trackroller.report.numbers import quantity, rounded
 from trackroller.report.pages.best import best_of, write_best
 from trackroller.report.words.optimum import optimum_sentences
 from trackroller.results.judging import beyond_data, judge, optimum_of
@@ -265,7 +266,7 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
     said, table = best_of(solved)
     assert says in " ".join(said)
     invalid = said[0].startswith("No design is valid")
-    assert invalid != any(text.startswith(("Recommended", "Give a requirement")) for text in said)
+    assert invalid != any(text.startswith(("Recommended", "Give a requirement", "None. None of")) for text in said)
     assert (table is None) == ("valid in any" in said[0])
 
 
@@ -294,6 +295,49 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
 def test_a_wrong_search_is_refused(keys, says):
     with pytest.raises(InputError, match=says.replace("(", r"\(")):
         changed(**keys).design()
+
+
+def test_the_target_of_a_study_decides_what_a_search_recommends():
+    """Rows by design: with a target only designs whose worst condition reaches it are recommended, otherwise none."""
+    base = {"motor_force": 0, "axial_force": 5, "guide_overrollings_per_hour": 150, "guide_curve_radius": "inf"}
+    base |= dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+    keys = {"goals": {"pair_life_to_first_limit_hours": "max", "mean(friction_power)": "min"}, "base": base}
+    keys |= {"outputs": [*STUDY["outputs"], "limits"], "budget": {"designs": 16, "population": 8}}
+    worst, said, chosen = None, [], []
+    for least in (None, 2000, 1e12):
+        more = {} if least is None else {"analysis": {"target": {"min": least}}}
+        results = tr.run(changed(**keys, **more), progress=False)
+        many = results.design.meta["inner_samples"]
+        worst = results.column("pair_life_to_first_limit_hours").reshape(-1, many).min(axis=1)
+        chosen.append(worst[optimum_of(results)["recommended"]])
+        said.append(optimum_sentences(results)[0].text)
+    assert worst.min() < 2000 < worst.max() and chosen[0] < worst.max()
+    assert said[0].startswith("Give a requirement.")
+    assert said[1].startswith("Recommended: ") and "target 2000 h" in said[1] and chosen[1] >= 2000
+    assert said[2].startswith(f"None. None of the {len(worst)} designs meets the target of ")
+    power = results.data["friction_power"].sum("contact").values.reshape(-1, many).mean(axis=1)
+    best = pareto_mask(np.stack([worst, power], axis=1), ["max", "min"])
+    meet = int(re.search(r"Of (\d+) Pareto-optimal designs that meet the target", said[1])[1])
+    assert (best & (worst >= 2200)).sum() <= meet <= (best & (worst >= 2000)).sum()  # within the error of the solution
+    assert len(said[1].split()) < 100
+
+
+def test_the_range_of_a_life_stands_beside_a_recommended_design():
+    base = {"motor_force": 0, "axial_force": 1, "guide_overrollings_per_hour": 60, "guide_curve_radius": "inf"}
+    base |= {"permissible_wear_depth": 0.1, "radial_force": -30, "contact_angle": 42, "guide_material": "C45"}
+    base |= {"roller_material": "1.7225-quenched-tempered"}
+    factors = {"roller_profile_radius": {"values": [-6.4, -7, -8]}, "friction_coefficient": {"values": [0.1, 0.2]}}
+    keys = {"goals": {"pair_life_to_first_limit_hours": "max"}, "base": base, "factors": factors}
+    keys |= {"outputs": [*STUDY["outputs"], "wear", "limits"], "budget": {"designs": 3}}
+    results = tr.run(changed(**keys, analysis={"target": {"min": 1}}), progress=False)
+    name = "pair_life_to_first_limit_hours"
+    own = slice(2 * optimum_of(results)["recommended"], 2 * optimum_of(results)["recommended"] + 2)
+    low, high = (results.data[f"{name}{end}"].values.ravel()[own].min() for end in ("_low", "_high"))
+    said = optimum_sentences(results)[0].text
+    assert high > 2 * low and f"{rounded(low)} to {quantity(high, 'h')}" in said and "wear ends it" in said
+    least = float(np.sqrt(low * high))
+    open_ = tr.run(changed(**keys, analysis={"target": {"min": least}}), progress=False)
+    assert "surely meets the target" in optimum_sentences(open_)[0].text
 
 
 def test_no_thirds_of_a_search_are_compared():

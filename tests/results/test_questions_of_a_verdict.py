@@ -23,6 +23,7 @@ def test_a_force_that_brings_nothing_in_reach_is_not_asked_for():
     cases = [tr.Case(**base, contact_angle=45, axial_force=force, **lost) for force in (-10, 0, 10)]
     assert (tr.solve(cases, outputs=("forces",), contact_model="sliding").regime == 1).all()
     assert results.verdict.kind == "none"
+    assert "(axial force 30 N was not given)" in verdict_sentences(results)[1].text
     free = study | {"base": base | {"motor_force": 0}, "analysis": {"target": {"min": 1000}}}
     free["factors"] = factors | {"contact_angle": {"values": [25, 35]}}
     given = tr.run(free, progress=False).verdict

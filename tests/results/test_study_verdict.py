@@ -135,6 +135,22 @@ def test_a_target_builds_the_best_that_meets_it_and_judges_by_the_life_to_the_fi
         assert found.next.number == 2
 
 
+def test_a_target_within_the_error_of_the_solution_cannot_be_told():
+    """300 h ± 20 % may be 250 h or 360 h; a range that holds the target is measured, whatever the error is."""
+    lives = np.array([[[900, 400, 300], [120, 800, 900]], [[250, 260, 270], [10, 20, 30]], [[5, 6, 7], [8, 9, 9]]])
+    for least, error, kind in ((270, 0.2, "cannot_tell"), (240, 0.2, "build"), (270, 0.05, "build")):
+        results = made(lives, target={LIFE: {"min": least}}, error=error)
+        found = results.verdict
+        assert (found.kind, names(found)) == (kind, [0])
+    unsure = made(lives, target={LIFE: {"min": 270}}, error=0.2)
+    assert unsure.verdict.why == "accuracy" and unsure.verdict.within_error == 2
+    said = [one.text for one in verdict_sentences(unsure)]
+    assert "is 300 h; the error of the solution, 20 %, leaves the target of 270 h open." in said[1]
+    assert made(lives, target={LIFE: {"min": 350}}, error=0.2).verdict.why == "accuracy"  # it may last 360 h
+    assert made(lives, target={LIFE: {"min": 370}}, error=0.2).verdict.kind == "none"
+    assert made(lives, lives * 10, target={LIFE: {"min": 350}}, error=0.2).verdict.kind == "measure"
+
+
 def test_none_names_the_candidate_that_meets_the_target_in_most_conditions():
     """Met in two of three conditions before one in three, although the latter has the longer worst life."""
     lives = [[[10, 400, 300], [50, 60, 900]], [[40, 45, 50], [1, 2, 3]], [[5, 6, 7], [8, 9, 9]]]

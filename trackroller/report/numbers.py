@@ -184,7 +184,7 @@ def plus_minus(value: float, low: float, high: float) -> str:
     half = (high - low) / 2
     if not math.isfinite(value):
         return "–"
-    if not math.isfinite(half) or half <= 0:
+    if not math.isfinite(half) or half <= 1e-9 * abs(value):  # of rounding alone
         return rounded(value)
     digits = 1 - math.floor(math.log10(half))
     if digits <= 0 or digits > 4:

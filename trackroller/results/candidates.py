@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.methods.b10 import b10
-from trackroller.parameters import FIRST_TO_FAIL
+from trackroller.parameters import FIRST_TO_FAIL, REGIMES
 from trackroller.results.columns import codes
 from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
@@ -65,7 +65,7 @@ def lift_off_margin(results: Results) -> np.ndarray:
     loads = np.stack([results.column("normal_force_1"), results.column("normal_force_2")])
     with np.errstate(divide="ignore", invalid="ignore"):
         ratio: np.ndarray = np.min(loads, axis=0) / np.max(loads, axis=0)
-    return ratio
+    return np.where(results.regime == REGIMES.index("lift_off"), 0.0, ratio)
 
 
 def _input(results: Results, name: str) -> np.ndarray:
@@ -73,6 +73,13 @@ def _input(results: Results, name: str) -> np.ndarray:
         return results.column(name)
     value = results.base.get(name)
     return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
+
+
+def _mixed(results: Results) -> np.ndarray:
+    """Return the rows of a random design that are no draws of their own, such as the mixtures of Saltelli's; (n,)."""
+    out = np.ones(len(results.table), dtype=bool)
+    out[results.design.method.independent_rows(results.design)] = False
+    return out
 
 
 def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
@@ -101,7 +108,8 @@ class Candidates:
     results : the solved study
     choices, conditions : names of the factors by role
     goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller
-    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model
+    place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model, and for those
+        that are no draws of their own
     matched : whether each design has the same conditions, each once
     untried : rows of a table whose conditions were not tried with every design, shape (n,) bool; no design has them
     """
@@ -147,6 +155,9 @@ class Candidates:
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)
+        if conditions and (mixed := _mixed(results)).any():
+            place = np.where(mixed, -1, place)
+            place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
         shared = _shared(place, use) if results.config.method.observed else np.zeros(len(use), dtype=bool)
         untried = own & ~shared if shared.any() else shared
         place = np.where(untried, -1, place)
@@ -169,7 +180,13 @@ class Candidates:
     @property
     def comparable(self) -> bool:
         """Return whether the designs can be compared: they share their conditions, or each has a sample of them."""
-        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST)
+        return not self.conditions or self.matched or bool(self.size.min() >= FEWEST and self.weighted)
+
+    @property
+    def weighted(self) -> bool:
+        """Return whether the rows stand for the use: drawn by their probability, or the user's own."""
+        method = self.results.config.method
+        return method.weighted or method.observed
 
     @property
     def rising(self) -> bool:
@@ -206,10 +223,23 @@ class Candidates:
 
         Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
         goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
-        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins
-        of the rolling cases; with random conditions `b10`, the life that nine of ten cases reach if cases that are not
-        valid count as 0, with its 95 % interval; `rank`, equal for ties.
+        of valid cases in which each body fails `first_`; the worst life of each body; the smallest margins, at most 0
+        where a case slips or lifts off; with random conditions `b10`, the life that nine of ten cases reach if cases
+        that are not valid count as 0, with its 95 % interval; `rank`, equal for ties.
         """
+        found = self.results.verdict
+        if found is None or (found.goal, self.choices) != (self.goal, found.choices):
+            return self.by_life  # of other choices, or by another life
+        return _in_order(self._listed[0], found)
+
+    @cached_property
+    def by_life(self) -> pd.DataFrame:
+        """Return the rows of `table` in the order of the lives alone, without target and ranges."""
+        return _ranked(*self._listed)
+
+    @cached_property
+    def _listed(self) -> tuple[pd.DataFrame, pd.Series, pd.Series, pd.Series]:
+        """Return the rows of `table` in the order of their numbers, and what ranks them: see `_ranked`."""
         results = self.results
         table = self.members.copy()
         table["cases"] = self.size
@@ -223,8 +253,11 @@ class Candidates:
             case = self._least(results.column(name), self.usable)
             table[f"worst_{body}"] = np.where(case < 0, np.nan, results.column(name)[case])
             table[f"worst_{body}_beyond"] = (case >= 0) & results.beyond_data(name)[case]
-        for name, margin in (("slip_margin", slip_margin(results)), ("lift_off_margin", lift_off_margin(results))):
-            case = self._least(margin, results.rolling)
+        for name, margin, lost in (
+            ("slip_margin", slip_margin(results), "full_slip"),
+            ("lift_off_margin", lift_off_margin(results), "lift_off"),
+        ):
+            case = self._least(margin, results.rolling | (results.regime == REGIMES.index(lost)))
             table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
         key = sign * table["worst"]
@@ -233,10 +266,7 @@ class Candidates:
             table = table.assign(**self._quantile())
             sure = table["b10"] > 0
             key, held = table["b10"].where(sure, key), held.where(~sure, 2.0)
-        found = results.verdict
-        if found is None or (found.goal, self.choices) != (self.goal, found.choices):
-            return _ranked(table, held, key, sign * table["median"])  # of other choices, or by another life
-        return _in_order(table, found)
+        return table, held, key, sign * table["median"]
 
     def cases_of(self, design: int) -> np.ndarray:
         """Return the cases of a row of `table` by its index, shape (n,) bool."""
@@ -320,11 +350,11 @@ def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Ser
 
 
 def _in_order(table: pd.DataFrame, found: Any) -> pd.DataFrame:
-    """Sort designs as the verdict of the study does, and rank them; designs with equal lives tie.
+    """Sort designs as the verdict of the study does, those without a valid case last; designs with equal lives tie.
 
     `found` is a `Verdict`, whose file imports this one.
     """
-    listed = found.candidates
+    listed = sorted(found.candidates, key=lambda one: not table.at[one.number, "valid"])  # they have no number
     # of lives of 0 and without end, what the candidate reaches elsewhere decides
     beside = [one.holds if one.low in (0.0, np.inf) else 0.0 for one in listed]
     alike = [(one.status, one.low, one.met, more) for one, more in zip(listed, beside, strict=True)]

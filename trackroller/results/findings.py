@@ -180,11 +180,12 @@ def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[
     if turned is None or found is None or found.kind in ("measure", "give"):  # there the order is open
         return []
     steps = {i: turned.before.index(i) - turned.after.index(i) for i in turned.after}
-    most = max(steps, key=lambda i: abs(steps[i]))
+    largest = max(abs(step) for step in steps.values())
+    most = [i for i, step in steps.items() if abs(step) == largest]
     values: dict[str, Any] = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
-    values |= {"before": turned.before.index(most) + 1, "after": turned.after.index(most) + 1}
+    values |= {"before": turned.before.index(most[0]) + 1, "after": turned.after.index(most[0]) + 1}
     values |= {"correlation": turned.correlation}
-    design = candidates.table.iloc[turned.after.index(most)]
+    design = candidates.table.loc[most[0]] if len(most) == 1 else None  # of ties none is the first
     return [finding(results, "turned", "valid", rows, **values, design=design)] if values["changed"] else []
 
 

@@ -63,7 +63,8 @@ class Turn:
     Attributes
     ----------
     correlation : rank correlation (Spearman) of the worst cases of the designs [1]
-    before, after : designs (rows of `Candidates.table`), the best first, by the S-N curve and by the first limit
+    before, after : designs (rows of `Candidates.table`), the best first, by the S-N curve and by the first limit, both
+        with placeholders at their values and without a target
     """
 
     correlation: float
@@ -77,8 +78,8 @@ def turn(candidates: Candidates) -> Turn | None:
     published = next((life for life in results.fatigue_lives if life[0] in results.table), None)
     if candidates.goal != FIRST_LIMIT or published is None or not candidates.comparable:
         return None
-    by_fatigue = replace(candidates, goal=published).table
-    known = candidates.table.index[candidates.table["valid"] > 0]
+    by_fatigue, by_limits = replace(candidates, goal=published).by_life, candidates.by_life
+    known = by_limits.index[by_limits["valid"] > 0]
     after = [int(i) for i in known[:AMONG]]
     before = [int(i) for i in by_fatigue.index if i in after]
     if len(after) < 3:

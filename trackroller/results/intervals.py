@@ -16,12 +16,14 @@ from trackroller.results.candidates import FEWEST, Candidates
 from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE, first_at, first_limit
 from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.results import Results
+from trackroller.results.robustness import material_deviations
 from trackroller.study.outputs import flat
 
 # limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
 BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
+OnTarget = tuple[np.ndarray, np.ndarray]  # cases that surely meet the target, and cases that may meet it, shape (n,)
 NOT_JUDGED = ("life not known", "steep friction", "conformal", "outside the half-space", "not converged")
 
 
@@ -114,7 +116,30 @@ class Cases:
     @cached_property
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the goal of each case, as a life or as 1/stress, shape (n,) each."""
-        return self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
+        low, high = self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
+        return (low, high) if self.scatter is None else (low * self.scatter[0], high * self.scatter[1])
+
+    @cached_property
+    def scatter(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return the factors on both ends, shape (n,) each, by which the material's own scatter changes B10.
+
+        None unless the study asks for this scatter, and conditions are sampled. A factor is that of the design of a
+        case: B10 with the scatter over B10 without it. A life that fatigue does not end has no such scatter.
+        """
+        own = material_deviations(self.results) if self.sampled and self._tests is None else {}
+        if not own:
+            return None
+        lives = self._between((None, "_low"), (None, "_high"))
+        factors = np.ones((2, len(self.reason)))
+        for end, values, factor in zip(("_low", "_high"), lives, factors, strict=True):
+            names, guide = self.at_end(end)
+            deviation = np.where(guide, own.get("guide", 0.0), own.get("roller", 0.0)) * (names == "fatigue")
+            for i in range(len(self.candidates.size)):
+                rows = self.candidates.place == i
+                plain = b10(values[rows])[0]
+                if 0.0 < plain < np.inf:
+                    factor[rows] = b10(values[rows], deviation[rows])[0] / plain
+        return factors[0], factors[1]
 
     def _between(self, *shifted: tuple[Any, str]) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the goal of each case, with the lives by fatigue moved at each end."""
@@ -294,6 +319,29 @@ class Cases:
         high = self.ends[1]
         groups = (high[rows & (self.candidates.place == i)] for i in range(len(self.candidates.size)))
         return any(len(own) and b10(own)[0] > 0.0 for own in groups)
+
+    def on_target(self, exact: bool = True) -> tuple[float, np.ndarray, np.ndarray]:
+        """Return the required hours, the cases that surely meet the target, and the cases that may meet it.
+
+        A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one
+        limit is of no use if another limit comes first. Unless `exact`, the error of the solution widens the range of
+        each life.
+        """
+        results = self.results
+        error = 1.0 if exact else 1.0 + self.error
+        low, high = self.ends[0] / error, self.ends[1] * error
+        required, others = np.nan, np.ones(len(low), dtype=bool)
+        for name, ends in results.config.analysis.target.items():
+            if name in OF_PAIR and self.candidates.goal[2] == "h" and set(ends) == {"min"}:
+                required = float(np.fmax(required, ends["min"]))
+            else:
+                others &= results.meets(name)
+        least = 0.0 if np.isnan(required) else required
+        uncertain = np.any([np.zeros(len(low), dtype=bool), *self.open_limits.values()], axis=0)
+        judged = self.judged
+        sure = judged & (self.reason == "") & (low >= least) & others & ~uncertain
+        may = np.where(judged, (self.reason == "") & (high >= least) & others, True)
+        return required, sure, np.asarray(may)
 
     def conditions_in(self, rows: np.ndarray) -> np.ndarray:
         """Return the number of conditions of each candidate that have one of these cases, shape (candidates,)."""

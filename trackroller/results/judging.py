@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -13,12 +13,15 @@ from trackroller.methods.b10 import b10
 from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
+from trackroller.results.candidates import STRESS, Candidates
 from trackroller.results.constraints import Column
+from trackroller.results.intervals import Cases
 from trackroller.results.results import OUTSIDE, Results
 from trackroller.roller.output_names import is_life
 from trackroller.study.file.search import judged_by
+from trackroller.study.outputs import flat
 
-SAFE_B10 = "B10 of {}, other cases as life 0"  # other cases: those that do not roll, or have no known life
+SAFE_B10 = "B10 of {} over all conditions"  # a condition in which it does not roll, or has no known life, counts as 0
 OPTIMUM = "optimum"  # attribute of study.nc with what the search found (JSON)
 
 
@@ -34,24 +37,29 @@ class Judged:
     violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where B10 or a probability
         counts these conditions
     reasons : cases by what they break, of all designs together
+    short : how far a design is from the target of the study, see `shortfall`; shape (n,),
+        0 everywhere without a target
     """
 
     genes: np.ndarray
     values: np.ndarray
     costs: np.ndarray
     violation: np.ndarray
+    short: np.ndarray
     reasons: Mapping[str, int] = field(default_factory=dict)
 
     def take(self, rows: np.ndarray) -> Judged:
         """Return some of the designs."""
-        return Judged(self.genes[rows], self.values[rows], self.costs[rows], self.violation[rows], self.reasons)
+        return replace(self, **{name: getattr(self, name)[rows] for name in _BY_DESIGN})
 
     def __add__(self, other: Judged) -> Judged:
         """Return the designs of both."""
         counts = {k: self.reasons.get(k, 0) + other.reasons.get(k, 0) for k in {**self.reasons, **other.reasons}}
-        pairs = ((getattr(self, n), getattr(other, n)) for n in ("genes", "values", "costs", "violation"))
-        genes, values, costs, violation = map(np.concatenate, pairs)
-        return Judged(genes, values, costs, violation, counts)
+        both = {name: np.concatenate((getattr(self, name), getattr(other, name))) for name in _BY_DESIGN}
+        return replace(self, **both, reasons=counts)
+
+
+_BY_DESIGN = ("genes", "values", "costs", "violation", "short")
 
 
 def goals_of_search(results: Results) -> dict[str, str]:
@@ -89,7 +97,36 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
         genes = design.unit[:: shape[1], places]
     costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
     violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
-    return Judged(genes, table, costs, violation.astype(float), _reasons(results, known.ravel()))
+    short = shortfall(results, any(judged_by(goal)[0] == "b10" for goal in goals))
+    short = np.zeros(len(table)) if short is None else short
+    return Judged(genes, table, costs, violation.astype(float), short, _reasons(results, known.ravel()))
+
+
+def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray | None:
+    """Return how far each design of a search is from the target of the study, shape (designs,).
+
+    Parameters
+    ----------
+    results : the solved search
+    nine_of_ten : whether nine of ten conditions have to meet the target, as for a goal that is a B10, instead of all
+
+    Returns
+    -------
+    0 where the design meets the target; 1 where a range or an error leaves that open, 2 where it misses the target,
+    plus half the share of the conditions that may miss it. None without a target, or without lives and stresses.
+    """
+    goal = results.life or STRESS
+    if not results.config.analysis.target or goal[0] not in results.table:
+        return None
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    hits = Cases(Candidates.grouped(results, goal)).on_target(exact=False)[1:]
+    sure, may = (own.astype(float).reshape(shape) for own in hits)
+
+    def enough(hits: np.ndarray) -> np.ndarray:
+        return np.array([b10(own)[0] if nine_of_ten else own.min() for own in hits]) > 0
+
+    missing = 0.5 * (1.0 - sure.mean(axis=1))
+    return np.asarray(np.where(enough(sure), 0.0, np.where(enough(may), 1.0, 2.0) + missing))
 
 
 def _met(results: Results, output: str) -> np.ndarray:
@@ -126,10 +163,11 @@ def _reasons(results: Results, known: np.ndarray) -> dict[str, int]:
 def recommended(best: Judged) -> int:
     """Return the design of a front that is nearest to the best of all goals, each normalised over the front.
 
-    Lives count by their logarithm, because they span decades. Of equal designs, the first goal decides.
+    With a target of the study only the designs that are nearest to it count. Lives count by their logarithm, because
+    they span decades. Of equal designs, the first goal decides.
     """
     shares = _normalised(best.costs)
-    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9)))[0])
+    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.short))[0])
 
 
 def _normalised(costs: np.ndarray) -> np.ndarray:
@@ -181,6 +219,21 @@ def goal_column(results: Results, goal: str) -> Column:
         return values, units, words
     named = {"worst": f"{words} at the worst condition", "b10": SAFE_B10.format(f"the {words}")}
     return values, units, named.get(kind, f"mean {words}")
+
+
+def ends_of_goal(results: Results, goal: str) -> tuple[np.ndarray, np.ndarray] | None:
+    """Return both ends of the range of a life that is a goal, shape (designs,) each; None if it has no range."""
+    kind, output = judged_by(goal)
+    if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
+        return None
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    raw, valid = results.quantity(output)[0].astype(float), results.valid.reshape(shape)
+    ends = []
+    for end in ("_low", "_high"):
+        own = flat(results.data, f"{output}{end}", results.dims).astype(float)
+        lives = np.where(np.isnan(own), raw, own).reshape(shape)
+        ends.append(_over_conditions(lives, valid & ~np.isnan(lives), kind, goals_of_search(results)[goal]))
+    return ends[0], ends[1]
 
 
 def beyond_data(results: Results, goal: str) -> np.ndarray:

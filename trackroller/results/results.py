@@ -17,9 +17,9 @@ import xarray as xr
 from trackroller.damage.pair import first_failure
 from trackroller.errors import InputError
 from trackroller.methods import Design
-from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS
+from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS, ROLE_OF, expressions
 from trackroller.results import groups
-from trackroller.results.columns import base_values, case_columns, factor_names
+from trackroller.results.columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.lives import FIRST_LIMIT, LIVES, OF_PAIR, body_lives, past_data
 from trackroller.roller.duty import years
@@ -304,11 +304,14 @@ class Results:
     @cached_property
     def roles(self) -> dict[str, str]:
         """Return the role of each factor that varies: `choice` of the designer, or `condition` of the use."""
-        given, method = self.config.roles, self.config.method
-        roles = roles_of(self.factors, self.study.parsed, given, method.name)
-        # a label of its own in each row of a table names a condition, such as a measured load
-        own = [n for n in roles if n not in PARAMETERS and self.table[n].nunique() == len(self.table)]
-        return roles | {n: "condition" for n in own if method.observed and n not in given}
+        given, method, factors = self.config.roles, self.config.method, self.study.parsed
+        roles = roles_of(self.factors, factors, given, method.name)
+        if not method.observed:
+            return roles
+        used = {n for own in factors.values() if own.text for n in expressions.names(own.text, "factors")}
+        labels = [n for n in roles if n not in ROLE_OF and n not in used and n not in given]
+        known = {role: [n for n in roles if n not in labels and roles[n] == role] for role in ("choice", "condition")}
+        return roles | {n: "condition" for n in labels if _names_a_condition(self.table, n, known)}
 
     @cached_property
     def grid(self) -> bool:
@@ -438,7 +441,7 @@ class Results:
     @property
     def fatigue_lives(self) -> tuple[tuple[str, str, str], ...]:
         """Return columns, wordings and units of lives by the S-N curve; the pair needs the hours of the guide."""
-        return LIVES[0 if self.has("guide_life_hours") else 1 :]
+        return LIVES[0 if self.knows("guide_life_hours") else 1 :]
 
     @cached_property
     def regime(self) -> np.ndarray:
@@ -599,9 +602,25 @@ class Results:
         body = body_of(column.name) if self.by_body else ""
         return np.where(self.counted & self.flagged("static", body), 0.0, column.values)
 
+    def knows(self, column: str) -> bool:
+        """Say whether a column is there with at least one number, or a life without an end."""
+        return bool(column in self.table and self.table[column].notna().any())
+
     def has(self, *columns: str) -> bool:
         """Say whether these columns are there with at least one number in each."""
         return all(c in self.table and np.isfinite(self.table[c]).any() for c in columns)
+
+
+def _names_a_condition(table: pd.DataFrame, label: str, known: Mapping[str, list[str]]) -> bool:
+    """Return whether a column of a table that is no parameter names conditions, such as the block of a measured load.
+
+    It does if each row has a label of its own, or if rows of the same conditions share their label and rows of the same
+    design do not. `known` has the names of the other columns by their role.
+    """
+    if table[label].nunique() == len(table):
+        return True
+    decides = {role: table.groupby(codes(table, names))[label].nunique().max() == 1 for role, names in known.items()}
+    return bool(decides["condition"] and not decides["choice"])
 
 
 def _usual_goals(ds: xr.Dataset) -> dict[str, str]:

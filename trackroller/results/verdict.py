@@ -21,8 +21,8 @@ from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
-from trackroller.results.intervals import BESIDE, Cases
-from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
+from trackroller.results.intervals import BESIDE, Cases, OnTarget
+from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
@@ -32,6 +32,7 @@ from trackroller.study.outputs import flat
 
 OF_MATERIALS = ("material_pair", *MATERIAL_FIELDS)
 CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}  # input that brings a condition out of reach
+LOADS = ("radial_force", "axial_force", "motor_force")  # on which each life rests
 MANY = 0.5  # share of conditions out of reach by an input that was not given, from which on the input is asked for
 RESAMPLES = 400  # of the sampled conditions, for the error of a difference of B10
 TAIL = 0.025  # share of the resamples below the 95 % interval
@@ -52,7 +53,8 @@ class Candidate:
     error : relative error of `low` by the solution [1]
     interval : 95 % interval of `low` where it is the life that nine of ten sampled conditions reach, else NaN
     case, case_high : row of the worst condition, for the low and for the high end
-    ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; and the body
+    ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; '' where nothing
+        does; and the body
     ends_high : what ends it there at the high end of the ranges of the placeholders
     met, conditions : number of conditions that it meets, and of all conditions that count
     status : `met`, `open` or `missed` of the target; '' without a target
@@ -104,7 +106,8 @@ class Misses:
     reasons : why, each with the number of its cases, the most frequent first
     where : levels of one or more factors that hold together exactly in these conditions; empty if no levels do, and for
         sampled conditions, whose values coincide by chance
-    not_given : inputs among the causes that were not given, with the values that were used
+    not_given : inputs among the causes that were not given, or where no candidate is enough all such loads, with the
+        values that were used
     """
 
     count: int
@@ -170,8 +173,9 @@ class Verdict:
     target : targets of the study; empty without them
     candidates : all candidates, the best first
     named : number of the first candidates that the verdict names: one, or all that the study cannot tell apart
-    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`, or
-        `sample` where the interval of the sampled conditions holds the target
+    why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`,
+        `accuracy` where the error of the solution holds the target, or `sample` where the interval of the sampled
+        conditions does
     next : the next best candidate, None without one
     out_of_reach : conditions that no candidate meets, None without one
     fails : where the first candidate misses the target, or its conditions; None if it does not
@@ -184,6 +188,7 @@ class Verdict:
     unconstrained : candidate that would be named without the constraints of the study; None if that is the same one
     by_model : candidate that each other contact model of the study would name
     longest : row with the longest life, where no row meets the target and designs do not repeat; otherwise -1
+    within_error : row of the first candidate whose error leaves the target open, otherwise -1
     """
 
     kind: str
@@ -205,6 +210,7 @@ class Verdict:
     unconstrained: Candidate | None = None
     by_model: Mapping[str, Candidate] = field(default_factory=dict)
     longest: int = -1
+    within_error: int = -1
 
     @property
     def best(self) -> tuple[Candidate, ...]:
@@ -258,7 +264,7 @@ def verdict_of(results: Results) -> Verdict | None:
     if not candidates.comparable:
         reach: np.ndarray = np.zeros(len(results.table), dtype=bool)
         turns = _given(cases, reach)
-        required, _, may = _targeted(cases)
+        required, _, may = cases.on_target()
         if results.config.analysis.target and not may[cases.own].any():
             fails = _misses(cases, cases.own & ~may, cases.own, np.where(cases.reason == "", cases.first, cases.reason))
             facts = {"required": required, "fails": fails, "longest": _longest(candidates), **_shared(cases)}
@@ -438,28 +444,6 @@ def _logarithm(lives: np.ndarray | float) -> np.ndarray:
         return np.asarray(np.clip(np.log(lives), -100.0, 100.0))
 
 
-def _targeted(cases: Cases) -> tuple[float, np.ndarray, np.ndarray]:
-    """Return the required hours, the cases that surely meet the target, and the cases that may meet it.
-
-    A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one limit
-    is of no use if another limit comes first.
-    """
-    results = cases.results
-    low, high = cases.ends
-    required, others = np.nan, np.ones(len(low), dtype=bool)
-    for name, ends in results.config.analysis.target.items():
-        if name in OF_PAIR and cases.candidates.goal[2] == "h" and set(ends) == {"min"}:
-            required = float(np.fmax(required, ends["min"]))
-        else:
-            others &= results.meets(name)
-    least = 0.0 if np.isnan(required) else required
-    uncertain = np.any([np.zeros(len(low), dtype=bool), *cases.open_limits.values()], axis=0)
-    judged = cases.judged
-    sure = judged & (cases.reason == "") & (low >= least) & others & ~uncertain
-    may = np.where(judged, (cases.reason == "") & (high >= least) & others, True)
-    return required, sure, np.asarray(may)
-
-
 def _status(cases: Cases, rows: np.ndarray, sure: np.ndarray, may: np.ndarray, of_all: bool = True) -> str:
     """Return whether a candidate meets a target in its cases: `met`, `missed`, or `open`.
 
@@ -487,16 +471,20 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     kept = wanted & ~reach
     kept = kept if kept.any() else wanted
     scores = _scores(cases, kept)
-    required, sure, may = _targeted(cases)
+    required, sure, may = cases.on_target()
     counted, good = (wanted, sure) if target else (kept, cases.ends[0] > 0)
     size = cases.conditions_in(counted)
     met = size - cases.conditions_in(counted & ~good)
     rows = [np.flatnonzero(counted & (candidates.place == i)) for i in range(len(size))]
-    status = np.array([_status(cases, own, sure, may) if target else "" for own in rows])
+    within = cases.on_target(exact=False)[1:]
+    status = np.array([_status(cases, own, *within) if target else "" for own in rows])
     order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
-    if kind == "measure" and target and _status(cases, rows[first[0]], sure, may, of_all=False) != "open":
-        kind, why = "cannot_tell", "sample"  # no value is missing, but conditions are
+    if kind == "measure" and target:  # unless no value is missing, but a finer solution or conditions are
+        decided = [_status(cases, rows[first[0]], sure, may, of_all) != "open" for of_all in (True, False)]
+        if any(decided):
+            kind, why = "cannot_tell", "accuracy" if decided[0] else "sample"
+    unsure = _within_error(cases, rows[first[0]], (sure, may), within) if why == "accuracy" else -1
     order = np.array([*first, *(i for i in order if i not in first)])
     if kind == "none":  # of all conditions, those without any candidate included
         size, met = cases.conditions_in(wanted), cases.conditions_in(wanted) - cases.conditions_in(wanted & ~good)
@@ -513,13 +501,23 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
         why=why,
         next=left[0] if left and first else None,
         out_of_reach=_misses(cases, wanted & reach, wanted, cases.reason) if (wanted & reach).any() else None,
+        within_error=unsure,
         **_shared(cases),
     )
     if kind == "none":
         own = rows_of(candidates, listed[0], wanted)
         reason = np.where(cases.reason == "", cases.first, cases.reason)
-        return replace(found, fails=_misses(cases, own & ~good, own, reason))
+        fails = _misses(cases, own & ~good, own, reason)
+        loads = {n: float(cases.results.base[n]) for n in LOADS if _unnamed(cases.results, n)}
+        return replace(found, fails=replace(fails, not_given=loads))
     return replace(found, turns=_turns(cases, found)) if kind == "measure" else found
+
+
+def _within_error(cases: Cases, rows: np.ndarray, exact: OnTarget, within: OnTarget) -> int:
+    """Return the row among those whose error changes whether the target is met that lasts shortest within its error."""
+    changed = [rows[(a != b)[rows]] for a, b in zip(exact, within, strict=True)]
+    own = next(own for own in changed if len(own))
+    return int(own[np.argmin((cases.ends[0] / (1.0 + cases.error))[own])])
 
 
 def rows_of(candidates: Candidates, one: Candidate, kept: np.ndarray) -> np.ndarray:
@@ -611,8 +609,8 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         error=float(scores.error[i]),
         interval=(float(interval[0]), float(interval[1])),
         case=case,
-        ends=str(cases.reason[case] or cases.low_end[0][case]),
-        ends_high=str(cases.reason[highest] or cases.high_end[highest]),
+        ends=str(cases.reason[case] or ("" if np.isinf(cases.ends[0][case]) else cases.low_end[0][case])),
+        ends_high=str(cases.reason[highest] or ("" if np.isinf(cases.ends[1][highest]) else cases.high_end[highest])),
         body="guide" if cases.low_end[1][case] else "roller",
         met=int(facts["met"][i]),
         conditions=int(facts["conditions"][i]),
@@ -686,15 +684,27 @@ def not_checked(results: Results, lives: bool = True) -> tuple[str, ...]:
     ----------
     results : the solved study
     lives : whether the study compares lives
+
+    Notes
+    -----
+    The life by fatigue is known at a failure probability other than 0.5 only for materials that state their scatter:
+    `fatigue of the guide` names a body whose material does not.
     """
-    known = {"static", "fatigue"} if lives else {"static"}
+    first = results.life == FIRST_LIMIT
+    known = {"static", "fatigue"} if lives and not first else {"static"}
+    hours = results.knows("guide_life_hours")
+    some: list[str] = []
     if "limit" in results.data.dims:
         names = results.data["limit"].values.tolist()
         values = [results.data[n] for n in ("utilisation", "life_hours_by_limit") if n in results.data]
         known |= {name for i, name in enumerate(names) if any(v.isel(limit=i).notnull().any() for v in values)}
+        if first and "fatigue" in known:
+            fatigue = results.data["life_hours_by_limit"].sel(limit="fatigue")
+            bodies = [body for body in BODIES if body != "guide" or hours]
+            some = [f"fatigue of the {body}" for body in bodies if not fatigue.sel(body=body).notnull().any()]
     wanted = [name for name, limit in LIMITS.items() if limit.verdict is not None and name not in BESIDE]
     missing = [name for name in wanted if name not in known]
-    return tuple(missing + ["guide"] * (lives and not results.has("guide_life_hours")))
+    return tuple(missing + some + ["guide"] * (lives and not hours))
 
 
 def _misses(cases: Cases, bad: np.ndarray, among: np.ndarray, reason: np.ndarray) -> Misses:

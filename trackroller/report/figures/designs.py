@@ -101,7 +101,9 @@ def _caption(found: Verdict, shown: int) -> str:
         parts.append("Beside each candidate stands what ends it at its worst condition.")
     if left := sum(not one.judged for one in found.candidates):
         parts.append(f"Not judged, so not drawn: {count(left)}.")
-    return " ".join(parts) or "Conditions that no candidate meets are left out."
+    if found.out_of_reach is not None:
+        parts.append("Conditions that no candidate meets are left out.")
+    return " ".join(parts) or f"{capital(found.goal[1])} of all candidates."
 
 
 OTHER = "0.65"  # grey of the designs without a level of their own

@@ -75,7 +75,7 @@ def within_words(results: Results) -> str:
 
 def alone(candidates: Candidates) -> bool:
     """Return whether the roller stands for the pair in every case, because the guide's hours are unknown."""
-    return candidates.rising and not candidates.results.has("guide_life_hours")
+    return candidates.rising and not candidates.results.knows("guide_life_hours")
 
 
 def lasting_one(candidates: Candidates) -> str:
@@ -101,7 +101,9 @@ def unanswered(candidates: Candidates) -> Sentence:
     roles = candidates.results.roles
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
-    method = plain(candidates.results.config.design)
+    method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
+    values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
+    values["weighted"] = candidates.weighted or values["least"] < FEWEST
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
@@ -119,7 +121,8 @@ def best_table(results: Results) -> Table | None:
     rows += _judged(candidates, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
-            rows.append([words, *(percent(row[name]) if np.isfinite(row[name]) else "–" for row in best)])
+            margins = [("none" if row[name] <= 0 else percent(row[name])) for row in best]
+            rows.append([words, *(m if np.isfinite(row[name]) else "–" for m, row in zip(margins, best, strict=True))])
     several, met = bool(candidates.conditions), candidates.targets_met()
     if several:
         rows.append(["Valid in", *(part_of(row["valid"], row["cases"]) for row in best)])
@@ -127,9 +130,9 @@ def best_table(results: Results) -> Table | None:
         places = candidates.table.index[: len(best)]
         ranged = results.ranged and bool(results.judged_targets)
         cells = [part_of(met[i], candidates.size[i]) for i in places]
-        if ranged:  # what meets the target at the high end only is neither met nor missed
-            known = _of_verdict(candidates, best) or [None] * len(best)
-            cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
+        # what meets the target at the high end only, or within its error, is neither met nor missed
+        known = _of_verdict(candidates, best) or [None] * len(best)
+        cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
         rows.append([f"Meets the targets{' for certain' * ranged} in", *cells])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Candidate {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
@@ -141,6 +144,7 @@ def best_table(results: Results) -> Table | None:
         "shown": {row[0] for row in rows},
         "many": len(best),
     }
+    facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
@@ -187,8 +191,14 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if rising and candidates.drawn:
         known = _of_verdict(candidates, best)
         tested = any(one is not None and one.tested for one in known)
-        rows.append(row_of("b10", f"Nine of ten reach{', low end by the tests' * tested}"))
-        rows.append(["95 % interval", *(f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)])
+        ranged = not tested and any(one is not None and one.high > one.low * (1 + SAME) for one in known)
+        if ranged:
+            cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
+            rows.append(["Nine of ten reach", *cells])
+        else:
+            rows.append(row_of("b10", f"Nine of ten reach{', low end by the tests' * tested}"))
+        intervals = (f"{rounded(row['b10_low'])} to {rounded(row['b10_high'])}" for row in best)
+        rows.append([f"95 % interval{' of the low end' * ranged}", *intervals])
         if tested:
             cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
             rows.append(["Nine of ten reach, 90 % by the tests", *cells])
@@ -199,13 +209,13 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if spans:  # the ends of the range say more than a value within it
         rows.append([f"{capital(candidates.goal[1])}, worst condition", *spans])
         places.pop("worst")
-    if candidates.results.ranged and "median" in places:
-        places["median"] = "median, within the ranges"
+    if candidates.results.ranged:
+        places = {key: f"{place}, within the ranges" if place else place for key, place in places.items()}
     rows += [row_of(key, capital(candidates.goal[1]), place) for key, place in places.items()]
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
-        worst = [condition_words(candidates, int(row["worst_case"])) for row in best]
+        worst = ["–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"])) for row in best]
         if spans:
             worst = [
                 text if one is None else worst_words(candidates, one) for text, one in zip(worst, known, strict=True)

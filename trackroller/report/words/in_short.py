@@ -7,7 +7,7 @@ from trackroller.report.words.cases import silent_drive, valid_cases
 from trackroller.report.words.designs import within_words
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.limits import guesses, worn
-from trackroller.report.words.optimum import optimum_sentences
+from trackroller.report.words.optimum import optimum_sentences, searched, tolerances
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.samples import grown, samples
 from trackroller.report.words.sentence import Sentence, say
@@ -20,7 +20,7 @@ from trackroller.results.results import Results
 Line = tuple[str, list[Sentence]]
 
 
-SETTLED = ("lasts", "none")  # verdicts on a target that the interval of the sample bears out
+SETTLED = ("lasts", "none", "a_or_b")  # verdicts on a target that the interval of the sample bears out
 
 
 def in_short(results: Results, models: list[str]) -> list[Line]:
@@ -44,6 +44,7 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
                 _target(results),
                 None if results.analysis is None else b10_by_tests(results.analysis),
                 None if front is None else pareto_sentence(front, results),
+                tolerances(results),
             ],
         ),
         ("Why", [*told["why"], _within(results, told["why"]), _enough(results)]),
@@ -52,7 +53,7 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
             "How sure",
             [
                 *(friction_guess(results), guesses(results), worn(results)),
-                *(*known_errors(results), *accuracy(results), life_error(results)),
+                *(*known_errors(results), *accuracy(results), life_error(results), *searched(results)),
                 *(Sentence("models", text) for text in models),
             ],
         ),

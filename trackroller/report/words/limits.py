@@ -23,9 +23,11 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
         counts = {limit_title(name): cases for name, cases in values["counts"].items()}
         return say("limits", "first_limits", counts=counts, valid=values["of"])
     if finding.kind == "turned":
-        candidates = results.candidates()
-        assert candidates is not None  # the finding is about their order
-        return say("limits", "turned", **values, name=design_words(candidates, values["design"]))
+        candidates, design, name = results.candidates(), values["design"], ""
+        if design is not None:
+            assert candidates is not None  # the finding is about their order
+            name = design_words(candidates, design)
+        return say("limits", "turned", **values, name=name)
     return say("limits", "whichever_first", **values, **_unsure(results, values["factors"]))
 
 

@@ -6,15 +6,29 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters.of_carriage import parameter_of
-from trackroller.report.numbers import Life, capital, lasting, long_name, percent, quantity, setting, with_unit
+from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name, percent, quantity, setting, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import BEST, compared, ended_by
+from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import SHORT
-from trackroller.results.judging import beyond_data, choices_of, goal_column, optimum_of
+from trackroller.report.words.verdict import bearing_words, targets_in_words, unchecked_words
+from trackroller.results.candidates import Candidates
+from trackroller.results.intervals import Cases
+from trackroller.results.judging import (
+    beyond_data,
+    choices_of,
+    ends_of_goal,
+    goal_column,
+    judge,
+    optimum_of,
+    recommended,
+)
+from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import not_checked
+from trackroller.roller.limit_notes import guessed_lines
 from trackroller.roller.output_names import is_life
 from trackroller.study.file.search import judged_by
 
@@ -23,7 +37,7 @@ SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
 
 
 def optimum_sentences(results: Results) -> list[Sentence]:
-    """Say which design a search recommends, how it was found, how sure its goals are, and what a tolerance costs.
+    """Say which design a search recommends, whether it meets the target, and what was not checked.
 
     Returns
     -------
@@ -32,16 +46,44 @@ def optimum_sentences(results: Results) -> list[Sentence]:
     search = optimum_of(results)
     if search is None:
         return []
-    least = least_violation(search)
+    least, best = least_violation(search), _best(results, search)
     said = [_invalid(results, search, least) if least else None]
-    if least < 1:
-        best = next(one for one in search["optima"] if one["design"] == search["recommended"])
-        said += [_recommended(results, search, best), _unreached(results, search), _checked(search)]
-        said.append(_tolerance(results, search, best))
-    facts = ("designs", "generations", "model", "valid", "stopped")
+    if best is not None:
+        said += [_recommended(results, search, best), _unreached(results, search), _guessed(results, search, best)]
+        said.append(bearing_words(results, _limits(results, search, best)))
     said.append(_unchecked(results, search))
-    said.append(say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts}))
     return [sentence for sentence in said if sentence is not None]
+
+
+def tolerances(results: Results) -> Sentence | None:
+    """Say what a small change of each real choice of the recommended design costs; None for another study."""
+    search = optimum_of(results)
+    best = None if search is None else _best(results, search)
+    if search is None or best is None or best["design"] != search["recommended"]:
+        return None
+    return _tolerance(results, search, best)
+
+
+def searched(results: Results) -> list[Sentence]:
+    """Say how a search went, and how much its optima change at `reference`; nothing for another study."""
+    search = optimum_of(results)
+    if search is None:
+        return []
+    facts = ("designs", "generations", "model", "valid", "stopped")
+    how = say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts})
+    return [*([_checked(search)] if search["optima"] and least_violation(search) < 1 else []), how]
+
+
+def _best(results: Results, search: dict[str, Any]) -> dict[str, Any] | None:
+    """Return the recommended optimum: of those that are nearest to the target of the study as it is now."""
+    if least_violation(search) == 1:
+        return None
+    judged, designs = judge(results), [one["design"] for one in search["optima"]]
+    short = dict(zip(designs, judged.short[designs], strict=True))
+    own = search["recommended"]
+    if short[own] > min(short.values()):
+        own = designs[recommended(judged.take(np.array(designs)))]
+    return next(one for one in search["optima"] if one["design"] == own)
 
 
 def least_violation(search: dict[str, Any]) -> float:
@@ -55,12 +97,16 @@ def design_words(results: Results, number: int) -> str:
 
 
 def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
-    """Write the goals of an optimum with their units; a life beyond the S-N data says so."""
+    """Write the goals of an optimum with their units; a life has its range and says whether S-N data end before it."""
     texts = []
     for goal, value in zip(search["goals"], one["values"], strict=True):
         _, units, words = goal_column(results, goal)
-        beyond = bool(beyond_data(results, goal)[one["design"]])
-        texts.append(f"{words} {lasting(value, units, beyond) if units == 'h' else quantity(value, units)}")
+        design, ends = one["design"], ends_of_goal(results, goal)
+        beyond = bool(beyond_data(results, goal)[design])
+        text = lasting(value, units, beyond) if units == "h" else quantity(value, units)
+        if ends is not None and ends[1][design] > ends[0][design] * (1 + SAME):
+            text = ends_text(float(ends[0][design]), float(ends[1][design]), BEYOND * beyond, units)
+        texts.append(f"{words} {text}")
     return texts
 
 
@@ -77,7 +123,44 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     if several and not values["least"] and not results.config.analysis.target:  # the goals alone do not choose
         ends = [goal_texts(results, search, one) for one in _ends(search)]
         return say("optimum", "requirement", ends=ends, **values)
-    return say("optimum", "recommended", alike=alike, **values)
+    judged = judge(results)
+    front = nondominated_ranks(judged.costs, judged.violation) == 0
+    values |= {"alike": alike, "target": targets_in_words(results), "short": float(judged.short[best["design"]])}
+    values |= {"meeting": int((front & (judged.short == 0)).sum()), "designs": len(front)}
+    values |= {"conditions": results.design.meta["inner_samples"], "limits": _limits(results, search, best)}
+    return say("optimum", "recommended", **values)
+
+
+def _first_life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> tuple[Cases, int] | None:
+    """Return the cases of a search, and the case on which the first life among its goals rests; None without one."""
+    for goal, value in zip(search["goals"], best["values"], strict=True):
+        kind, output = judged_by(goal)
+        if output == FIRST_LIMIT[0] and kind in ("worst", "b10") and value > 0:
+            many = results.design.meta["inner_samples"]
+            own = slice(best["design"] * many, (best["design"] + 1) * many)
+            lives = np.where(results.valid, results.column(output), np.inf)[own]
+            case = own.start + int(np.argmin(np.abs(lives - value)))
+            return Cases(Candidates.grouped(results, FIRST_LIMIT)), case
+    return None
+
+
+def _limits(results: Results, search: dict[str, Any], best: dict[str, Any]) -> list[str]:
+    """Name what ends the life of a design: two limits if its range decides which."""
+    found = _first_life(results, search, best)
+    if found is None:
+        return []
+    cases, case = found
+    return list(dict.fromkeys(ended_by(str(name)) for name in (cases.low_end[0][case], cases.high_end[case]) if name))
+
+
+def _guessed(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
+    """Say that fatigue ends the recommended design by an S-N line that rests on guesses."""
+    found = _first_life(results, search, best)
+    if found is None or "fatigue" not in (found[0].low_end[0][found[1]], found[0].high_end[found[1]]):
+        return None
+    cases, case = found
+    material = str(results.material("guide" if cases.low_end[1][case] else "roller")[case])
+    return say("verdict", "guessed", material=material) if material in guessed_lines(results.data) else None
 
 
 def _ends(search: dict[str, Any]) -> list[dict[str, Any]]:
@@ -101,7 +184,7 @@ def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
     """Name the limits that the search did not check, where a goal is a life."""
     if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
         return None
-    names = [SHORT.get(name) or ended_by(name) for name in not_checked(results)]
+    names = unchecked_words(results, not_checked(results))
     return say("verdict", "not_checked", names=names) if names else None
 
 

@@ -40,7 +40,7 @@ def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Senten
         values["last"] = ends[1] if len(places) > 1 and (table[places[0]] != table[places[1]]).any() else []
         values["alike"] = len(np.unique(table[best], axis=0)) == 1
     values["outside"] = int((~results.valid[rows]).sum()) if results is not None and kind == "design" else 0
-    values["alone"] = "pair_life_hours" in goals and results is not None and not results.has("guide_life_hours")
+    values["alone"] = "pair_life_hours" in goals and results is not None and not results.knows("guide_life_hours")
     return say("pareto", "pareto", several=len(goals) > 1, **values)
 
 

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
 from trackroller.damage import LIMITS
+from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
     level_text,
     long_name,
+    percent,
     plain,
     quantity,
     rounded,
@@ -22,6 +25,7 @@ from trackroller.report.words.designs import (
     condition_words,
     design_words,
     ended_by,
+    ends_text,
     ends_words,
     lasting_one,
     span_words,
@@ -31,6 +35,8 @@ from trackroller.report.words.designs import (
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
+from trackroller.results.intervals import Cases
+from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 from trackroller.roller.limit_notes import guessed_lines
@@ -79,6 +85,7 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.untried(),
         words.open_limits(),
         words.guessed(),
+        words.bearings(),
         words.unchecked(),
     ]
     return _fitting([sentence for sentence in said if sentence is not None])
@@ -109,6 +116,11 @@ class _Words:
             return quantity(one.low, unit)
         return span_words(one, unit)
 
+    @property
+    def scattered(self) -> bool:
+        """Return whether the lives hold the material's own scatter, so that nine of ten rollers reach them."""
+        return self.found.sampled and Cases(self.candidates).scatter is not None
+
     def head(self) -> Sentence:
         """Say what to do."""
         found = self.found
@@ -121,6 +133,8 @@ class _Words:
             shared = {n: v for n, v in found.best[0].choices.items() if n not in free}
             name = ", ".join(setting(n, v) for n, v in shared.items())
             return say("verdict", "any", name=name, free=[long_name(n) for n in free], many=len(named))
+        values |= {"unlimited": bool(found.best) and math.isinf(found.best[0].low), "sampled": found.sampled}
+        values["scattered"] = self.scattered
         return say("verdict", found.kind, **values, what=what, lives=lives, who=who, rises=found.goal_rises)
 
     def without_effect(self) -> list[str]:
@@ -137,7 +151,7 @@ class _Words:
         if found.kind == "give":
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
-            return [self.by_sample() if found.why == "sample" else None]
+            return [self.by_sample() if found.why == "sample" else self.by_error() if found.within_error >= 0 else None]
         if found.kind == "none":
             return [self.nearest() if found.candidates else self.nowhere()]
         if found.kind == "measure":
@@ -167,6 +181,8 @@ class _Words:
             tie=found.why == "tie",
             error=one.error,
             repeats=found.kind == "lasts",
+            unlimited=math.isinf(one.low),
+            scattered=self.scattered,
         )
 
     def body(self, one: Candidate) -> str:
@@ -184,15 +200,7 @@ class _Words:
 
     def target(self) -> str:
         """Write the targets of the study."""
-        found, texts = self.found, []
-        if math.isfinite(found.required):
-            texts.append(quantity(found.required, "h"))
-        for name, ends in found.target.items():
-            unit, words = self.results.quantity(name)[1:]
-            if not (unit == "h" and set(ends) == {"min"} and math.isfinite(found.required)):
-                parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
-                texts.append(f"{words} {' and '.join(parts)}")
-        return ", ".join(texts)
+        return targets_in_words(self.results, self.found.goal[2])
 
     def following(self) -> Sentence | None:
         """Name the next best candidate by the same measure."""
@@ -210,9 +218,9 @@ class _Words:
         """Name the conditions that no candidate meets, and why."""
         if misses is None or not misses.count:
             return None
-        given = [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
-        given = given if self.found.kind != "give" else []
-        return say("verdict", "out", misses=misses, where=_levels(misses), why=_reasons(misses), not_given=given)
+        given = _not_given(misses) if self.found.kind != "give" else []
+        values = {"where": _levels(misses), "why": _reasons(misses), "alone": len(self.candidates.size) == 1}
+        return say("verdict", "out", misses=misses, **values, not_given=given)
 
     def nearest(self) -> Sentence:
         """Say that no candidate is enough, which one is nearest, and where it fails."""
@@ -226,8 +234,10 @@ class _Words:
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = self.span(one) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
+        values |= {"not_given": _not_given(fails)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
-        return say("verdict", "nearest", **values, sampled=found.sampled, alone=one.conditions == 1)
+        values |= {"scattered": self.scattered, "alone": one.conditions == 1}
+        return say("verdict", "nearest", **values, sampled=found.sampled)
 
     def nowhere(self) -> Sentence:
         """Say that no case of a study whose designs cannot be compared meets the target, and what the best reaches."""
@@ -237,14 +247,27 @@ class _Words:
             name = design_words(self.candidates, self.results.table.iloc[found.longest])
         fails = found.fails or Misses(0, 0, {})
         values = {"target": self.target(), "why": _reasons(fails), "lives": lives, "name": name}
+        values |= {"not_given": _not_given(fails)}
         return say("verdict", "nowhere", cases=fails.of, **values)
+
+    def by_error(self) -> Sentence:
+        """Say that the error of the solution holds the target, and where."""
+        found, one, own = self.found, self.found.best[0], Cases(self.candidates)
+        low, high = (float(end[found.within_error]) for end in own.ends)
+        values = {
+            "name": self.name(one) if len(found.candidates) > 1 else "",
+            "lives": ends_text(low, high, "", found.goal[2]),
+            "error": float(own.error[found.within_error]),
+            "where": condition_words(self.candidates, found.within_error) if self.candidates.conditions else "",
+        }
+        return say("verdict", "accuracy", **values, target=self.target(), accuracy=self.results.config.accuracy)
 
     def by_sample(self) -> Sentence:
         """Say that the interval of the sampled conditions holds the target."""
         found, one = self.found, self.found.best[0]
         values = {"candidate": one, "name": self.name(one) if len(found.candidates) > 1 else ""}
         values |= {"lives": self.span(one), "interval": [rounded(end) for end in one.interval], "unit": found.goal[2]}
-        return say("verdict", "sample", **values, target=self.target())
+        return say("verdict", "sample", **values, target=self.target(), scattered=self.scattered)
 
     def range_of(self) -> Sentence:
         """State the ranges of the candidates between which the measurement decides."""
@@ -362,7 +385,7 @@ class _Words:
         """Say whether the other contact models of a study name the same candidate."""
         found, others = self.found, self.found.by_model
         named = (found if found.rest is None else found.rest).best
-        if not others or len(self.candidates.size) < 2 or len(named) != 1:
+        if not others or len(self.candidates.size) < 2 or len(named) != 1 or found.kind == "cannot_tell":
             return None
         agree = [model for model, one in others.items() if one.choices == named[0].choices]
         apart = [(model, self.name(one)) for model, one in others.items() if model not in agree]
@@ -384,11 +407,48 @@ class _Words:
         material = str(self.results.material(found.best[0].body)[found.best[0].case])
         return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
 
+    def bearings(self) -> Sentence | None:
+        """Say that half of the bearings reach a life that the bearing ends, while makers state that of nine of ten."""
+        found = self.found if self.found.rest is None else self.found.rest
+        return bearing_words(self.results, [name for one in found.best[:MOST] for name in (one.ends, one.ends_high)])
+
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
-        names = [SHORT.get(name) or ended_by(name) for name in self.found.not_checked]
+        names = unchecked_words(self.results, self.found.not_checked)
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
         return say("verdict", "not_checked", names=names) if names else None
+
+
+def bearing_words(results: Results, limits: Iterable[str]) -> Sentence | None:
+    """Say what share of a bearing's life nine of ten bearings reach; None where no bearing ends a median life."""
+    own = results.config.base.get("bearing")
+    if "bearing" not in limits or results.config.failure_probability != 0.5 or not own:
+        return None
+    slope = np.array([WEIBULL[str(kind)] for kind in FIELD.columns(np.array([own], dtype=object))["kind"]])
+    share = 1.0 / float(life_at(np.ones(1), 0.5, slope)[0])
+    return say("verdict", "bearing", share=share)
+
+
+def unchecked_words(results: Results, names: Iterable[str]) -> list[str]:
+    """Name the limits that were not checked, with what fatigue lacks at a failure probability other than 0.5."""
+    words = [SHORT.get(name) or ended_by(name) for name in names]
+    chance = results.config.failure_probability
+    lacks = f" at {percent(chance)} failures (give `scatter_in_cycles`)"
+    left_out = "fatigue" in results.config.not_checked
+    return [word + lacks * (word.startswith("fatigue") and chance != 0.5 and not left_out) for word in words]
+
+
+def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
+    """Write the targets of a study: the largest life that they ask of the pair, then the others by their names."""
+    lives, texts = [], []
+    for name, ends in results.config.analysis.target.items():
+        unit, words = results.quantity(name)[1:]
+        if name in OF_PAIR and set(ends) == {"min"} and unit_of_goal == "h":
+            lives.append(ends["min"])
+        else:
+            parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
+            texts.append(f"{words} {' and '.join(parts)}")
+    return ", ".join([*([quantity(max(lives), "h")] if lives else []), *texts])
 
 
 def _what(turn: Turn) -> str:
@@ -402,6 +462,11 @@ def _what(turn: Turn) -> str:
     if turn.what in ("placeholder_position", "placeholder"):
         return f"the placeholders of {turn.of}"
     return f"the {plain(turn.what)} of {turn.of}" + f" on {'itself' if turn.on == turn.of else turn.on}" * bool(turn.on)
+
+
+def _not_given(misses: Misses) -> list[str]:
+    """Write the values of the paper's example among what keeps conditions from being met: 'axial force 30 N'."""
+    return [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
 
 
 def _levels(misses: Misses) -> str:
