@@ -24,6 +24,7 @@ from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import collect, render, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
+from trackroller.roller.find import find
 from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.regime_limits import Limits
 from trackroller.roller.settings import checked_case, with_beside
@@ -200,6 +201,28 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
             label = re.sub(r", eqs?\. \(\d+\)", "", one.long_name)  # the number of an equation of the paper
             columns[one.name] = {"label": label, "unit": unit_text(one.units), "values": column.tolist()}
     return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
+
+
+def found(values: Values, over: str, condition: str) -> dict[str, Any]:
+    """Find how far a parameter may go so that a condition holds; see `trackroller.find`.
+
+    Parameters
+    ----------
+    values : mapping
+        Fields of the case and options by name.
+    over : str
+        The parameter.
+    condition : str
+        A comparison of a result with a number, such as "pair_life_to_first_limit_hours >= 10500".
+
+    Returns
+    -------
+    dict
+        The answer in words, and the ends of the range; they are NaN if no value meets the condition.
+    """
+    case, options, _ = read(values)
+    range_ = find(case, over, condition, **{name: value for name, value in options.items() if name != "outputs"})
+    return {"text": range_.text, "ends": [range_.low, range_.high]}
 
 
 def texts(values: Values) -> dict[str, str]:

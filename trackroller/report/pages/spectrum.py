@@ -109,8 +109,8 @@ def limit_table(ds: xr.Dataset) -> Table | None:
         rows.append(row)
     note = (
         "The share that the worst block uses, and the hours of travel until the sum over the blocks is reached. A "
-        "limit without a life has no hours. A dash stands for a missing value. A range runs from the worse to the better end "
-        "of the placeholders of materials."
+        "limit without a life has no hours. A dash stands for a missing value. A range runs from the worse to the "
+        "better end of the placeholders of materials."
     )
     return Table("spectrum_limits", "Limits", heads, rows, note)
 

@@ -11,7 +11,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.damage import LIMITS, heat, judged
-from trackroller.damage.limit import OF_GUIDE, SN_SCATTER
+from trackroller.damage.limit import OF_GUIDE, SN_SCATTER, Limit
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import fits_of_case
 from trackroller.materials import Material
@@ -55,6 +55,8 @@ class Margin:
         Whether the limit has a life, known or not, and whether it is a second model of an end that another limit has.
     beyond, guessed : bool
         Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a material.
+    lifeless : bool
+        Whether the body has no fatigue life, because it breaks at once or the roller skids.
     """
 
     title: str
@@ -71,6 +73,7 @@ class Margin:
     beside: bool = False
     beyond: bool = False
     guessed: bool = False
+    lifeless: bool = False
 
     @property
     def short(self) -> str:
@@ -110,6 +113,8 @@ class Margin:
         """Return the hours to the limit with their range, or whether a limit without hours is kept."""
         if self.breaks:
             return "exceeded now"
+        if self.lifeless:
+            return "no fatigue life"
         if math.isnan(self.hours):
             return "not known" if self.timed else {"unknown": ""}.get(self.state, self.state)
         return between(self.low, self.high, self.beyond)
@@ -183,7 +188,7 @@ def _of_limits(
             values = np.asarray(_at(ds, variable, places, **here), dtype=float)
             value = float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
             bound = f"{rounded(value / used if used > 0 else math.nan)} {unit}".strip()
-            bound = bound + words if not math.isnan(used) else f"not given{words}" if math.isnan(hours) else "–"
+            bound = _given_bound(limit, inputs) if math.isnan(used) else bound + words
             texts = f"{rounded(value)} {unit}".strip(), bound
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
@@ -195,11 +200,20 @@ def _of_limits(
             # both bodies share the heat of a contact
             of = [one.material for one in rests_on if one.limit == name]
             guessed = bool(of) if limit is heat.LIMIT else materials[body].name in of
-            of_life = timed and not (name == "fatigue" and lifeless[body])
+            no_life = name == "fatigue" and bool(lifeless[body])
             numbers = used, hours, low, high
-            kind = of_life, limit.beside, beyond, guessed
+            kind = timed and not no_life, limit.beside, beyond, guessed, no_life
             out.append(Margin(limit.title, body, *texts, *numbers, state, breaks, *kind))
     return out
+
+
+def _given_bound(limit: Limit, inputs: Mapping[str, Any]) -> str:
+    """Return the given value that a limit with a life needs, such as the permissible wear depth; a dash without one."""
+    for parameter in limit.parameters:
+        value = inputs.get(parameter.name)
+        if parameter.name in limit.requires and value is not None and not math.isnan(float(value)):
+            return f"{number(value)} {row_unit(parameter.unit)}: {parameter.long_name}"
+    return "–"
 
 
 def _at(ds: xr.Dataset, name: str, places: Mapping[str, list[Any]], **labels: str) -> np.ndarray:

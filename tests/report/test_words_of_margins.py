@@ -1,0 +1,31 @@
+"""The words of margins in the table of limits: bounds that a case gives, lives that do not exist, ranges in years."""
+
+import trackroller as tr
+from trackroller.report.numbers import between, on_duty
+from trackroller.report.pages.sheet import collect
+
+FREE = {"motor_force": 0, "friction_coefficient": 0.1}
+
+
+def margins_of(**values):
+    ds = tr.solve(tr.Case(**FREE | values), contact_model="sliding", accuracy="preview")
+    return {(margin.short, margin.body): margin for margin in collect(ds).margins}
+
+
+def test_a_margin_of_wear_names_the_permissible_depth_that_was_given():
+    found = margins_of(permissible_wear_depth=0.1, guide_overrollings_per_hour=60)
+    for body in ("roller", "guide"):
+        assert found["wear", body].required == "0.1 mm: permissible wear depth of roller and guide"
+
+
+def test_a_body_that_breaks_at_once_has_no_fatigue_life():
+    found = margins_of(radial_force=-900, roller_profile_radius=8.5)
+    for body in ("roller", "guide"):
+        assert found["static failure", body].life == "exceeded now"
+        assert found["rolling-contact fatigue", body].life == "no fatigue life"
+
+
+def test_a_range_of_years_whose_ends_read_alike_is_one_number():
+    with on_duty({"hours_per_day": 16, "days_per_year": 250}):
+        assert between(15_100, 15_400) == "15,100 to 15,400 h (3.8 years)"
+        assert between(90, 6900) == "90 to 6900 h (0.022 to 1.7 years)"
