@@ -3,6 +3,7 @@
 import trackroller as tr
 from trackroller.report.numbers import between, on_duty
 from trackroller.report.pages.sheet import collect
+from trackroller.report.tables.limits import not_checked
 
 FREE = {"motor_force": 0, "friction_coefficient": 0.1}
 
@@ -29,3 +30,14 @@ def test_a_range_of_years_whose_ends_read_alike_is_one_number():
     with on_duty({"hours_per_day": 16, "days_per_year": 250}):
         assert between(15_100, 15_300) == "15,100 to 15,300 h (3.8 years)"
         assert between(90, 6900) == "90 to 6900 h (0.022 to 1.7 years)"
+
+
+def test_a_value_that_was_given_for_limits_that_are_not_checked_is_named():
+    def said(options=None, **values):
+        ds = tr.solve(tr.Case(**FREE | values), contact_model="sliding", accuracy="preview", **options or {})
+        return [text for text in not_checked(ds) if text.startswith("Given, but not used")]
+
+    assert said(required_travel=40) == ["Given, but not used: required_travel, because wear is not checked."]
+    left_out = said({"not_checked": ("wear",)}, permissible_wear_depth=0.1)
+    assert left_out == ["Given, but not used: permissible_wear_depth, because wear is not checked."]
+    assert said(permissible_wear_depth=0.1) == [] == said(guide_overrollings_per_hour=60)

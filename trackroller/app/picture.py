@@ -231,10 +231,12 @@ def texts(values: Values) -> dict[str, str]:
     given = given_inputs(case)
     fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())
     more = "".join(f", {name}={value!r}" for name, value in options.items())
+    # a sheet of `ds` takes both from its attributes
+    attributes = "".join(f"ds.attrs[{name!r}] = {json.dumps(value)!r}\n" for name, value in beside.items())
     return {
         "YAML": write_yaml(given | options | beside),
         "command": solve_command(given | options | beside),
-        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n",
+        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n{attributes}",
     }
 
 

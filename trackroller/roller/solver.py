@@ -128,8 +128,8 @@ def solve(
     xarray.Dataset
         Results with `units`, `long_name` and the symbol of the publication. The dimensions are `contact` (1, 2), `body`
         ("roller", "guide") and `case`, which a single case does not have. A quantity that the regime leaves undefined
-        is NaN. `regime`, `converged`, `residual`, `validity` and `contact_model_used` are always there. Inputs of cases are
-        coordinates: parameters that are given or have a default, and names of materials.
+        is NaN. `regime`, `converged`, `residual`, `validity` and `contact_model_used` are always there. Inputs
+        of cases are coordinates: parameters that are given or have a default, and names of materials.
 
     Raises
     ------

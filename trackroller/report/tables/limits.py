@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, heat, judged
+from trackroller.damage import LIMITS, fields_of, heat, judged
 from trackroller.damage.limit import OF_GUIDE, SN_SCATTER, Limit
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import fits_of_case
@@ -22,6 +22,7 @@ from trackroller.report.words.by_tests import worst
 from trackroller.results.limit_notes import GUESSES, guessed_values, notes_of, placeholders_of
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
+from trackroller.roller.record import CASE, inputs_of, is_default
 from trackroller.roller.regime_limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
@@ -383,7 +384,23 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     out = [f"Not checked: {'; '.join(parts)}."] if parts else []
     asked = str(ds.attrs.get("limits", "")).split()
     missing = [limit.name for limit in judged() if limit.name not in asked]
-    return out + ([f"Left out: {listing(missing)}."] if missing else [])
+    out += [f"Left out: {listing(missing)}."] if missing else []
+    return out + _given_in_vain(ds, [*unchecked(ds), *missing])
+
+
+def _given_in_vain(ds: xr.Dataset, idle: list[str]) -> list[str]:
+    """Name the values of a case that were given for limits which were not checked, and for nothing else."""
+    if CASE not in ds.attrs or "case" in ds.dims or not idle:
+        return []
+    unused: dict[str, list[str]] = {}
+    for name, value in inputs_of(ds).items():
+        users = [limit.name for limit in judged() if name in fields_of(limit)]
+        if users and name != "travel" and not is_default(name, value) and {*users} <= {*idle}:
+            unused.setdefault(listing(users), []).append(name)
+    return [
+        f"Given, but not used: {listing(names)}, because {limits} {'are' if ' ' in limits else 'is'} not checked."
+        for limits, names in unused.items()
+    ]
 
 
 def placeholders(ds: xr.Dataset) -> list[str]:

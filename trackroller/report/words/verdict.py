@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from trackroller.damage import LIMITS
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
     level_text,
     long_name,
@@ -31,9 +31,10 @@ from trackroller.report.words.designs import (
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import Candidates
-from trackroller.results.limit_notes import guessed_lines
+from trackroller.results.limit_notes import guessed_lines, placeholders_of
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
+from trackroller.roller.dataset import validity_bit
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
@@ -79,6 +80,7 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.untried(),
         words.open_limits(),
         words.guessed(),
+        words.worn(),
         words.unchecked(),
     ]
     return _fitting([sentence for sentence in said if sentence is not None])
@@ -383,6 +385,21 @@ class _Words:
             return None
         material = str(self.results.material(found.best[0].body)[found.best[0].case])
         return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
+
+    def worn(self) -> Sentence | None:
+        """Say of a first candidate that wear ends: its coefficient is a placeholder, and its groove is worn through."""
+        found = self.found if self.found.rest is None else self.found.rest
+        if not found.best or "wear" not in (found.best[0].ends, found.best[0].ends_high):
+            return None
+        one, results = found.best[0], self.results
+        case = one.case if one.ends == "wear" else one.case_high
+        own, on = (str(results.material(body)[case]) for body in (one.body, *({*BODIES} - {one.body})))
+        places = placeholders_of(results.data)
+        guessed = any((p.limit, p.material) == ("wear", own) and p.on in ("", on) for p in places)
+        flags = int(results.column(f"validity_{one.body}", missing=0)[case])
+        worn = bool(flags & validity_bit("worn"))
+        values = {"material": own, "on": on, "guessed": guessed and found.kind != "measure", "worn": worn}
+        return say("verdict", "worn", **values) if values["guessed"] or worn else None
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
