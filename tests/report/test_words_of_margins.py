@@ -41,3 +41,12 @@ def test_a_value_that_was_given_for_limits_that_are_not_checked_is_named():
     left_out = said({"not_checked": ("wear",)}, permissible_wear_depth=0.1)
     assert left_out == ["Given, but not used: permissible_wear_depth, because wear is not checked."]
     assert said(permissible_wear_depth=0.1) == [] == said(guide_overrollings_per_hour=60)
+
+
+def test_the_limit_that_the_verdict_names_leads_the_table():
+    """The standard rating is a second model of fatigue; it is reached earlier here, and ends nothing by itself."""
+    steel = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+    facts = collect(tr.solve(tr.Case(**FREE | steel, roller_profile_radius=-6.4), accuracy="preview"))
+    rating = next(m for m in facts.margins if m.beside and m.body == "roller")
+    assert facts.margins[0].short == "rolling-contact fatigue" and rating.low < facts.margins[0].hours
+    assert facts.verdict.startswith("Rolls. Rolling-contact fatigue ends the roller")

@@ -160,7 +160,17 @@ def margins(
             out[-1] = replace(margin, body=BOTH)
         else:
             out.append(margin)
-    return sorted(out, key=lambda m: (m.state != "exceeded", m.reached, 0.0 if math.isnan(m.used) else -m.used))
+    # the limit that the verdict names leads; a second model of an end, such as a standard rating, stands behind it
+    first = min((m.reached for m in out if m.ends), default=0.0)
+    return sorted(
+        out,
+        key=lambda m: (
+            m.state != "exceeded",
+            max(m.reached, first) if m.beside else m.reached,
+            m.beside,
+            0.0 if math.isnan(m.used) else -m.used,
+        ),
+    )
 
 
 def _of_limits(
