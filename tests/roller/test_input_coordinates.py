@@ -32,3 +32,9 @@ def test_many_cases_carry_theirs_along_case():
 def test_friction_of_the_pair_is_a_number():
     ds = tr.solve(tr.Case(friction_coefficient=None, motor_force=0), outputs=("forces",), **OPTIONS)
     assert ds.friction_coefficient.item() == pytest.approx(0.19)
+
+
+def test_a_profile_stands_in_the_place_of_the_radius():
+    options = OPTIONS | {"contact_model": "kalker", "normal": "halfspace"}
+    ds = tr.solve(tr.Case(roller_profile={"arc": -7}, motor_force=0), outputs=("forces",), **options)
+    assert "roller_profile_radius" not in ds.coords and "guide_profile_radius" in ds.coords

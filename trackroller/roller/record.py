@@ -69,11 +69,12 @@ def with_coordinates(ds: xr.Dataset, table: CaseTable) -> xr.Dataset:
         The cases of this result. A number that no case gives is left out.
     """
     dims = ("case",) if "case" in ds.dims else ()
+    drawn = bool((table.roller_profile != "").all())  # the profile stands in the place of the radius
     given = {name: np.asarray(getattr(table, name), dtype=float) for name in PARAMETERS}
     coords: dict[str, Any] = {
         name: (dims, values if dims else values[0], _labels(name))
         for name, values in given.items()
-        if not np.isnan(values).all()
+        if not np.isnan(values).all() and not (name == "roller_profile_radius" and drawn)
     }
     for name, body in zip(MATERIAL_FIELDS, (table.roller, table.guide), strict=True):
         names = np.array([str(one) for one in body.name])
