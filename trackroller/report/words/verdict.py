@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 
 import numpy as np
@@ -39,6 +40,7 @@ from trackroller.roller.dataset import validity_bit
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
 LEAST_NEEDED = (
+    "scatter",
     "models",
     "next",
     "not_judged",
@@ -81,6 +83,7 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.open_limits(),
         words.guessed(),
         words.worn(),
+        words.scatter(),
         words.unchecked(),
     ]
     return _fitting([sentence for sentence in said if sentence is not None])
@@ -385,6 +388,18 @@ class _Words:
             return None
         material = str(self.results.material(found.best[0].body)[found.best[0].case])
         return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
+
+    def scatter(self) -> Sentence | None:
+        """Say that a life of nine of ten conditions by fatigue leaves out the scatter of the material."""
+        found, results = self.found if self.found.rest is None else self.found.rest, self.results
+        if not (found.sampled and found.best and results.config.analysis.material_scatter is False):
+            return None
+        if "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
+            return None
+        material = str(results.material(found.best[0].body)[found.best[0].case])
+        values = json.loads(str(results.data.attrs.get("materials", "{}"))).get(material, {})
+        known = any(values.get(name) is not None for name in ("scatter_in_cycles", "scatter_in_stress"))
+        return say("verdict", "scatter", material=material, known=known)
 
     def worn(self) -> Sentence | None:
         """Say of a first candidate that wear ends: its coefficient is a placeholder, and its groove is worn through."""
