@@ -18,13 +18,19 @@ from trackroller.app.fields import all_fields, slider
 from trackroller.app.lane import STALE, Lane
 from trackroller.app.materials import material, save_material
 from trackroller.app.picture import curve, file_of_roller, picture, texts
+from trackroller.app.picture import found as range_of
+from trackroller.app.spectrum import spectrum
 from trackroller.app.studies import checked, file_of_study, headlines, listing, page_of
 from trackroller.errors import InputError, WorkError
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS, PARAMETERS
+from trackroller.report.numbers import on_duty
 from trackroller.report.pages.sheet import collect
+from trackroller.report.words.spectrum import sentences
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
+from trackroller.study.spectrum.file import Spectrum
+from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.study.store.seal import sealing
 
 
@@ -259,3 +265,25 @@ def test_a_wrong_material_leaves_the_file_as_it_is(tmp_path, monkeypatch, name, 
     with pytest.raises(InputError, match=field):
         save_material(name, "1.7225-normalised", changed, source)
     assert list(tmp_path.iterdir()) == []
+
+
+def test_the_page_sums_a_spectrum_by_share_and_finds_how_far_a_force_may_go():
+    """The page answers as `solve_spectrum` on its own file does, and as `tr.find` does."""
+    values = {
+        "motor_force": 0, "friction_coefficient": 0.1, "contact_model": "sliding", "guide_overrollings_per_hour": 60,
+        "permissible_wear_depth": 0.1, "duty": {"hours_per_day": 16, "days_per_year": 250},
+    }  # fmt: skip
+    loads = [("heavy", "25 %", "-200", "20"), ("light", "0,75", "-80", "0")]
+    blocks = [dict(zip(("name", "amount", "radial_force", "axial_force"), load, strict=True)) for load in loads]
+    found = spectrum(values, "share", blocks)
+    again = solve_spectrum(Spectrum.from_dict(yaml.safe_load(found["text"])))
+    with on_duty(values["duty"]):
+        assert found["said"] == [one.text for one in sentences(again)]
+    assert "years" in found["said"][0] and not any("shift" in text for text in found["said"])
+    assert any(row[0].startswith("wear") and "years" in row[2] for row in found["tables"][0]["rows"])
+    with pytest.raises(InputError, match="add up to 1"):
+        spectrum(values, "share", blocks[:1])
+    condition = "max_pressure <= 700"
+    case = {name: value for name, value in values.items() if name not in ("duty", "contact_model")}
+    far = tr.find(tr.Case(**case), "axial_force", condition, contact_model="sliding")
+    assert range_of(values, "axial_force", condition)["text"] == far.text

@@ -12,10 +12,12 @@ import pytest
 from command_line import trackroller
 
 import trackroller as tr
+from trackroller.app.picture import texts
 from trackroller.damage import LIMITS
-from trackroller.report.explorer.rows import collect
+from trackroller.report.explorer.rows import collect, solve_inputs
 from trackroller.report.numbers import hour_unit, lasting, on_duty, quantity, rounded
-from trackroller.roller.duty import checked_duty, years
+from trackroller.roller.duty import checked_duty, duty_of, years
+from trackroller.study.repeat import Repeat
 
 FATIGUE = LIMITS["fatigue"].title
 DUTY = {"hours_per_day": 8, "days_per_year": 220}
@@ -150,3 +152,19 @@ def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypat
 def test_a_duty_among_the_values_of_the_roller_is_sent_to_its_place():
     with pytest.raises(tr.InputError, match=r"base\.duty = .* Write duty: .* on a line of its own"):
         tr.load_study({"name": "d", "base": {"duty": DUTY}, "factors": {"axial_force": {"values": [0, 30]}}})
+
+
+def test_the_duty_travels_with_each_command_that_repeats_a_case():
+    """`trackroller repeat`, the explorer's command and the lines of Python of the page hold the duty."""
+    duty = {"hours_per_day": 16.0, "days_per_year": 250.0}
+    assert "--set 'duty={" in Repeat({"axial_force": 3.0}, {}, {}, duty).command()
+    assert "duty" not in Repeat({"axial_force": 3.0}, {}, {}).command()
+    study = {
+        "name": "d", "base": {"motor_force": 0}, "factors": {"axial_force": {"values": [0, 9]}}, "duty": duty,
+        "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces"],
+    }  # fmt: skip
+    assert json.loads(dict(solve_inputs(tr.run(study, progress=False), {})[0])["duty"]) == duty
+    told: dict = {}
+    lines = texts({"motor_force": 0, "contact_model": "sliding", "accuracy": "preview", "duty": duty})["Python"]
+    exec(lines, told)
+    assert duty_of(told["ds"]) == duty

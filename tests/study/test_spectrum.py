@@ -158,9 +158,35 @@ def test_a_failed_block_is_not_hidden_and_named():
     assert np.isnan(ds.roller_life_shifts)
     assert "'jam' (failed)" in summary(ds)[0]
     bound = solved(spectrum(blocks[0]), stress=stress[:1]).roller_life_shifts.item()
-    assert f"at most {rounded(bound)} shifts" in summary(ds)[0]
+    assert f"at most {rounded(bound * float(ds.duration.sum()))} h" in summary(ds)[0]
     blocks[1]["distance"] = 0
     assert np.isfinite(solved(spectrum(*blocks), regimes=[0, 3], stress=stress).roller_life_shifts)
+
+
+def test_a_block_by_distance_by_hours_and_by_share_of_the_time_are_the_same():
+    """100 m/min: 6000 m are an hour. Three loads by share have the lives in hours that they have by distance."""
+    base, loads = {"guide_overrollings_per_hour": 60.0}, ((-200, 100), (-100, 100), (-40, 50))
+    stress = [[[400, 420], [500, 480]], [[300, 310], [350, 360]], [[200, 210], [250, 260]]]
+    ways = {
+        "distance": [n * 60.0 * v for n, (_, v) in zip((2, 5, 3), loads, strict=True)],
+        "hours": [2, "5 h", 180.0 / 60.0],
+        "share": ["20 %", 0.5, 0.3],
+    }
+    found = {}
+    for key, amounts in ways.items():
+        blocks = [
+            {"name": str(n), key: amount, "radial_force": force, "velocity": speed}
+            for n, (amount, (force, speed)) in enumerate(zip(amounts, loads, strict=True))
+        ]
+        made = spectrum(*blocks, base=base)
+        assert made.by_share == (key == "share") and made.period == ("hour" if made.by_share else "shift")
+        found[key] = solved(made, regimes=[0, 0, 0], stress=stress)
+    for name in ("roller_life_hours", "guide_life_hours", "roller_life_km"):
+        lives = [float(ds[name]) for ds in found.values()]
+        assert lives == pytest.approx([lives[0]] * 3, rel=1e-12), name
+    assert float(found["share"].duration.sum()) == pytest.approx(1.0)
+    assert float(found["hours"].roller_life_shifts) == pytest.approx(float(found["share"].roller_life_hours) / 10)
+    assert not any("shift" in text for text in summary(found["share"]))
 
 
 def test_guide_life_is_unknown_without_its_overrollings_and_the_summary_says_what_to_give():
@@ -226,6 +252,10 @@ def test_blocks_from_a_table_are_those_of_the_list(tmp_path):
         ({"blocks": [{"distance": 1}], "base": 3}, ("base", "3")),
         ({"blocks": ["loaded"]}, ("blocks[1]", "loaded")),
         ({"blocks": [{"name": "x"}]}, ("block 'x'.distance", "per shift")),
+        ({"blocks": [{"distance": 1, "hours": 1}]}, ("block 'block 1'.hours", "one of distance, hours and share")),
+        ({"blocks": [{"share": 0.5}, {"name": "b", "share": 0.4}]}, ("share", "add up to 1")),
+        ({"blocks": [{"share": 1}, {"name": "b", "hours": 4}]}, ("block 'b'.share", "share in all blocks")),
+        ({"blocks": [{"share": 1, "guide_overrollings": 9}]}, ("guide_overrollings", "per_hour")),
         ({"blocks": [{"distance": -1}]}, ("block 1", "distance", "-1")),
         ({"blocks": [{"distance": "far"}]}, ("distance", "far")),
         ({"blocks": [{"distance": float("inf")}]}, ("distance", "inf")),
@@ -275,7 +305,7 @@ def test_command_prints_the_shifts_of_the_delivered_example(tmp_path):
 
     path = str(ROOT / "config" / "spectra" / "sorter.yaml")
     said = CliRunner().invoke(app, ["spectrum", path])
-    assert said.exit_code == 0 and "The roller lasts" in said.output and "empty return" in said.output
+    assert said.exit_code == 0 and "By fatigue the roller lasts" in said.output and "empty return" in said.output
     told = json.loads(CliRunner().invoke(app, ["spectrum", path, "--json"]).output)
     assert told["regime"]["meaning"] == ["rolling"] * 3
     assert f"{rounded(told['roller_life_shifts']['value'])} shifts" in said.output

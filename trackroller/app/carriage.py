@@ -134,12 +134,13 @@ def _loads(ds: xr.Dataset) -> dict[str, Any]:
         "radial": radial.tolist(),
         "axial": axial.tolist(),
         "worst": worst_place(ds)[1],
-        "table": _table(Table("", "Radial / axial force of the rollers by load case [N]", heads, rows, note)),
+        "table": table_on_page(Table("", "Radial / axial force of the rollers by load case [N]", heads, rows, note)),
         "said": [one.text for one in sentences(ds)],
     }
 
 
-def _table(table: Table) -> dict[str, Any]:
+def table_on_page(table: Table) -> dict[str, Any]:
+    """Return a table as values of JSON."""
     return {"title": table.title, "heads": table.heads, "rows": table.rows, "note": table.note}
 
 
@@ -152,7 +153,7 @@ def carriage_lives(text: str, file: str = "") -> dict[str, Any]:
 def _lives(ds: xr.Dataset) -> dict[str, Any]:
     return {
         "said": [*(one.text for one in sentences(ds)), *(f"Doubtful: {text}" for text in doubts_of(ds))],
-        "tables": [_table(table) for table in tables(ds)],
+        "tables": [table_on_page(table) for table in tables(ds)],
         "worst": str(ds.attrs.get("worst_roller", "")),
     }
 

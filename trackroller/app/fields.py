@@ -11,25 +11,19 @@ from trackroller.materials.tables import material_rows
 from trackroller.methods import METHODS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, OF_LIMITS, OPTIONS, PARAMETERS, Parameter
 from trackroller.parameters.example import LASTING
+from trackroller.parameters.sizes import SIZES
 from trackroller.report.numbers import capital, unit_text
 from trackroller.roller.doubts import USUAL
 
 SPAN = 4.0  # a slider goes from a quarter of the example's value to four times this value
 WIDEST = 100.0  # bounds that are farther apart say what the solver takes, not what rollers have
-SIZES = tuple(  # give the axis distance of the roller, see `trackroller.roller.aliases`
-    Parameter(name, symbol, "mm", math.nan, meaning, 0.0, open_lower=True, allow_missing=True, role="choice")
-    for name, symbol, meaning in (
-        ("outer_radius", "", "outer radius of the roller; with the groove depth it gives the axis distance"),
-        ("groove_depth", "", "depth of the groove below the outer radius; with the outer radius"),
-    )
-)
 GROUPS = {"condition": "Loads and use", "choice": "Roller and guide"}
 
 
 def all_fields() -> dict[str, Any]:
     """Return what the page offers, as values of JSON; a parameter or option that is declared appears by itself."""
     return {
-        "parameters": [_parameter(parameter) for parameter in (*PARAMETERS.values(), *SIZES)],
+        "parameters": [_parameter(parameter) for parameter in (*PARAMETERS.values(), *SIZES.values())],
         "materials": material_rows(load_database()),
         "bodies": list(MATERIAL_FIELDS),
         "first": {name: value if isinstance(value, str) else f"{value:g}" for name, value in LASTING.items()},
@@ -65,7 +59,7 @@ def _parameter(parameter: Parameter) -> dict[str, Any]:
 
 def _group(parameter: Parameter) -> str:
     """Return the head below which the field of a parameter stands."""
-    if parameter in SIZES:
+    if parameter.name in SIZES:
         return "Sizes of a drawing, duty"
     return "Limits" if parameter.name in OF_LIMITS else GROUPS[parameter.role]
 

@@ -24,6 +24,7 @@ from trackroller.report.numbers import lives_in_years, unit_text
 from trackroller.report.pages.sheet import collect, render, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
+from trackroller.roller.find import find
 from trackroller.roller.record import given_inputs, solve_command
 from trackroller.roller.regime_limits import Limits
 from trackroller.roller.settings import checked_case, with_beside
@@ -202,16 +203,40 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
 
 
+def found(values: Values, over: str, condition: str) -> dict[str, Any]:
+    """Find how far a parameter may go so that a condition holds; see `trackroller.find`.
+
+    Parameters
+    ----------
+    values : mapping
+        Fields of the case and options by name.
+    over : str
+        The parameter.
+    condition : str
+        A comparison of a result with a number, such as "pair_life_to_first_limit_hours >= 10500".
+
+    Returns
+    -------
+    dict
+        The answer in words, and the ends of the range; they are NaN if no value meets the condition.
+    """
+    case, options, _ = read(values)
+    range_ = find(case, over, condition, **{name: value for name, value in options.items() if name != "outputs"})
+    return {"text": range_.text, "ends": [range_.low, range_.high]}
+
+
 def texts(values: Values) -> dict[str, str]:
     """Return the case as a case file (YAML), as a command and as lines of Python."""
     case, options, beside = read(values)
     given = given_inputs(case)
     fields = ", ".join(f"{name}={_python(value)}" for name, value in given.items())
     more = "".join(f", {name}={value!r}" for name, value in options.items())
+    # a sheet of `ds` takes both from its attributes
+    attributes = "".join(f"ds.attrs[{name!r}] = {json.dumps(value)!r}\n" for name, value in beside.items())
     return {
         "YAML": write_yaml(given | options | beside),
         "command": solve_command(given | options | beside),
-        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n",
+        "Python": f"import trackroller as tr\n\nds = tr.solve(tr.Case({fields}){more})\n{attributes}",
     }
 
 

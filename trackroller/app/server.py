@@ -63,8 +63,8 @@ class Refused(tornado.web.HTTPError):
 
 
 # the thread of the solver answers
-SOLVING = dict.fromkeys(("picture", "curve", "texts", "sheet", "file_of_roller"), "picture")
-SOLVING |= {"carriage_lives": "carriage"}
+SOLVING = dict.fromkeys(("picture", "curve", "found", "texts", "sheet", "file_of_roller"), "picture")
+SOLVING |= {"carriage_lives": "carriage", "spectrum": "spectrum"}
 STUDIES = (
     *("checked", "listing", "text_of", "start", "resume", "pause", "delete", "headlines"),
     *("page_of", "file_of_study"),

@@ -193,7 +193,7 @@ def spectrum(
         Path | None, typer.Option("--from", help="log of loads over time or distance; -o receives it")
     ] = None,
 ) -> None:
-    """Print the damage of a load spectrum per shift, and the life of roller and guide in shifts, km and hours.
+    """Print the damage of a load spectrum by block, and the life of roller and guide in hours and km.
 
     With --from, write the load spectrum of a measured log instead.
     """

@@ -120,14 +120,14 @@ def check_used(
     """
     asked_for = asked(outputs, not_checked)
     for name in (name for name in given if name != "travel"):
-        users = [limit for limit in judged() if name in _fields(limit)]
+        users = [limit for limit in judged() if name in fields_of(limit)]
         if users and not any(limit in asked_for or limit.name in not_checked for limit in users):
             wrong = f"is used by no output: it belongs to {', '.join(limit.name for limit in users)}"
             remedy = f"Add limits to outputs, or remove {name}."
             raise InputError(f"{where}{name}", given[name], "", remedy, wrong)
 
 
-def _fields(limit: Limit) -> set[str]:
+def fields_of(limit: Limit) -> set[str]:
     """Return the fields of a case that a limit has or requires."""
     by_option = [name for own in limit.requires_by.values() for names in own.values() for name in names]
     of_materials = {one.name for other in LIMITS.values() for one in other.materials}

@@ -118,7 +118,7 @@ LIMIT = Limit(
             ("contact",),
             "1",
             "max|tau|/p - k/p_max",
-            "the same, of the largest |tau|/p",
+            "surface fatigue index, of the largest |tau|/p",
             LARGEST,
         ),
     ),

@@ -96,6 +96,8 @@ class Parameter:
         if math.isfinite(value) and self.accepts(-value):
             return f"Write {-value:g}." + (f" The sign means: {self.meaning}." if "0 " in self.meaning else "")
         if isinstance(written, str):
+            if self.allow_infinite and nearest(written, ("straight",)):
+                return "Write inf for a straight one."
             if close := nearest(written, self.words):
                 return f"Did you mean '{close}'?"
             if plain := plain_quantity(written):

@@ -65,7 +65,7 @@ def not_given_text(values: Mapping[str, Any]) -> str:
 
 
 def drive_question(values: Mapping[str, Any], named: Iterable[str]) -> str:
-    """Return a question about the drive for a file that names forces but no drive, otherwise ''.
+    """Return a question about the drive for a file that names other parameters but no drive, otherwise ''.
 
     Parameters
     ----------
@@ -74,7 +74,7 @@ def drive_question(values: Mapping[str, Any], named: Iterable[str]) -> str:
     named : iterable of str
         Parameters that the file names.
     """
-    if "motor_force" not in values or not {"radial_force", "axial_force"} & set(named):
+    if "motor_force" not in values or not set(named):
         return ""
     return (
         f"Is the roller driven? motor_force is not given, so {values['motor_force']:g} N is used, as in the paper's "

@@ -11,6 +11,7 @@ import re
 
 from trackroller.numerics.parameter import Parameter
 from trackroller.parameters.numbers import PARAMETERS
+from trackroller.parameters.sizes import SIZES
 
 PREFIX = "carriage_"
 AXES = ("x", "y", "z")
@@ -97,8 +98,8 @@ def field_of(name: str) -> Parameter | None:
 
 
 def parameter_of(name: str) -> Parameter | None:
-    """Return the declaration of a parameter of the roller or of a field of a carriage, None for any other name."""
-    return PARAMETERS.get(name) or field_of(name)
+    """Return the declaration of a parameter or size of the roller or of a field of a carriage; None for other names."""
+    return PARAMETERS.get(name) or SIZES.get(name) or field_of(name)
 
 
 def long_name_of(name: str) -> str:

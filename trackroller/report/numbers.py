@@ -77,6 +77,11 @@ def life(value: float) -> str:
     return "unknown" if math.isnan(value) else "unlimited" if value == math.inf else rounded(value)
 
 
+def life_range(low: float, high: float) -> str:
+    """Write a life between two ends without its unit: '26 to 860', or one number where the ends round alike."""
+    return " to ".join(dict.fromkeys((life(low), life(high))))
+
+
 _duty: ContextVar[Mapping[str, float] | None] = ContextVar("duty", default=None)
 
 
@@ -126,7 +131,8 @@ def between(low: float, high: float, beyond: bool = False) -> str:
     if math.isinf(high):
         return f"{lasting(low, 'h')} or more ({BEYOND})"
     duty = _duty.get()
-    in_years = f" ({rounded(years(low, duty), 2)} to {rounded(years(high, duty), 2)} years)" if duty else ""
+    ends = (rounded(years(end, duty), 2) for end in (low, high)) if duty else ()
+    in_years = f" ({' to '.join(dict.fromkeys(ends))} years)" if duty else ""
     return f"{rounded(low)} to {rounded(high)} h{in_years}" + (f" ({BEYOND})" if beyond else "")
 
 

@@ -122,7 +122,7 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     limits = []
     for m in collect(ds).margins:
         lives = [m.hours, m.low, m.high, *([float(years(m.hours, duty))] if duty else [])]
-        limits.append([m.title, m.body, m.now, m.required, m.used, m.state, *lives])
+        limits.append([m.title, m.body, m.now, m.required, m.used, m.life if m.lifeless else m.state, *lives])
     sheets.append(Table("limits", "Limits", heads, limits))
     return put(path, lambda beside: _save(beside, sheets))
 

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from trackroller.materials import MaterialDatabase
+    from trackroller.roller.table import CaseTable
 
 CASE, MATERIALS = "case", "materials"  # names of attributes, JSON both
 NOT_GIVEN = "not_given"  # attribute: JSON list of the parameters that were not given
@@ -55,6 +56,36 @@ def with_inputs(ds: xr.Dataset, case: Case, database: MaterialDatabase) -> xr.Da
     ds.attrs |= {NOT_GIVEN: json.dumps(case.not_given), DOUBTS: json.dumps(doubts_of_case(case, database))}
     ds.attrs |= {RADII: json.dumps(case.radii)} if case.radii else {}
     return ds
+
+
+def with_coordinates(ds: xr.Dataset, table: CaseTable) -> xr.Dataset:
+    """Return the result of cases with their inputs as coordinates: numbers with units, and names of materials.
+
+    Parameters
+    ----------
+    ds : xarray.Dataset
+        The result; the coordinates of a single case have no dimension.
+    table : CaseTable
+        The cases of this result. A number that no case gives is left out.
+    """
+    dims = ("case",) if "case" in ds.dims else ()
+    drawn = bool((table.roller_profile != "").all())  # the profile stands in the place of the radius
+    given = {name: np.asarray(getattr(table, name), dtype=float) for name in PARAMETERS}
+    coords: dict[str, Any] = {
+        name: (dims, values if dims else values[0], _labels(name))
+        for name, values in given.items()
+        if not np.isnan(values).all() and not (name == "roller_profile_radius" and drawn)
+    }
+    for name, body in zip(MATERIAL_FIELDS, (table.roller, table.guide), strict=True):
+        names = np.array([str(one) for one in body.name])
+        coords[name] = (dims, names if dims else names[0], {"long_name": name.replace("_", " ")})
+    return ds.assign_coords(coords)
+
+
+def _labels(name: str) -> dict[str, str]:
+    """Return unit, words and symbol of a parameter as attributes of a variable."""
+    parameter = PARAMETERS[name]
+    return {"units": parameter.units, "long_name": parameter.long_name, "symbol": parameter.symbol}
 
 
 def with_design(ds: xr.Dataset, design: xr.Dataset, database: MaterialDatabase | None) -> xr.Dataset:

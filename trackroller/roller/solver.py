@@ -24,7 +24,7 @@ from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options, model_in_use, options_of_cases
-from trackroller.roller.record import with_design, with_inputs
+from trackroller.roller.record import with_coordinates, with_design, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import outcome as stages_outcome
@@ -128,7 +128,8 @@ def solve(
     xarray.Dataset
         Results with `units`, `long_name` and the symbol of the publication. The dimensions are `contact` (1, 2), `body`
         ("roller", "guide") and `case`, which a single case does not have. A quantity that the regime leaves undefined
-        is NaN. `regime`, `converged`, `residual`, `validity` and `contact_model_used` are always there.
+        is NaN. `regime`, `converged`, `residual`, `validity` and `contact_model_used` are always there. Inputs
+        of cases are coordinates: parameters that are given or have a default, and names of materials.
 
     Raises
     ------
@@ -157,7 +158,8 @@ def solve(
         return _solve_design(cases, given, database)
     single = is_single(cases)
     database = load_database() if database is None else database
-    ds = _solve_table(to_table(cases, database), Options(**given), single)
+    table = to_table(cases, database)
+    ds = with_coordinates(_solve_table(table, Options(**given), single), table)
     if not single:
         return ds
     return with_inputs(ds, cases if isinstance(cases, Case) else Case.from_dict(cases), database)

@@ -56,7 +56,10 @@ def _client(scheduler: str) -> Any:
             "--scheduler", scheduler, "", remedy, "needs the package distributed, which is missing"
         ) from None
     if scheduler != "local" and not scheduler.startswith(("tcp://", "tls://")):
-        raise InputError("--scheduler", scheduler, "local, or the address of a dask scheduler: tcp://host:port")
+        slurm = "Slurm takes a study by the workflow: snakemake -s CLONE/Snakefile --profile CLONE/profiles/slurm."
+        remedy = slurm if scheduler.lower() == "slurm" else "Write --scheduler local to use this machine."
+        allowed = "local, or the address of a dask scheduler: tcp://host:port"
+        raise InputError("--scheduler", scheduler, allowed, remedy)
     dask.config.set({"distributed.scheduler.allowed-failures": 2})
     if scheduler == "local":
         os.environ[SAFE_PATH] = "1"  # the workers inherit it

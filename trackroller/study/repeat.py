@@ -33,15 +33,18 @@ class Repeat:
         Keyword arguments of `solve`.
     differences : dict of str to Difference
         Difference to the stored result, by variable.
+    duty : dict, optional
+        Hours a day and days a year of the study.
     """
 
     case: dict[str, Any]
     options: dict[str, Any]
     differences: dict[str, Difference]
+    duty: dict[str, float] | None = None
 
     def command(self) -> str:
         """Return a command that solves the case without the study."""
-        return solve_command(self.case | self.options)
+        return solve_command(self.case | self.options | ({"duty": self.duty} if self.duty else {}))
 
 
 def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
@@ -88,4 +91,4 @@ def repeat_case(study: Study, number: int, folder: StudyFolder) -> Repeat:
     differences = compare(before.assign_coords(loads), again.assign_coords(loads))
     case = {name: row[name].values[0] for name in case_columns(row)}
     case = {name: float(value) if name in PARAMETERS else str(value) for name, value in case.items()}
-    return Repeat(case, dict(options[group[number]]), differences)
+    return Repeat(case, dict(options[group[number]]), differences, study.config.duty and dict(study.config.duty))

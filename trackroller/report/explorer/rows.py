@@ -239,6 +239,8 @@ def solve_inputs(results: Results, known: dict[str, Column]) -> tuple[list[list[
             settings.append([key, [name]])
         elif (text := setting_text(_fixed(ds, results, name))) is not None and key != "shortcuts":
             settings.append([key, text])
+    if results.config.duty:
+        settings.append(["duty", setting_text(dict(results.config.duty)) or ""])
     return settings, more
 
 

@@ -12,7 +12,7 @@ import xarray as xr
 from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import capital, count, listing, long_name, plain, quantity
+from trackroller.report.numbers import capital, count, head_unit, listing, long_name, plain, quantity
 from trackroller.report.words.designs import design_words, ends_words
 from trackroller.report.words.levels import coloured, short_levels
 from trackroller.report.words.pareto import goal_heading
@@ -64,7 +64,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     for at, one in zip(place, listed, strict=True):
         text = f"{ends_words(one)}, {one.body}" if rising and one.ends else ""
         axes.text(1.01, at, text, transform=axes.get_yaxis_transform(), va="center", fontsize=7)
-    axes.set(ylim=(-0.6, len(listed) - 0.4), xlabel=f"{ranked.goal[1]} [{unit}]")
+    axes.set(ylim=(-0.6, len(listed) - 0.4), xlabel=f"{ranked.goal[1]} [{head_unit(unit)}]")
     figure.legend(loc="outside lower center", ncols=4, columnspacing=1.0, handletextpad=0.4)
     return figure, style.FigureInfo("designs", _caption(ranked, len(listed)))
 

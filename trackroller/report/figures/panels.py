@@ -51,9 +51,16 @@ def mark_unlimited(axes: Axes, height: float | None) -> None:
 
 
 def legend(figure: Figure, entries: Entries | Mapping[str, Artist], columns: int = 3) -> None:
-    """Draw the legend under the axes, where it covers no data; `entries` are texts with looks, or artists by label."""
+    """Draw the legend under the axes, where it covers no data; `entries` are texts with looks, or artists by label.
+
+    It has fewer columns where its texts are too long for the width of the figure.
+    """
     own = entries if isinstance(entries, Mapping) else {text: Line2D([], [], **look) for text, look in entries}
-    figure.legend(own.values(), own, loc="outside lower left", ncols=columns, alignment="left")
+    for count in range(columns, 0, -1):
+        made = figure.legend(own.values(), own, loc="outside lower left", ncols=count, alignment="left")
+        if count == 1 or made.get_window_extent().width <= figure.bbox.width:
+            return
+        made.remove()
 
 
 def quantiles(

@@ -16,6 +16,7 @@ from trackroller.parameters import BODIES, PARAMETERS, REGIME_LABELS
 from trackroller.parameters.example import drive_question, not_given_text
 from trackroller.report import html
 from trackroller.report.numbers import (
+    between,
     capital,
     chance,
     life,
@@ -39,18 +40,22 @@ from trackroller.study.spectrum.file import LOAD_FIELDS
 
 
 def life_rows(ds: xr.Dataset, body: str) -> list[Row]:
-    """Return the life of a body in shifts, km and hours, and at each failure probability if its material scatters."""
-    lives = [(name, float(ds[f"{body}_life_{name}"]), unit) for name, unit in UNITS]
+    """Return the life of a body in hours, km and shifts, and at each failure probability if its material scatters.
+
+    Blocks by share of the time have no shifts.
+    """
+    units = UNITS if ds.attrs.get("period") != "hour" else UNITS[:-1]
+    lives = [(name, float(ds[f"{body}_life_{name}"]), unit) for name, unit in units]
     rows = [
         Row(f"life in {name}", life(value), "" if math.isnan(value) else life_unit(unit, value))
         for name, value, unit in lives
     ]
     if "life_shifts_at_probability" in ds:
         at = ds["life_shifts_at_probability"].sel(body=body)
-        per_shift = [1.0, float(ds["distance"].sum()) / 1e3, float(ds["duration"].sum())]
+        per_shift = [float(ds["duration"].sum()), float(ds["distance"].sum()) / 1e3, 1.0][: len(units)]
         for p in ds["probability"].values if not bool(at.isnull().all()) else ():
             shifts = float(at.sel(probability=p).min(skipna=False))
-            scaled = [(shifts * scale, unit) for scale, (_, unit) in zip(per_shift, UNITS, strict=True)]
+            scaled = [(shifts * scale, unit) for scale, (_, unit) in zip(per_shift, units, strict=True)]
             lengths = ", ".join(f"{life(value)} {life_unit(unit, value)}" for value, unit in scaled)
             rows.append(Row(f"until {100 * float(p):g} % have failed", lengths))
     return rows
@@ -60,7 +65,8 @@ def block_table(ds: xr.Dataset) -> Table:
     """List the blocks of a shift: distance, the loads that differ, regime, stress and damage with its share."""
     loads = [n for n in LOAD_FIELDS if len(np.unique(ds[n].values[~np.isnan(ds[n].values)])) > 1]
     differ = [with_unit(capital(long_name(name)), PARAMETERS[name].unit) for name in loads]
-    heads = ["Block", "Distance [m]", "Duration [h]", *differ, "Regime"]
+    by_share = ds.attrs.get("period") == "hour"
+    heads = ["Block", "Distance [m]", "Share of the time [–]" if by_share else "Duration [h]", *differ, "Regime"]
     for body in BODIES:
         heads += [f"{capital(body)} peak [MPa]", f"{capital(body)} damage [–]", "Share"]
     rows, shown = [], {body: known_damage(ds, body) for body in BODIES}
@@ -71,7 +77,8 @@ def block_table(ds: xr.Dataset) -> Table:
             whole, stress = float(np.nansum(damage)), float(ds["peak_stress"].sel(body=body, contact=contact)[i])
             cells += [cell(stress), cell(damage[i]), chance(damage[i] / whole) if whole > 0 else "–"]
         rows.append(cells)
-    sums = ["Sum of a shift", *(cell(float(ds[n].sum())) for n in ("distance", "duration")), *[""] * (len(loads) + 1)]
+    whole_name = "Sum of an hour" if by_share else "Sum of a shift"
+    sums = [whole_name, *(cell(float(ds[n].sum())) for n in ("distance", "duration")), *[""] * (len(loads) + 1)]
     for _, damage in shown.values():
         sums += ["", f"{'≥ ' * bool(np.isnan(damage).any())}{cell(float(np.nansum(damage)))}", ""]
     rows.append(sums)
@@ -81,28 +88,29 @@ def block_table(ds: xr.Dataset) -> Table:
     if any(np.isnan(damage).any() for _, damage in shown.values()):
         note += " by the blocks with known damage; sums and shares hold these blocks alone"
     note += f". Same in all blocks: {'; '.join(same_loads)}."
-    return Table("spectrum", "Blocks of a shift", heads, rows, note.replace(" –;", ";").replace(" –.", "."))
+    title = "Blocks of an hour of travel" if by_share else "Blocks of a shift"
+    return Table("spectrum", title, heads, rows, note.replace(" –;", ";").replace(" –.", "."))
 
 
 def limit_table(ds: xr.Dataset) -> Table | None:
-    """List the limits of a spectrum with the share that the worst block uses and the shifts; None without limits."""
+    """List the limits of a spectrum with the share that the worst block uses and the hours; None without limits."""
     if "life_shifts_by_limit" not in ds:
         return None
     heads, rows = ["Limit"], []
     for body in BODIES:
-        heads += [f"{capital(body)} used", f"{capital(body)} [shifts]"]
+        heads += [f"{capital(body)} used", f"{capital(body)} lasts"]
     for name in (name for name in ds["limit"].values.tolist() if name not in unchecked(ds)):
         own, row = ds.sel(limit=name), [LIMITS[name].title]
         for body in BODIES:
             used = float(own["utilisation"].sel(body=body))
-            ends = [life(float(own[f"life_shifts_by_limit{end}"].sel(body=body))) for end in ("_low", "_high")]
-            shifts = " to ".join(dict.fromkeys(ends)).replace("unknown", "–")
-            row += ["–" if np.isnan(used) else f"{rounded(100.0 * used)} %", shifts]
+            low, high = (float(own[f"life_hours_by_limit{end}"].sel(body=body)) for end in ("_low", "_high"))
+            lasts = "–" if math.isnan(low) else between(low, high)
+            row += ["–" if np.isnan(used) else f"{rounded(100.0 * used)} %", lasts]
         rows.append(row)
     note = (
-        "The share that the worst block uses, and the shifts until the sum over the blocks is reached. A limit without "
-        "a life has no shifts. A dash stands for a missing value. A range of shifts runs from the worse to the better "
-        "end of the placeholders of materials."
+        "The share that the worst block uses, and the hours of travel until the sum over the blocks is reached. A "
+        "limit without a life has no hours. A dash stands for a missing value. A range runs from the worse to the "
+        "better end of the placeholders of materials."
     )
     return Table("spectrum_limits", "Limits", heads, rows, note)
 
@@ -168,7 +176,8 @@ def write_spectrum(ds: xr.Dataset, path: Path | str, file: str = "spectrum.yaml"
 @lives_in_years
 def print_spectrum(ds: xr.Dataset) -> None:
     """Print the damage of each block, the lives, sentences on their causes and warnings."""
-    for part, words in ((block_table(ds), "damage per shift"), (limit_table(ds), "limits")):
+    period = ds.attrs.get("period", "shift")
+    for part, words in ((block_table(ds), f"damage per {period}"), (limit_table(ds), "limits")):
         if part is not None:
             print_table(part.heads, part.rows, range(1, len(part.heads)), f"{ds.attrs['title']}: {words}")
             print_text(part.note)

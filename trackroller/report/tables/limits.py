@@ -10,8 +10,8 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, heat, judged
-from trackroller.damage.limit import OF_GUIDE, SN_SCATTER
+from trackroller.damage import LIMITS, fields_of, heat, judged
+from trackroller.damage.limit import OF_GUIDE, SN_SCATTER, Limit
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import fits_of_case
 from trackroller.materials import Material
@@ -22,6 +22,7 @@ from trackroller.report.words.by_tests import worst
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
 from trackroller.roller.limit_notes import Placeholder, lacks_of, notes_of, placeholders_of
+from trackroller.roller.record import CASE, inputs_of, is_default
 from trackroller.roller.regime_limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
@@ -55,6 +56,8 @@ class Margin:
         Whether the limit has a life, known or not, and whether it is a second model of an end that another limit has.
     beyond, guessed : bool
         Whether the life lies beyond the S-N data, and whether the limit rests on placeholders of a material.
+    lifeless : bool
+        Whether the body has no fatigue life, because it breaks at once or the roller skids.
     """
 
     title: str
@@ -71,6 +74,7 @@ class Margin:
     beside: bool = False
     beyond: bool = False
     guessed: bool = False
+    lifeless: bool = False
 
     @property
     def short(self) -> str:
@@ -110,6 +114,8 @@ class Margin:
         """Return the hours to the limit with their range, or whether a limit without hours is kept."""
         if self.breaks:
             return "exceeded now"
+        if self.lifeless:
+            return "no fatigue life"
         if math.isnan(self.hours):
             return "not known" if self.timed else {"unknown": ""}.get(self.state, self.state)
         return between(self.low, self.high, self.beyond)
@@ -154,7 +160,17 @@ def margins(
             out[-1] = replace(margin, body=BOTH)
         else:
             out.append(margin)
-    return sorted(out, key=lambda m: (m.state != "exceeded", m.reached, 0.0 if math.isnan(m.used) else -m.used))
+    # the limit that the verdict names leads; a second model of an end, such as a standard rating, stands behind it
+    first = min((m.reached for m in out if m.ends), default=0.0)
+    return sorted(
+        out,
+        key=lambda m: (
+            m.state != "exceeded",
+            max(m.reached, first) if m.beside else m.reached,
+            m.beside,
+            0.0 if math.isnan(m.used) else -m.used,
+        ),
+    )
 
 
 def _of_limits(
@@ -183,7 +199,7 @@ def _of_limits(
             values = np.asarray(_at(ds, variable, places, **here), dtype=float)
             value = float(np.nanmax(values)) if np.isfinite(values).any() else math.nan
             bound = f"{rounded(value / used if used > 0 else math.nan)} {unit}".strip()
-            bound = bound + words if not math.isnan(used) else f"not given{words}" if math.isnan(hours) else "–"
+            bound = _given_bound(limit, inputs) if math.isnan(used) else bound + words
             texts = f"{rounded(value)} {unit}".strip(), bound
             cycles = hours * overrollings(inputs, body)
             beyond = limit.distribution == SN_SCATTER and (used < 1.0 or bool(past_data(cycles)))
@@ -195,11 +211,20 @@ def _of_limits(
             # both bodies share the heat of a contact
             of = [one.material for one in rests_on if one.limit == name]
             guessed = bool(of) if limit is heat.LIMIT else materials[body].name in of
-            of_life = timed and not (name == "fatigue" and lifeless[body])
+            no_life = name == "fatigue" and bool(lifeless[body])
             numbers = used, hours, low, high
-            kind = of_life, limit.beside, beyond, guessed
+            kind = timed and not no_life, limit.beside, beyond, guessed, no_life
             out.append(Margin(limit.title, body, *texts, *numbers, state, breaks, *kind))
     return out
+
+
+def _given_bound(limit: Limit, inputs: Mapping[str, Any]) -> str:
+    """Return the given value that a limit with a life needs, such as the permissible wear depth; a dash without one."""
+    for parameter in limit.parameters:
+        value = inputs.get(parameter.name)
+        if parameter.name in limit.requires and value is not None and not math.isnan(float(value)):
+            return f"{number(value)} {row_unit(parameter.unit)}: {parameter.long_name}"
+    return "–"
 
 
 def _at(ds: xr.Dataset, name: str, places: Mapping[str, list[Any]], **labels: str) -> np.ndarray:
@@ -365,7 +390,23 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     out = [f"Not checked: {'; '.join(parts)}."] if parts else []
     asked = str(ds.attrs.get("limits", "")).split()
     missing = [limit.name for limit in judged() if limit.name not in asked]
-    return out + ([f"Left out: {listing(missing)}."] if missing else [])
+    out += [f"Left out: {listing(missing)}."] if missing else []
+    return out + _given_in_vain(ds, [*unchecked(ds), *missing])
+
+
+def _given_in_vain(ds: xr.Dataset, idle: list[str]) -> list[str]:
+    """Name the values of a case that were given for limits which were not checked, and for nothing else."""
+    if CASE not in ds.attrs or "case" in ds.dims or not idle:
+        return []
+    unused: dict[str, list[str]] = {}
+    for name, value in inputs_of(ds).items():
+        users = [limit.name for limit in judged() if name in fields_of(limit)]
+        if users and name != "travel" and not is_default(name, value) and {*users} <= {*idle}:
+            unused.setdefault(listing(users), []).append(name)
+    return [
+        f"Given, but not used: {listing(names)}, because {limits} {'are' if ' ' in limits else 'is'} not checked."
+        for limits, names in unused.items()
+    ]
 
 
 def placeholders(ds: xr.Dataset) -> list[str]:

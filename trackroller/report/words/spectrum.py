@@ -10,11 +10,12 @@ import xarray as xr
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, REGIME_LABELS, REGIMES
+from trackroller.report.numbers import between, life_range
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.lives import past_data
 from trackroller.roller.dataset import validity_bit
 
-UNITS = (("shifts", "shifts"), ("km", "km"), ("hours", "h"))
+UNITS = (("hours", "h"), ("km", "km"), ("shifts", "shifts"))
 
 
 def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
@@ -43,6 +44,9 @@ def _first_limit(ds: xr.Dataset, body: str) -> Sentence:
         return say("spectrum", "spectrum_no_limit", body=body)
     own = own.sel(limit=name)
     values = {"body": body, "limit": name, "title": LIMITS[name].title, "shifts": shifts, "block": ""}
+    low, high = (float(own[f"life_to_first_limit_hours{end}"]) for end in ("_low", "_high"))
+    km = float(ds["distance"].sum() / ds["duration"].sum()) / 1e3
+    values |= {"hours": between(low, high), "km": life_range(low * km, high * km)}
     if np.isnan(own["life_shifts_by_limit"]) or shifts == 0.0:
         return say("spectrum", "spectrum_limit", **values, used=100.0 * float(own["utilisation"]))
     damage = own["damage_by_limit"].values
@@ -67,7 +71,7 @@ def _sentence(ds: xr.Dataset, body: str) -> Sentence:
 def _unknown(ds: xr.Dataset, body: str, damage: np.ndarray) -> dict[str, Any]:
     """Return why a body has no known life, and the longest life that the damage of the other blocks allows.
 
-    `at_most` is this life [shifts]; it is 0 if the known blocks do no damage and so set no bound.
+    `at_most` is this life [h]; it is 0 if the known blocks do no damage and so set no bound.
     """
     unknown, known = ds["damage"].sel(body=body).isnull().any("contact").values, float(np.nansum(damage))
     names, regime = ds["block"].values.astype(str)[unknown], ds["regime"].values.astype(int)[unknown]
@@ -80,7 +84,7 @@ def _unknown(ds: xr.Dataset, body: str, damage: np.ndarray) -> dict[str, Any]:
         "unsolved": [f"'{n}' ({REGIME_LABELS[r]})" for n, r in zip(names[unsolved], regime[unsolved], strict=True)],
         "breaks": [f"'{name}'" for name in names[breaks]],
         "skids": [f"'{name}'" for name in names[skids & ~breaks]],
-        "at_most": ds.attrs["critical_damage"] / known if known > 0 else 0.0,
+        "at_most": ds.attrs["critical_damage"] / known * float(ds["duration"].sum()) if known > 0 else 0.0,
     }
 
 

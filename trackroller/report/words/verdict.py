@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 from collections.abc import Iterable
 
@@ -9,7 +10,7 @@ import numpy as np
 
 from trackroller.damage import LIMITS
 from trackroller.damage.bearing import FIELD, WEIBULL, life_at
-from trackroller.parameters import PARAMETERS
+from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
     level_text,
     long_name,
@@ -39,11 +40,13 @@ from trackroller.results.intervals import Cases
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
-from trackroller.roller.limit_notes import guessed_lines
+from trackroller.roller.dataset import validity_bit
+from trackroller.roller.limit_notes import guessed_lines, placeholders_of
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
 LEAST_NEEDED = (
+    "scatter",
     "models",
     "next",
     "not_judged",
@@ -86,6 +89,8 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         words.open_limits(),
         words.guessed(),
         words.bearings(),
+        words.worn(),
+        words.scatter(),
         words.unchecked(),
     ]
     return _fitting([sentence for sentence in said if sentence is not None])
@@ -411,6 +416,33 @@ class _Words:
         """Say that half of the bearings reach a life that the bearing ends, while makers state that of nine of ten."""
         found = self.found if self.found.rest is None else self.found.rest
         return bearing_words(self.results, [name for one in found.best[:MOST] for name in (one.ends, one.ends_high)])
+
+    def scatter(self) -> Sentence | None:
+        """Say that a life of nine of ten conditions by fatigue leaves out the scatter of the material."""
+        found, results = self.found if self.found.rest is None else self.found.rest, self.results
+        if not (found.sampled and found.best and results.config.analysis.material_scatter is False):
+            return None
+        if "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
+            return None
+        material = str(results.material(found.best[0].body)[found.best[0].case])
+        values = json.loads(str(results.data.attrs.get("materials", "{}"))).get(material, {})
+        known = any(values.get(name) is not None for name in ("scatter_in_cycles", "scatter_in_stress"))
+        return say("verdict", "scatter", material=material, known=known)
+
+    def worn(self) -> Sentence | None:
+        """Say of a first candidate that wear ends: its coefficient is a placeholder, and its groove is worn through."""
+        found = self.found if self.found.rest is None else self.found.rest
+        if not found.best or "wear" not in (found.best[0].ends, found.best[0].ends_high):
+            return None
+        one, results = found.best[0], self.results
+        case = one.case if one.ends == "wear" else one.case_high
+        own, on = (str(results.material(body)[case]) for body in (one.body, *({*BODIES} - {one.body})))
+        places = placeholders_of(results.data)
+        guessed = any((p.limit, p.material) == ("wear", own) and p.on in ("", on) for p in places)
+        flags = int(results.column(f"validity_{one.body}", missing=0)[case])
+        worn = bool(flags & validity_bit("worn"))
+        values = {"material": own, "on": on, "guessed": guessed and found.kind != "measure", "worn": worn}
+        return say("verdict", "worn", **values) if values["guessed"] or worn else None
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""

@@ -1,12 +1,13 @@
 """Read a load spectrum: the loads of a roller during a shift, in blocks.
 
-A spectrum file describes the roller once (`base`), and then its loads in blocks with the distance travelled per shift:
+A spectrum file describes the roller once (`base`), and then its loads in blocks with the distance or the hours of
+travel per shift, or with their shares of the time of travel:
 
     name: sorter
     base: {axis_distance: 21.75, roller_material: PA6, guide_overrollings_per_hour: 120}
     blocks:
       - {name: loaded, distance: 4000, radial_force: -300, axial_force: 60}      # m per shift
-      - {name: empty, distance: 4000, radial_force: -80, guide_overrollings: 900}
+      - {name: empty, hours: 1.5, radial_force: -80, guide_overrollings: 900}
     life_rule: haibach
     limits: all
 
@@ -44,7 +45,8 @@ from trackroller.yaml_file import errors_by_line, parse_mapping
 
 # what the use of the roller sets; placeholders and worn profiles are the same in all blocks
 LOAD_FIELDS = tuple(n for n, p in PARAMETERS.items() if p.role == "condition" and n not in OF_LIMITS)
-BLOCK_FIELDS = ("name", "distance", "guide_overrollings", *LOAD_FIELDS)
+TRAVEL = {"distance": "m", "hours": "h", "share": "-"}  # what says how long a block lasts, and its unit
+BLOCK_FIELDS = ("name", *TRAVEL, "guide_overrollings", *LOAD_FIELDS)
 OPTIONAL = ("name", "guide_overrollings")  # of a block; an empty load would be that of the paper's example
 OPTIONS = tuple(option.name for option in SOLVE_OPTIONS.values() if "spectrum" in option.files)
 FILE_FIELDS = (
@@ -107,6 +109,9 @@ class Spectrum:
         `hours_per_day` and `days_per_year` of travel, for lives in years.
     groups : tuple of str
         Groups of outputs of the limits that the key `limits` names; without it, all whose inputs are given are checked.
+    by_share : bool
+        Whether the blocks state shares of the time of travel. Their distances and overrollings are then those of an
+        hour of travel, which takes the place of the shift.
     """
 
     name: str
@@ -117,6 +122,12 @@ class Spectrum:
     options: Mapping[str, Any] = field(default_factory=dict)
     duty: Mapping[str, float] | None = None
     groups: tuple[str, ...] = ()
+    by_share: bool = False
+
+    @property
+    def period(self) -> str:
+        """Return what the blocks make up together: a shift, or an hour of travel if they state shares of the time."""
+        return "hour" if self.by_share else "shift"
 
     @property
     def not_given(self) -> dict[str, Any]:
@@ -150,7 +161,7 @@ class Spectrum:
         with wrong.part():
             check_names("spectrum: key", values, FILE_FIELDS)
         with wrong.part():
-            found["blocks"] = _blocks(values.get("blocks"), values.get("base") or {})
+            found["blocks"], found["by_share"] = _blocks(values.get("blocks"), values.get("base") or {})
         with wrong.part():
             found["critical_damage"] = _number("critical_damage", values.get("critical_damage", 1.0), open_lower=True)
         with wrong.part():
@@ -193,8 +204,8 @@ def load_spectrum(path: Path | str) -> Spectrum:
         return Spectrum.from_dict({"name": path.stem} | values)
 
 
-def _blocks(given: Any, base: Any) -> tuple[Block, ...]:
-    """Return the checked blocks; raise the errors of all of them, and of `base`, together."""
+def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
+    """Return the checked blocks and whether they state shares; raise all their errors and those of `base` together."""
     wrong = Collector()
     path = find_beside(given, "blocks") if isinstance(given, str) else None
     table = None if path is None else read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
@@ -223,7 +234,21 @@ def _blocks(given: Any, base: Any) -> tuple[Block, ...]:
         raise InputError("blocks", names[0][0], "a name of its own for each block", "Rename one of the blocks.")
     if not sum(block.distance for block in made) > 0:
         raise InputError("distance", 0.0, "distances of a shift that add up to more than 0 m", "Give distances in m.")
-    return tuple(made)
+    by_share = ["share" in entry for entry in blocks]
+    if any(by_share):
+        _check_shares(made, by_share)
+    return tuple(made), any(by_share)
+
+
+def _check_shares(made: list[Block], by_share: list[bool]) -> None:
+    """Refuse shares beside distances or hours, and shares that do not add up to 1."""
+    if not all(by_share):
+        other = made[by_share.index(False)].name
+        allowed = "a share in each block, because a share of the time is no part of a shift"
+        raise InputError(f"block '{other}'.share", None, allowed, "Give share in all blocks, or hours in all of them.")
+    if abs((whole := sum(block.hours for block in made)) - 1.0) > 1e-6:
+        remedy = "Write 0.2 or 20 % for a fifth of the time of travel."
+        raise InputError("share", whole, "shares of the blocks that add up to 1", remedy)
 
 
 def _entries(table: UserTable, path: Path | None, wrong: Collector) -> list[dict[str, str]]:
@@ -261,19 +286,31 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     with wrong.part():
         _check_fields(list(entry), where, entry)
     made: dict[str, Any] = {"name": name}
+    lasts = [key for key in TRAVEL if key in entry]
     with wrong.part():
-        if "distance" not in entry and not any(nearest(key, BLOCK_FIELDS) == "distance" for key in entry):
-            raise InputError(f"{where}.distance", None, "the distance travelled per shift in m", "Add it to the block.")
-        if "distance" in entry:
-            made["distance"] = _number(f"{where}.distance", entry["distance"], unit="m")
+        if not lasts and not any(nearest(key, BLOCK_FIELDS) in TRAVEL for key in entry):
+            allowed = "the distance in m or the hours travelled per shift, or the share of the time of travel"
+            raise InputError(f"{where}.distance", None, allowed, "Add one of distance, hours and share to the block.")
+        if len(lasts) > 1:
+            allowed = "one of distance, hours and share; the velocity gives the others"
+            raise InputError(f"{where}.{lasts[1]}", entry[lasts[1]], allowed, f"Remove {lasts[0]} or {lasts[1]}.")
+    for key in lasts[:1]:
+        with wrong.part():
+            made["distance"] = _number(f"{where}.{key}", entry[key], unit=TRAVEL[key])
     with wrong.part():
         if entry.get("guide_overrollings") is not None:
+            if lasts[:1] == ["share"]:
+                allowed = "overrollings per hour, because blocks by share of the time have no shift"
+                remedy = "Give guide_overrollings_per_hour instead."
+                raise InputError(f"{where}.guide_overrollings", entry["guide_overrollings"], allowed, remedy)
             made["guide_overrollings"] = _number(f"{where}.guide_overrollings", entry["guide_overrollings"])
     try:
         made["case"] = Case.from_dict({**base, **{key: entry[key] for key in LOAD_FIELDS if key in entry}})
     except InputError as error:
         wrong.errors += _named(error, where)
     wrong.check()
+    if lasts[0] != "distance":
+        made["distance"] *= 60.0 * float(made["case"].velocity)  # the velocity of the block [m/min]
     return Block(**made)
 
 

@@ -221,8 +221,13 @@ def _labelled(spectrum: Spectrum, variables: dict[str, Any], solved: xr.Dataset,
         "life_conventions": f"{fatigue.AMPLITUDE}; {CONVENTIONS[rule]}; linear damage sum, failure at "
         f"D = {spectrum.critical_damage:g}",
         "critical_damage": spectrum.critical_damage,
+        "period": spectrum.period,
     }
-    return xr.Dataset(variables, coords=coords, attrs=attrs)
+    ds = xr.Dataset(variables, coords=coords, attrs=attrs)
+    if spectrum.by_share:  # a shift of these blocks is an hour of travel
+        for variable in ds.data_vars.values():
+            variable.attrs["long_name"] = variable.attrs.get("long_name", "").replace("shift", "hour of travel")
+    return ds
 
 
 def cases_of(spectrum: Spectrum, overrollings: np.ndarray) -> list[Case]:
@@ -292,16 +297,18 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
         first, which = (one[0] for one in verdict.first_of(shifts[None], most[None], timed, limits, broken[None]))
         head = {"": "", "_low": "low end of the ", "_high": "high end of the "}[end]
         for name, dims, values, meaning in (
-            ("life_shifts_by_limit", ("limit", "body"), shifts, "shifts until a limit with a life is reached"),
-            ("life_to_first_limit_shifts", "body", first, "shifts until the first known limit is reached"),
+            ("life_{}_by_limit", ("limit", "body"), shifts, "until a limit with a life is reached"),
+            ("life_to_first_limit_{}", "body", first, "until the first known limit is reached"),
             (
-                "pair_life_to_first_limit_shifts",
+                "pair_life_to_first_limit_{}",
                 (),
                 float(first_failure(*first)[0]),
-                "shifts until roller or guide reaches its first known limit",
+                "until roller or guide reaches its first known limit",
             ),
         ):
-            out[name + end] = (dims, values, _attrs("1", head + meaning))
+            out[name.format("shifts") + end] = (dims, values, _attrs("1", f"{head}shifts {meaning}"))
+            hours = (dims, values * float(travel.sum()), _attrs("h", f"{head}hours of travel {meaning}"))
+            out[name.format("hours") + end] = hours
         if not end:
             names = np.array([words.index(name) for name in (*(limit.name for limit in limits), "unknown")])[which]
             out |= {

@@ -8,8 +8,8 @@ const STRAIGHT = /^\+?(straight|flat|∞|infinity|infinite)$/i;
 const FACTOR = 4; // a slider spans a quarter to four times a value that lies outside of its ends
 
 export const symbol = (text) => {
-  const greek = { alpha: "α", mu: "μ", nu: "ν", sigma: "σ", tau: "τ", xi: "ξ" };
-  return text.split(/(\b[A-Za-z]+_[A-Za-z0-9]+(?:,[A-Z]+)?|\b(?:alpha|mu|nu|xi)\b)/).map((part, i) => {
+  const greek = { alpha: "α", mu: "μ", nu: "ν", rho: "ρ", sigma: "σ", tau: "τ", theta: "θ", xi: "ξ" };
+  return text.split(/(\b[A-Za-z]+_[A-Za-z0-9]+(?:,[A-Z]+)?|\b(?:alpha|mu|nu|rho|xi)\b)/).map((part, i) => {
     if (i % 2 === 0) return part;
     const [letter, index] = part.split("_");
     const sign = greek[letter] ?? letter;

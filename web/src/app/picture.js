@@ -28,8 +28,10 @@ function lines(list) {
   return el("table", { class: "lines" }, el("thead", {}, head), el("tbody", {}, body));
 }
 
+const BEYOND = " (beyond the S-N data)"; // a dagger in the table stands for it
+
 function bar(margin) {
-  if (!margin.share) return el("span", { class: "soft" }, margin.life || margin.required);
+  if (!margin.share) return el("span", { class: "soft" }, margin.required); // such as the permissible wear depth
   const used = Math.min(100 * Number(margin.used ?? Infinity), FULL);
   const fill = el("i", { class: margin.used > 1 ? "over" : "under" });
   fill.style.width = `${(used / FULL) * 100}%`;
@@ -50,7 +52,7 @@ function margins(list, complete) {
       el("td", {}, m.body.includes(" and ") ? "both" : m.body),
       el("td", {}, bar(m)),
       el("td", { class: "n" }, m.factor),
-      el("td", { class: "n" }, m.beyond && Number.isFinite(m.hours) ? `${m.life.split(" (")[0]} †` : m.life.split(" (")[0]),
+      el("td", { class: "n" }, m.beyond && Number.isFinite(m.hours) ? `${m.life.replace(BEYOND, "")} †` : m.life),
     ),
   );
   const guessed = list.some((m) => m.guessed) ? "* rests on placeholders. " : "";

@@ -6,6 +6,7 @@ import { plot } from "../plot.js";
 import { scaleOf } from "../scales.js";
 import { letter, number } from "../words.js";
 import { symbol } from "./fields.js";
+import { spectrumView } from "./spectrum.js";
 
 const HEIGHT = 260;
 
@@ -160,6 +161,25 @@ export function whatIf(state, offered, { rows }) {
     replace(values, values.firstChild, el("table", {}, el("thead", {}, el("tr", {}, el("th", { scope: "col" }, parameter.label), el("th", { scope: "col" }, column.label))), el("tbody", {}, lines)));
   }
 
+  // how far the parameter of the curve may go
+  const relation = select("", [[">=", "at least"], ["<=", "at most"]], ">=", () => {});
+  relation.field.setAttribute("aria-label", "Comparison");
+  const bound = el("input", { type: "text", inputmode: "decimal", size: 8, "aria-label": "Value that the result has to meet" });
+  const far = el("p", { class: "soft", role: "status" }, "Say what the result of the curve has to be, such as 10500.");
+  const search = el("button", { type: "button", onclick: () => findRange() }, "How far may it go?");
+  async function findRange() {
+    const typed = bound.value.trim().replace(",", ".");
+    if (!typed || !Number.isFinite(Number(typed))) return (far.textContent = "Write a number that the result of the curve has to meet, such as 10500.");
+    far.textContent = "Searching …";
+    try {
+      far.textContent = (await ask("found", { values: state.values, over: over.field.value, condition: `${result.field.value} ${relation.field.value} ${typed}` })).text;
+    } catch (error) {
+      far.textContent = error.message;
+    }
+  }
+
+  const loads = spectrumView(state, offered);
+
   // texts
   const text = el("pre", { tabindex: "0", role: "region", "aria-label": "The case as text" });
   const kind = select("Copy as", ["YAML", "command", "Python"].map((name) => [name, name]), "command", () => write());
@@ -179,7 +199,8 @@ export function whatIf(state, offered, { rows }) {
     el(
       "div",
       { class: "side" },
-      el("section", {}, el("h2", {}, "Curve"), el("div", { class: "tools" }, result.node, over.node, el("label", {}, "from ", from), el("label", {}, "to ", to)), el("div", {}, curvePlot.node), said, values),
+      el("section", {}, el("h2", {}, "Curve"), el("div", { class: "tools" }, result.node, over.node, el("label", {}, "from ", from), el("label", {}, "to ", to)), el("div", {}, curvePlot.node), said, el("div", { class: "tools" }, el("span", {}, "Result of the curve"), relation.node, bound, search), far, values),
+      loads.node,
       el("section", {}, el("h2", {}, "The roller as text"), el("div", { class: "tools" }, kind.node, copied), text),
     ),
   );
@@ -195,6 +216,7 @@ export function whatIf(state, offered, { rows }) {
       draw();
       if (state.tab !== "whatif") return;
       write();
+      loads.draw();
       found ? solveCurve() : setOver(over.field.value);
     },
     redraw: paint,

@@ -1,0 +1,67 @@
+"""The load spectrum of the roller on the page: its blocks in, sentences, tables and the spectrum file out."""
+
+from __future__ import annotations
+
+import re
+from typing import Any
+
+import xarray as xr
+
+from trackroller.app.carriage import table_on_page
+from trackroller.app.picture import Values, read
+from trackroller.errors import InputError
+from trackroller.report.numbers import lives_in_years
+from trackroller.report.pages.spectrum import block_table, limit_table, warnings
+from trackroller.report.words.spectrum import sentences
+from trackroller.roller.record import given_inputs
+from trackroller.roller.settings import LOADS, parts_for_spectrum
+from trackroller.study.spectrum.file import TRAVEL, Spectrum
+from trackroller.study.spectrum.solve import solve_spectrum
+from trackroller.yaml_file import parse_yaml, write_yaml
+
+COMMA = re.compile(r"(?<=\d),(?=\d)")
+
+
+def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str, Any]:
+    """Sum the loads of a roller over the blocks of a spectrum.
+
+    Parameters
+    ----------
+    values : mapping
+        Fields of the case and options by name; the blocks replace its forces.
+    by : str
+        What the amount of each block is: `share` of the time of travel, or `hours` or `distance` [m] of a shift.
+    blocks : list of dict
+        `name`, `amount`, `radial_force` and `axial_force` of each block, as texts; a decimal comma is a point.
+
+    Returns
+    -------
+    dict
+        Sentences and warnings, tables, and the text of the spectrum file.
+    """
+    if by not in TRAVEL:
+        raise InputError("by", by, ", ".join(TRAVEL), "Choose what the blocks are given by.")
+    case, options, beside = read(values)
+    base, taken = parts_for_spectrum(given_inputs(case) | options)
+    made = [
+        {"name": block.get("name") or f"load {i}", by: _typed(block.get("amount", ""), by)}
+        | {name: _typed(block.get(name, ""), name) for name in LOADS}
+        for i, block in enumerate(blocks, 1)
+    ]
+    duty = {"duty": beside["duty"]} if "duty" in beside else {}
+    file = {"name": "loads-of-the-roller", "base": base, **duty, "blocks": made, **taken}
+    return _answer(solve_spectrum(Spectrum.from_dict(file))) | {"text": write_yaml(file)}
+
+
+def _typed(text: str, field: str) -> Any:
+    """Return a typed number, with its unit as text; an empty field is refused by the spectrum."""
+    return parse_yaml(COMMA.sub(".", text.strip()), field) if text.strip() else None
+
+
+@lives_in_years
+def _answer(ds: xr.Dataset) -> dict[str, Any]:
+    return {
+        "said": [one.text for one in sentences(ds)],
+        "warnings": warnings(ds),
+        "tables": [table_on_page(table) for table in (limit_table(ds), block_table(ds)) if table is not None],
+    }
