@@ -26,9 +26,10 @@ def squared(u):  # pragma: no cover (compiled)
 @compiled
 def _slope(point, base, centre):  # pragma: no cover (compiled)
     """Return |u - c|^2 + h - |c|^2 of a point u (d,) with its base |u|^2 + h."""
+    slope = base
     for j in range(len(centre)):
-        base -= 2.0 * centre[j] * point[j]
-    return base
+        slope -= 2.0 * centre[j] * point[j]
+    return slope
 
 
 @compiled

@@ -52,9 +52,9 @@ def material_details(database: MaterialDatabase, name: str) -> list[dict[str, st
     exponent = Value(material.woehler_exponent, "-", of_exponent, origin="derived")
     if (table := material.temperature_dependence) is not None:
         over = ", ".join(f"{value:g}" for value in table.temperature)
-        for name, column in table.columns.items():
-            record = Value(column[0], PROPERTIES[name].unit, table.source, table.placeholder, f"at {over} degC")
-            row = _row(f"{name} over temperature", f"{PROPERTIES[name].symbol}(theta)", record)
+        for key, column in table.columns.items():
+            record = Value(column[0], PROPERTIES[key].unit, table.source, table.placeholder, f"at {over} degC")
+            row = _row(f"{key} over temperature", f"{PROPERTIES[key].symbol}(theta)", record)
             rows.append(row | {"value": ", ".join(f"{value:g}" for value in column)})
     return [*rows, _row("fatigue_limit", "sigma_D", limit), _row("woehler_exponent", "k", exponent)]
 

@@ -307,8 +307,8 @@ def closed_indices(
     drawn = [_correlations(np.full((1, len(block)), 1 / len(block)), terms, beta)]
     if weights is not None:
         return np.concatenate([*drawn, _correlations(weights, terms, beta)])
-    for weights in _resampled(len(clusters), resamples, seed):
-        rows = weights[:, cluster]
+    for counts in _resampled(len(clusters), resamples, seed):
+        rows = counts[:, cluster]
         drawn.append(_correlations(rows / rows.sum(axis=1, keepdims=True), terms, beta))
     return np.concatenate(drawn)
 

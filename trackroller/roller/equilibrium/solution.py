@@ -157,10 +157,10 @@ def _record(answer: _Answer, roller: Roller, solution: Solution, bounds: Bounds,
     rows = roller.rows
     solved = solution.residual <= (SOLVED_FALLING if roller.loads.falling else SOLVED)
     # a roller without a solution has lifted off if it does so without friction
-    lift |= ~solved & ~slides & np.any(roller.without_friction() <= 0, axis=0)
-    answer.regime[rows] = np.where(lift, LIFT_OFF, np.where(solved, ROLLING, FAILED))
+    lifted = lift | (~solved & ~slides & np.any(roller.without_friction() <= 0, axis=0))
+    answer.regime[rows] = np.where(lifted, LIFT_OFF, np.where(solved, ROLLING, FAILED))
     answer.jamming[rows] = roller.grips(solution.normal, solution.forces) & rubs & ~slides
-    up = np.flatnonzero(lift & rubs)
+    up = np.flatnonzero(lifted & rubs)
     if up.size:
         answer.jamming[rows[up]] = self_locking(Roller(roller.loads, roller.law, rows[up]), bounds.take(up))
     answer.residual[rows] = np.fmax(solution.residual, digits_of_forces(roller, solution))

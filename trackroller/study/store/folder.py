@@ -160,10 +160,11 @@ class StudyFolder:
 
 def wait_for_lock(stream: IO[bytes], shared: bool = False, tell: Tell | None = None) -> None:
     """Wait until `try_lock` succeeds; call `tell` once if another process holds the lock."""
+    if try_lock(stream, shared):
+        return
+    if tell is not None:
+        tell(f"{Path(stream.name).stem.lstrip('.')}: another process works on this, waiting for it")
     while not try_lock(stream, shared):
-        if tell is not None:
-            tell(f"{Path(stream.name).stem.lstrip('.')}: another process works on this, waiting for it")
-            tell = None
         time.sleep(0.05)
 
 
