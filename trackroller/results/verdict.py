@@ -150,13 +150,14 @@ class Tradeoff:
     Attributes
     ----------
     goals : words, units and direction of each goal
-    ends : for each goal the choices and the values of the design that is best in it
+    ends : for each goal the choices and the values of the design that is best in it, and which of these are lives
+        beyond the S-N data
     designs : number of Pareto-optimal designs
     gap : values of the first goal between which no design lies; empty without a gap
     """
 
     goals: tuple[tuple[str, str, str], ...]
-    ends: tuple[tuple[Mapping[str, Any], tuple[float, ...]], ...]
+    ends: tuple[tuple[Mapping[str, Any], tuple[float, ...], tuple[bool, ...]], ...]
     designs: int
     gap: tuple[float, ...] = ()
 
@@ -773,6 +774,7 @@ def _tradeoff(results: Results) -> Tradeoff | None:
         (
             {n: _plain(front[n].values[place]) for n in names},
             tuple(float(front[goal].values[place]) for goal, _ in goals),
+            tuple(f"beyond_{goal}" in front and bool(front[f"beyond_{goal}"].values[place]) for goal, _ in goals),
         )
         for place in end_places(front)
     )

@@ -11,6 +11,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import PARAMETERS
 from trackroller.report.numbers import (
+    lasting,
     level_text,
     long_name,
     percent,
@@ -329,9 +330,13 @@ class _Words:
             turns = [(long_name(t.what), level_text(t.what, t.low, words=False)) for t in self.found.turns]
             return say("verdict", "given", turns=turns)
         ends = []
-        for choices, values in traded.ends:
-            lives = [quantity(v, unit) for v, (_, unit, _) in zip(values, traded.goals, strict=True)]
-            ends.append((" at ".join(lives), ", ".join(setting(n, v) for n, v in choices.items())))
+        for choices, values, beyond in traded.ends:
+            lives = [
+                lasting(v, unit, far) if unit == "h" else quantity(v, unit)
+                for v, (_, unit, _), far in zip(values, traded.goals, beyond, strict=True)
+            ]
+            ends.append(f"{' at '.join(lives)} ({', '.join(setting(n, v) for n, v in choices.items())})")
+        ends = list(dict.fromkeys(ends))
         unit = traded.goals[0][1]
         gap = [rounded(traded.gap[0]), quantity(traded.gap[1], unit)] if traded.gap else []
         return say("verdict", "tradeoff", designs=traded.designs, ends=ends, gap=gap)
