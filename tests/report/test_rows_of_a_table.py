@@ -6,6 +6,7 @@ import yaml
 
 import trackroller as tr
 from trackroller.report.build import report_text
+from trackroller.report.numbers import quantity
 from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import rows_table, unanswered
 from trackroller.report.words.in_short import in_short
@@ -109,6 +110,38 @@ def test_proposals_are_compared_over_the_loads_that_each_was_tried_under(tmp_pat
     text = report_text(results)
     assert "compared over the 2 conditions that each was tried under" in text
     assert "radial force −240 N, axial force 20 N" in text and "which 2 rows have for some designs only" in text
+
+
+def test_a_load_that_only_some_proposals_were_tried_under_counts_for_the_target(tmp_path, monkeypatch):
+    """The row at 240 N is known: a design that is too weak there misses the target, and one without it is open."""
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "cases.csv").write_text(PROPOSALS, encoding="utf-8")
+    keys = {"name": "proposals", "design": "table", "table": "cases.csv", "contact_model": "sliding"}
+    keys |= {"base": {"motor_force": 0, "friction_coefficient": 0.15}}
+
+    def judged(least):
+        study = keys | {"analysis": {"target": {"roller_life_hours": {"min": float(least)}}}}
+        return tr.run(_file(tmp_path, study), progress=False)
+
+    results = judged(1)
+    table = results.table.assign(life=results.column("pair_life_to_first_limit_hours"))
+    heavy = table["radial_force"] < -200
+    radius = table["roller_profile_radius"]
+    shared = table[~heavy].groupby("roller_profile_radius")["life"].min()
+    every = table.groupby("roller_profile_radius")["life"].min()
+    weak = float(every[sorted(set(radius[heavy]))].max() * 1.3)  # more than any design lasts at the heavy load
+    assert weak < shared.max()
+    found = judged(weak)
+    status = {one.choices["roller_profile_radius"]: one.status for one in found.verdict.candidates}
+    untried = set(radius) - set(radius[heavy])
+    assert all(status[r] == "missed" for r in set(radius[heavy]))
+    assert all(status[r] == ("open" if shared[r] >= weak else "missed") for r in untried)
+    assert found.verdict.kind == ("cannot_tell" if any(shared[r] >= weak for r in untried) else "none")
+    best = results.verdict.best[0].choices["roller_profile_radius"]
+    assert "worst shared condition" in report_text(results)
+    if best in set(radius[heavy]):
+        own = table["life"][heavy & (radius == best)].min()
+        assert f"(the first: {quantity(own, 'h')} there)" in report_text(results)
 
 
 def test_one_shared_load_is_too_little_to_compare_proposals(tmp_path, monkeypatch):

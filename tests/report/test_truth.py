@@ -11,6 +11,7 @@ import pandas as pd
 import pytest
 import yaml
 from random_studies import FLAGS, random_study
+from scipy.stats import norm
 from synthetic_results import results_of
 from told import effect_of, occurrence
 from verdict_by_hand import check_verdict
@@ -251,7 +252,8 @@ def check_classes(raw, said):
         assert close(fold, 10 ** abs(step), 3 if 10 ** abs(step) < 9.99 else 2)
         assert 1 <= value(least) * 1.01 and value(least) <= value(most)
     elif said.kind == "classes_none":
-        least, most = v["interval"]
+        wider = norm.ppf(1 - 0.025 / len(raw.factors)) / norm.ppf(0.975)  # that of all factors together
+        least, most = (v["ratio"] * (end / v["ratio"]) ** wider for end in v["interval"])
         assert least <= 1 <= most or any(p * step < 0 for p in parts)
         assert "No effect" in said.text
     else:

@@ -111,7 +111,8 @@ class Candidates:
     place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model, and for those
         that are no draws of their own
     matched : whether each design has the same conditions, each once
-    untried : rows of a table whose conditions were not tried with every design, shape (n,) bool; no design has them
+    untried : rows of a table whose conditions were not tried with every design, shape (n,) bool; not in `place`
+    design : `place` with the rows of `untried`, shape (n,)
     """
 
     results: Results
@@ -121,6 +122,7 @@ class Candidates:
     place: np.ndarray
     matched: bool
     untried: np.ndarray
+    design: np.ndarray
 
     @classmethod
     def of(cls, results: Results, free: tuple[str, ...] = ()) -> Candidates | None:
@@ -160,12 +162,12 @@ class Candidates:
             place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
         shared = _shared(place, use) if results.config.method.observed else np.zeros(len(use), dtype=bool)
         untried = own & ~shared if shared.any() else shared
-        place = np.where(untried, -1, place)
+        design, place = place, np.where(untried, -1, place)
         kept = place >= 0
         several, many = place.max() + 1, len(np.unique(use[kept]))
         pairs = len(np.unique(place[kept] * (use.max() + 1) + use[kept]))
         matched = bool(pairs == kept.sum() == several * many)
-        return cls(results, choices, conditions, goal, place, matched, untried)
+        return cls(results, choices, conditions, goal, place, matched, untried, design)
 
     @cached_property
     def size(self) -> np.ndarray:

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from scipy.stats import spearmanr
+from scipy.stats import norm, spearmanr
 
 from trackroller.methods.correlation import CORRELATED
 from trackroller.parameters import BODIES, REGIMES
@@ -406,9 +406,19 @@ def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray,
     opposed = [p for p in values["parts"] if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     if len({e.ratio > 1 for _, _, e in opposed}) == 2:
         return finding(results, "classes_both", "valid", rows, **values, turns=opposed)
-    none = effect.interval[0] <= 1 <= effect.interval[1] or bool(against)
+    none = not _beyond_chance(effect, len(results.factors)) or bool(against)
     kinds = sorted({category for category, _, _ in against})
     return finding(results, "classes_none" if none else "classes", "valid", rows, **values, kinds=kinds)
+
+
+def _beyond_chance(effect: Effect, looks: int) -> bool:
+    """Return whether an effect of classes is larger than the largest that chance gives one of `looks` factors.
+
+    The interval of one factor is widened so that all of them together hold the truth in 95 % of all samples.
+    """
+    wider = norm.ppf(1.0 - 0.025 / max(looks, 1)) / norm.ppf(0.975)
+    low, high = (effect.ratio * (end / effect.ratio) ** wider for end in effect.interval)
+    return bool(low > 1 or high < 1)
 
 
 # where rolling and the model end

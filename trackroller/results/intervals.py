@@ -345,7 +345,7 @@ class Cases:
 
     def conditions_in(self, rows: np.ndarray) -> np.ndarray:
         """Return the number of conditions of each candidate that have one of these cases, shape (candidates,)."""
-        place, many = self.candidates.place, len(self.candidates.size)
+        place, many = self.candidates.design, len(self.candidates.size)
         pairs = np.unique(place[rows] * (int(self.use.max()) + 1) + self.use[rows])
         return np.bincount(pairs // (int(self.use.max()) + 1), minlength=many)
 

@@ -102,6 +102,12 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
     return Judged(genes, table, costs, violation.astype(float), short, _reasons(results, known.ravel()))
 
 
+def required(results: Results) -> bool:
+    """Return whether a search has a target that its designs have to meet, instead of a goal that is its probability."""
+    chances = {judged_by(goal)[1] for goal in goals_of_search(results) if judged_by(goal)[0] == "probability"}
+    return bool(set(results.config.analysis.target) - chances)
+
+
 def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray | None:
     """Return how far each design of a search is from the target of the study, shape (designs,).
 
@@ -113,10 +119,11 @@ def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray | None:
     Returns
     -------
     0 where the design meets the target; 1 where a range or an error leaves that open, 2 where it misses the target,
-    plus half the share of the conditions that may miss it. None without a target, or without lives and stresses.
+    plus half the share of the conditions that may miss it. None without a target, or without lives and stresses, and
+    where the probability of the target is a goal itself.
     """
     goal = results.life or STRESS
-    if not results.config.analysis.target or goal[0] not in results.table:
+    if not required(results) or goal[0] not in results.table:
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
     hits = Cases(Candidates.grouped(results, goal)).on_target(exact=False)[1:]

@@ -331,7 +331,7 @@ def pareto_of_search(results: Results) -> xr.Dataset:
     excluded = f"{left} that are valid in {'fewer conditions' if least < 1 else 'no condition'}" if left else ""
     attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
-    lives = [name for name in goals if is_life(judged_by(name)[1])]
+    lives = [name for name in goals if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"]
     beyond = {f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8)) for name in lives}
     return front_of(factors, columns, goals, kept, excluded, **attrs).assign(beyond)
 
@@ -342,7 +342,10 @@ def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
 
 
 def end_places(front: xr.Dataset) -> list[int]:
-    """Return for each goal the place of the optimal design that is best in it, shape (goals,)."""
+    """Return for each goal the place of the optimal design that is best in it, shape (goals,).
+
+    Of designs that tie in a goal, the other goals decide in their order.
+    """
     best = np.flatnonzero(front["optimal"].values == 1)
-    signs = [(front[name].values[best].astype(float), -1.0 if way == "max" else 1.0) for name, way in goals_of(front)]
-    return [int(best[np.argmin(sign * values)]) for values, sign in signs]
+    costs = [front[name].values[best].astype(float) * (-1.0 if way == "max" else 1.0) for name, way in goals_of(front)]
+    return [int(best[np.lexsort([*reversed(costs), cost])[0]]) for cost in costs]

@@ -150,13 +150,14 @@ class Tradeoff:
     Attributes
     ----------
     goals : words, units and direction of each goal
-    ends : for each goal the choices and the values of the design that is best in it
+    ends : for each goal the choices and the values of the design that is best in it, and which of these are lives
+        beyond the S-N data
     designs : number of Pareto-optimal designs
     gap : values of the first goal between which no design lies; empty without a gap
     """
 
     goals: tuple[tuple[str, str, str], ...]
-    ends: tuple[tuple[Mapping[str, Any], tuple[float, ...]], ...]
+    ends: tuple[tuple[Mapping[str, Any], tuple[float, ...], tuple[bool, ...]], ...]
     designs: int
     gap: tuple[float, ...] = ()
 
@@ -175,7 +176,7 @@ class Verdict:
     named : number of the first candidates that the verdict names: one, or all that the study cannot tell apart
     why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`,
         `accuracy` where the error of the solution holds the target, or `sample` where the interval of the sampled
-        conditions does
+        conditions does, or `untried` where it meets the target under the conditions that a table tries it under
     next : the next best candidate, None without one
     out_of_reach : conditions that no candidate meets, None without one
     fails : where the first candidate misses the target, or its conditions; None if it does not
@@ -465,6 +466,21 @@ def _status(cases: Cases, rows: np.ndarray, sure: np.ndarray, may: np.ndarray, o
     return "open" if any(possible for _, possible in ends(may)) else "missed"
 
 
+def _of_all_rows(cases: Cases, i: int, shared: str, sure: np.ndarray, may: np.ndarray) -> str:
+    """Return whether a candidate meets the target in all its rows of a table, from the status over shared conditions.
+
+    It is open where another candidate was tried under a condition that this one was not tried under.
+    """
+    untried = cases.candidates.untried
+    own = untried & (cases.candidates.design == i)
+    if not shared or shared == "missed" or not untried.any():
+        return shared
+    if not may[own].all():
+        return "missed"
+    everywhere = set(cases.use[own]) == set(cases.use[untried])
+    return shared if everywhere and sure[own].all() else "open"
+
+
 def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     """Return the verdict over the cases `wanted`; those out of reach are left out of the ranking, not of the target."""
     candidates, target = cases.candidates, cases.results.config.analysis.target
@@ -477,17 +493,22 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     met = size - cases.conditions_in(counted & ~good)
     rows = [np.flatnonzero(counted & (candidates.place == i)) for i in range(len(size))]
     within = cases.on_target(exact=False)[1:]
-    status = np.array([_status(cases, own, *within) if target else "" for own in rows])
+    shared = np.array([_status(cases, own, *within) if target else "" for own in rows])
+    status = np.array([_of_all_rows(cases, i, str(word), *within) for i, word in enumerate(shared)])
     order = _order(scores, status, met / np.maximum(size, 1), _least_met(cases, counted & good))
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
     if kind == "measure" and target:  # unless no value is missing, but a finer solution or conditions are
         decided = [_status(cases, rows[first[0]], sure, may, of_all) != "open" for of_all in (True, False)]
-        if any(decided):
+        if shared[first[0]] == "met":
+            kind, why = "cannot_tell", "untried"
+        elif any(decided):
             kind, why = "cannot_tell", "accuracy" if decided[0] else "sample"
     unsure = _within_error(cases, rows[first[0]], (sure, may), within) if why == "accuracy" else -1
     order = np.array([*first, *(i for i in order if i not in first)])
+    everywhere = wanted | candidates.untried
     if kind == "none":  # of all conditions, those without any candidate included
-        size, met = cases.conditions_in(wanted), cases.conditions_in(wanted) - cases.conditions_in(wanted & ~good)
+        size = cases.conditions_in(everywhere)
+        met = size - cases.conditions_in(everywhere & ~good)
     facts = {"met": met, "conditions": size, "status": status}
     listed = tuple(_candidate(cases, scores, kept, int(i), facts) for i in order)
     named = len(first) or min(1, len(listed))
@@ -505,7 +526,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
         **_shared(cases),
     )
     if kind == "none":
-        own = rows_of(candidates, listed[0], wanted)
+        own = everywhere & (candidates.design == listed[0].number)
         reason = np.where(cases.reason == "", cases.first, cases.reason)
         fails = _misses(cases, own & ~good, own, reason)
         loads = {n: float(cases.results.base[n]) for n in LOADS if _unnamed(cases.results, n)}
@@ -773,6 +794,7 @@ def _tradeoff(results: Results) -> Tradeoff | None:
         (
             {n: _plain(front[n].values[place]) for n in names},
             tuple(float(front[goal].values[place]) for goal, _ in goals),
+            tuple(f"beyond_{goal}" in front and bool(front[f"beyond_{goal}"].values[place]) for goal, _ in goals),
         )
         for place in end_places(front)
     )

@@ -202,12 +202,13 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
         if tested:
             cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
             rows.append(["Nine of ten reach, 90 % by the tests", *cells])
-    places = {"worst": "worst condition" if rising else "largest", "median": "median"}
+    at_worst = f"worst {'shared ' * bool(candidates.untried.any())}condition"
+    places = {"worst": at_worst if rising else "largest", "median": "median"}
     places = places if candidates.conditions else {"worst": ""}
     known = _of_verdict(candidates, best) if rising else []
     spans = _spans(candidates, known)
     if spans:  # the ends of the range say more than a value within it
-        rows.append([f"{capital(candidates.goal[1])}, worst condition", *spans])
+        rows.append([f"{capital(candidates.goal[1])}, {at_worst}", *spans])
         places.pop("worst")
     if candidates.results.ranged:
         places = {key: f"{place}, within the ranges" if place else place for key, place in places.items()}

@@ -23,6 +23,7 @@ from trackroller.results.judging import (
     judge,
     optimum_of,
     recommended,
+    required,
 )
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import SAME_ENDS as SAME
@@ -104,6 +105,7 @@ def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) ->
         design, ends = one["design"], ends_of_goal(results, goal)
         beyond = bool(beyond_data(results, goal)[design])
         text = lasting(value, units, beyond) if units == "h" else quantity(value, units)
+        text = percent(value) if judged_by(goal)[0] == "probability" else text
         if ends is not None and ends[1][design] > ends[0][design] * (1 + SAME):
             text = ends_text(float(ends[0][design]), float(ends[1][design]), BEYOND * beyond, units)
         texts.append(f"{words} {text}")
@@ -120,12 +122,13 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     alike = all(one["values"] == best["values"] for one in search["optima"])
     values["goals"] = goal_texts(results, search, best)
     several = len(search["goals"]) > 1 and search["front"] > 1 and not alike
-    if several and not values["least"] and not results.config.analysis.target:  # the goals alone do not choose
+    if several and not values["least"] and not required(results):  # the goals alone do not choose
         ends = [goal_texts(results, search, one) for one in _ends(search)]
         return say("optimum", "requirement", ends=ends, **values)
     judged = judge(results)
     front = nondominated_ranks(judged.costs, judged.violation) == 0
-    values |= {"alike": alike, "target": targets_in_words(results), "short": float(judged.short[best["design"]])}
+    values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}
+    values["short"] = float(judged.short[best["design"]])
     values |= {"meeting": int((front & (judged.short == 0)).sum()), "designs": len(front)}
     values |= {"conditions": results.design.meta["inner_samples"], "limits": _limits(results, search, best)}
     return say("optimum", "recommended", **values)

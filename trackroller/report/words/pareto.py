@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.parameters.of_carriage import parameter_of
-from trackroller.report.numbers import Life, capital, lasting, long_name, quantity, with_unit
+from trackroller.report.numbers import Life, capital, lasting, listing, long_name, percent, quantity, with_unit
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, phrase, say
@@ -37,7 +37,8 @@ def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Senten
         words = [goal_words(front, name) for name in goals]
         values["goals"] = [f"{word} {value}" for word, value in zip(words, ends[0], strict=True)]
         values["first"] = [f"{value} {word}" for word, value in zip(words, ends[0], strict=True)]
-        values["last"] = ends[1] if len(places) > 1 and (table[places[0]] != table[places[1]]).any() else []
+        others = [i for i in range(1, len(places)) if (table[places[i]] != table[places[0]]).any()]
+        values["others"] = [listing(end) for end in dict.fromkeys(tuple(ends[i]) for i in others)]
         values["alike"] = len(np.unique(table[best], axis=0)) == 1
     values["outside"] = int((~results.valid[rows]).sum()) if results is not None and kind == "design" else 0
     values["alone"] = "pair_life_hours" in goals and results is not None and not results.knows("guide_life_hours")
@@ -59,6 +60,8 @@ def goal_heading(front: xr.Dataset, name: str) -> str:
 def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
     """Write a goal's value with its unit; a life beyond the S-N data says so."""
     unit = str(front[name].attrs.get("units", "1") or "1")
+    if statistic(name)[0] == "probability":
+        return percent(value)
     if f"beyond_{name}" in front:
         return lasting(value, unit, bool(front[f"beyond_{name}"].values[front[name].values == value].any()))
     return quantity(value, unit)

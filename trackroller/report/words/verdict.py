@@ -12,6 +12,7 @@ from trackroller.damage import LIMITS
 from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
+    lasting,
     level_text,
     long_name,
     percent,
@@ -156,7 +157,8 @@ class _Words:
         if found.kind == "give":
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
-            return [self.by_sample() if found.why == "sample" else self.by_error() if found.within_error >= 0 else None]
+            known = {"sample": self.by_sample, "accuracy": self.by_error, "untried": self.where_tried}
+            return [known[found.why]() if found.why in known else None]
         if found.kind == "none":
             return [self.nearest() if found.candidates else self.nowhere()]
         if found.kind == "measure":
@@ -188,6 +190,7 @@ class _Words:
             repeats=found.kind == "lasts",
             unlimited=math.isinf(one.low),
             scattered=self.scattered,
+            shared=bool(self.candidates.untried.any()),
         )
 
     def body(self, one: Candidate) -> str:
@@ -237,7 +240,7 @@ class _Words:
             "target": self.target(),
         }
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
-        life = self.span(one) if one.low > 0 else ""
+        life = (self.untried_life(one, alone=False) or self.span(one)) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
         values |= {"not_given": _not_given(fails)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
@@ -266,6 +269,11 @@ class _Words:
             "where": condition_words(self.candidates, found.within_error) if self.candidates.conditions else "",
         }
         return say("verdict", "accuracy", **values, target=self.target(), accuracy=self.results.config.accuracy)
+
+    def where_tried(self) -> Sentence:
+        """Say that a candidate meets the target under the conditions of a table that it was tried under."""
+        one = self.found.best[0]
+        return say("verdict", "where_tried", name=self.name(one), lives=self.span(one), target=self.target())
 
     def by_sample(self) -> Sentence:
         """Say that the interval of the sampled conditions holds the target."""
@@ -334,9 +342,13 @@ class _Words:
             turns = [(long_name(t.what), level_text(t.what, t.low, words=False)) for t in self.found.turns]
             return say("verdict", "given", turns=turns)
         ends = []
-        for choices, values in traded.ends:
-            lives = [quantity(v, unit) for v, (_, unit, _) in zip(values, traded.goals, strict=True)]
-            ends.append((" at ".join(lives), ", ".join(setting(n, v) for n, v in choices.items())))
+        for choices, values, beyond in traded.ends:
+            lives = [
+                lasting(v, unit, far) if unit == "h" else quantity(v, unit)
+                for v, (_, unit, _), far in zip(values, traded.goals, beyond, strict=True)
+            ]
+            ends.append(f"{' at '.join(lives)} ({', '.join(setting(n, v) for n, v in choices.items())})")
+        ends = list(dict.fromkeys(ends))
         unit = traded.goals[0][1]
         gap = [rounded(traded.gap[0]), quantity(traded.gap[1], unit)] if traded.gap else []
         return say("verdict", "tradeoff", designs=traded.designs, ends=ends, gap=gap)
@@ -369,14 +381,27 @@ class _Words:
             shown.append((self.name(one), REASONS.get(one.ends, one.ends), holds))
         return say("verdict", "not_judged", shown=shown, left=len(others) - len(shown), rises=found.goal_rises)
 
+    def untried_life(self, one: Candidate, alone: bool = True) -> str:
+        """Write the shortest life of a candidate under conditions that not every design was tried under; '' if none.
+
+        Unless `alone`, the conditions that all designs share count, too.
+        """
+        own = self.candidates.design == one.number
+        if not ((self.candidates.untried & own).any() and self.found.goal_rises):
+            return ""
+        rows = own & self.candidates.untried if alone else own
+        low, high = (float(end[rows].min()) for end in Cases(self.candidates).ends)
+        return ends_text(low, high, "", self.found.goal[2])
+
     def untried(self) -> Sentence | None:
         """Name the conditions of a table that not every design was tried under."""
         rows = np.flatnonzero(self.candidates.untried)
         if not len(rows):
             return None
         named = list(dict.fromkeys(condition_words(self.candidates, int(row)) for row in rows))
-        shared = int(self.candidates.size[0])
-        return say("verdict", "untried", shared=shared, rows=len(rows), named=named[:MOST], left=len(named) - MOST)
+        values = {"shared": int(self.candidates.size[0]), "rows": len(rows), "named": named[:MOST]}
+        values["there"] = self.untried_life(self.found.best[0]) if self.found.best else ""
+        return say("verdict", "untried", **values, left=len(named) - MOST)
 
     def without(self) -> Sentence | None:
         """Name the candidate that only a constraint of the study keeps out."""
