@@ -270,6 +270,24 @@ def test_variants_show_their_differences_and_a_curve_follows(page):
     page.until("document.querySelector('.whatif pre').textContent.includes('axial_force=60')")
 
 
+def test_what_if_sums_loads_by_share_and_finds_how_far_a_force_may_go(page):
+    type_into(page, "motor_force", "0")
+    page.until(SETTLED)
+    show(page, "whatif")
+    page.until("document.querySelectorAll('.blocks tbody tr').length === 3")
+    clicked = "[...document.querySelectorAll('.whatif button')].find((b) => b.textContent === %s).click()"
+    page.run(clicked % json.dumps("Sum up"))
+    page.until("document.querySelector('.spectrum').textContent.includes('By fatigue the roller lasts')")
+    page.run("""(() => { const f = document.querySelector('[aria-label="share of the time of load 1"]');
+        f.value = '40 %'; f.dispatchEvent(new Event('change')); })()""")
+    page.run(clicked % json.dumps("Sum up"))
+    page.until("document.querySelector('.spectrum').textContent.includes('add up to 1')")
+    page.until("document.querySelector('.side').textContent.includes('Solved with preview')")
+    page.run("""document.querySelector('[aria-label="Value that the result has to meet"]').value = '5,5'""")
+    page.run(clicked % json.dumps("How far may it go?"))
+    page.until("document.querySelector('.side').textContent.includes('pair_life_to_first_limit_hours >= 5.5')")
+
+
 def test_a_study_is_made_by_clicks_and_by_text(page):
     type_into(page, "axial_force", "45")
     page.run("document.querySelector('[aria-label=\"Make Friction coefficient a factor of the study\"]').click()")
