@@ -11,7 +11,7 @@ from trackroller.report.numbers import Life, capital, lasting, long_name, percen
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import SHORT
+from trackroller.report.words.verdict import SHORT, given_in_vain
 from trackroller.results.judging import beyond_data, choices_of, goal_column, optimum_of
 from trackroller.results.results import Results
 from trackroller.results.verdict import not_checked
@@ -69,6 +69,7 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
         "least": least_violation(search),
         "design": design_words(results, best["design"]),
         "front": search["front"],
+        "constraints": [str(one) for one in results.config.constraints],
     }
     values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
     alike = all(one["values"] == best["values"] for one in search["optima"])
@@ -101,8 +102,10 @@ def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
     """Name the limits that the search did not check, where a goal is a life."""
     if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
         return None
-    names = [SHORT.get(name) or ended_by(name) for name in not_checked(results)]
-    return say("verdict", "not_checked", names=names) if names else None
+    left_out = not_checked(results)
+    names = [SHORT.get(name) or ended_by(name) for name in left_out]
+    vain = given_in_vain(results, left_out)
+    return say("verdict", "not_checked", names=names, vain=vain) if names else None
 
 
 def _invalid(results: Results, search: dict[str, Any], least: float) -> Sentence:

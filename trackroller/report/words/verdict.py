@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Iterable
 
 import numpy as np
 
-from trackroller.damage import LIMITS
+from trackroller.damage import LIMITS, fields_of, judged
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
     level_text,
@@ -36,6 +37,7 @@ from trackroller.results.limit_notes import guessed_lines, placeholders_of
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 from trackroller.roller.dataset import validity_bit
+from trackroller.roller.record import is_default, names_not_given
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
@@ -420,7 +422,16 @@ class _Words:
         """Name what was not checked."""
         names = [SHORT.get(name) or ended_by(name) for name in self.found.not_checked]
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
-        return say("verdict", "not_checked", names=names) if names else None
+        vain = given_in_vain(self.results, self.found.not_checked)
+        return say("verdict", "not_checked", names=names, vain=vain) if names else None
+
+
+def given_in_vain(results: Results, not_checked: Iterable[str]) -> list[str]:
+    """Return the values under `base` that a study gives for limits which were not checked, and for nothing else."""
+    idle, unknown = set(not_checked), set(names_not_given(results.data.attrs))
+    users = {name: {one.name for one in judged() if name in fields_of(one)} for name in results.config.base}
+    of_limits = [name for name, own in users.items() if own and own <= idle and name not in unknown | {"travel"}]
+    return [name for name in of_limits if not is_default(name, results.config.base[name])]
 
 
 def _what(turn: Turn) -> str:
