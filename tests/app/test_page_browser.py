@@ -381,6 +381,19 @@ def test_no_width_scrolls_sideways(page, width):
         assert page.run("document.documentElement.scrollWidth") <= width, tab
 
 
+def test_margins_with_years_fit_a_phone_and_name_their_body(browser, live):
+    of_a_duty = "permissible_wear_depth=0.1&guide_overrollings_per_hour=60&motor_force=0"
+    of_a_duty += "&duty=%7Bhours_per_day%3A+16%2C+days_per_year%3A+250%7D"
+    with closing(Page(browser, f"{live.address}#tab=roller&{of_a_duty}", width=400, height=800)) as shown:
+        shown.until(SETTLED)
+        rows = shown.run("""[...document.querySelectorAll('.margins tbody tr')].map((r) => [...r.cells].filter(
+            (c) => getComputedStyle(c).display !== 'none').map((c) => c.textContent))""")
+        assert shown.run("document.querySelector('.margins').getBoundingClientRect().right <= innerWidth")
+        wear = [row for row in rows if row[0].startswith("wear")]
+        assert {row[1] for row in wear} == {"roller", "guide"} and all("years)" in row[-1] for row in wear)
+        assert all(row[2] == "at most 0.1 mm" for row in wear)
+
+
 def test_everything_is_reached_by_the_keyboard(page):
     page.run("document.querySelector('#tab-roller').focus()")
     page.key("ArrowRight")
