@@ -270,6 +270,24 @@ def test_variants_show_their_differences_and_a_curve_follows(page):
     page.until("document.querySelector('.whatif pre').textContent.includes('axial_force=60')")
 
 
+def test_what_if_sums_loads_by_share_and_finds_how_far_a_force_may_go(page):
+    type_into(page, "motor_force", "0")
+    page.until(SETTLED)
+    show(page, "whatif")
+    page.until("document.querySelectorAll('.blocks tbody tr').length === 3")
+    clicked = "[...document.querySelectorAll('.whatif button')].find((b) => b.textContent === %s).click()"
+    page.run(clicked % json.dumps("Sum up"))
+    page.until("document.querySelector('.spectrum').textContent.includes('By fatigue the roller lasts')")
+    page.run("""(() => { const f = document.querySelector('[aria-label="share of the time of load 1"]');
+        f.value = '40 %'; f.dispatchEvent(new Event('change')); })()""")
+    page.run(clicked % json.dumps("Sum up"))
+    page.until("document.querySelector('.spectrum').textContent.includes('add up to 1')")
+    page.until("document.querySelector('.side').textContent.includes('Solved with preview')")
+    page.run("""document.querySelector('[aria-label="Value that the result has to meet"]').value = '5,5'""")
+    page.run(clicked % json.dumps("How far may it go?"))
+    page.until("document.querySelector('.side').textContent.includes('pair_life_to_first_limit_hours >= 5.5')")
+
+
 def test_a_study_is_made_by_clicks_and_by_text(page):
     type_into(page, "axial_force", "45")
     page.run("document.querySelector('[aria-label=\"Make Friction coefficient a factor of the study\"]').click()")
@@ -361,6 +379,19 @@ def test_no_width_scrolls_sideways(page, width):
         if tab == "carriage":
             page.until("document.querySelectorAll('.views .handle').length > 0")
         assert page.run("document.documentElement.scrollWidth") <= width, tab
+
+
+def test_margins_with_years_fit_a_phone_and_name_their_body(browser, live):
+    of_a_duty = "permissible_wear_depth=0.1&guide_overrollings_per_hour=60&motor_force=0"
+    of_a_duty += "&duty=%7Bhours_per_day%3A+16%2C+days_per_year%3A+250%7D"
+    with closing(Page(browser, f"{live.address}#tab=roller&{of_a_duty}", width=400, height=800)) as shown:
+        shown.until(SETTLED)
+        rows = shown.run("""[...document.querySelectorAll('.margins tbody tr')].map((r) => [...r.cells].filter(
+            (c) => getComputedStyle(c).display !== 'none').map((c) => c.textContent))""")
+        assert shown.run("document.querySelector('.margins').getBoundingClientRect().right <= innerWidth")
+        wear = [row for row in rows if row[0].startswith("wear")]
+        assert {row[1] for row in wear} == {"roller", "guide"} and all("years)" in row[-1] for row in wear)
+        assert all(row[2] == "at most 0.1 mm" for row in wear)
 
 
 def test_everything_is_reached_by_the_keyboard(page):

@@ -53,3 +53,10 @@ def test_a_sample_says_whether_the_scatter_of_its_material_is_known(tmp_path, mo
     text = "materials:\n  mine:\n    like: C45\n    scatter_in_cycles: {value: 4, unit: '-', source: own tests}\n"
     (tmp_path / "config" / "materials.yaml").write_text(text)
     assert "`material_scatter: true` under `analysis` adds it" in sampled("mine")
+
+
+def test_a_value_under_base_that_no_limit_uses_is_named():
+    _, texts = said(permissible_wear_depth=None, required_travel=50, guide_overrollings_per_hour=60)
+    assert texts["not_checked"].endswith("; required_travel was given, but not used.")
+    _, texts = said(friction_coefficient=0.3)
+    assert "given, but not used" not in texts.get("not_checked", "")

@@ -366,3 +366,12 @@ def test_no_thirds_of_a_search_are_compared():
     at_end = min(best - 1.05, 1.3 - best) <= 1e-3 * 0.25
     assert ("profile ratio stands at the end of the allowed range" in said[0]) == at_end
     assert any(text.startswith("Not checked: bearing, heat, wear and guide") for text in said)
+
+
+def test_a_recommended_design_names_the_constraints_that_it_keeps():
+    from trackroller.report.words.sentence import say
+
+    values = {"least": 0.0, "design": "outer radius 14 mm", "goals": ["outer radius 14 mm"], "edges": [], "front": 1}
+    kept = say("optimum", "recommended", alike=True, constraints=["pair_life_hours >= 10000"], **values).text
+    assert "Its goal: outer radius 14 mm; it keeps `pair_life_hours >= 10000`." in kept
+    assert "keeps" not in say("optimum", "recommended", alike=True, constraints=[], **values).text

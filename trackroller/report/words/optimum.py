@@ -12,7 +12,7 @@ from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import bearing_words, targets_in_words, unchecked_words
+from trackroller.report.words.verdict import bearing_words, given_in_vain, targets_in_words, unchecked_words
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.judging import (
@@ -117,6 +117,7 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
         "least": least_violation(search),
         "design": design_words(results, best["design"]),
         "front": search["front"],
+        "constraints": [str(one) for one in results.config.constraints],
     }
     values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
     alike = all(one["values"] == best["values"] for one in search["optima"])
@@ -187,8 +188,9 @@ def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
     """Name the limits that the search did not check, where a goal is a life."""
     if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
         return None
-    names = unchecked_words(results, not_checked(results))
-    return say("verdict", "not_checked", names=names) if names else None
+    left_out = not_checked(results)
+    names, vain = unchecked_words(results, left_out), given_in_vain(results, left_out)
+    return say("verdict", "not_checked", names=names, vain=vain) if names else None
 
 
 def _invalid(results: Results, search: dict[str, Any], least: float) -> Sentence:

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from trackroller.damage import LIMITS
+from trackroller.damage import LIMITS, fields_of, judged
 from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
@@ -43,6 +43,7 @@ from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.limit_notes import guessed_lines, placeholders_of
+from trackroller.roller.record import is_default, names_not_given
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
@@ -473,7 +474,16 @@ class _Words:
         """Name what was not checked."""
         names = unchecked_words(self.results, self.found.not_checked)
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
-        return say("verdict", "not_checked", names=names) if names else None
+        vain = given_in_vain(self.results, self.found.not_checked)
+        return say("verdict", "not_checked", names=names, vain=vain) if names else None
+
+
+def given_in_vain(results: Results, not_checked: Iterable[str]) -> list[str]:
+    """Return the values under `base` that a study gives for limits which were not checked, and for nothing else."""
+    idle, unknown = set(not_checked), set(names_not_given(results.data.attrs))
+    users = {name: {one.name for one in judged() if name in fields_of(one)} for name in results.config.base}
+    of_limits = [name for name, own in users.items() if own and own <= idle and name not in unknown | {"travel"}]
+    return [name for name in of_limits if not is_default(name, results.config.base[name])]
 
 
 def bearing_words(results: Results, limits: Iterable[str]) -> Sentence | None:

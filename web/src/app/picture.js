@@ -31,7 +31,7 @@ function lines(list) {
 const BEYOND = " (beyond the S-N data)"; // a dagger in the table stands for it
 
 function bar(margin) {
-  if (!margin.share) return el("span", { class: "soft" }, margin.required); // such as the permissible wear depth
+  if (!margin.share) return el("span", { class: "soft" }, margin.required.replace(/^(.*?): .*$/, "at most $1")); // such as a wear depth
   const used = Math.min(100 * Number(margin.used ?? Infinity), FULL);
   const fill = el("i", { class: margin.used > 1 ? "over" : "under" });
   fill.style.width = `${(used / FULL) * 100}%`;
