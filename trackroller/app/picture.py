@@ -20,7 +20,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.numbers import head_unit, lives_in_years, on_duty, unit_text
+from trackroller.report.numbers import head_unit, lives_in_years, on_duty
 from trackroller.report.pages.sheet import collect, render, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
