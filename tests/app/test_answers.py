@@ -150,7 +150,7 @@ def test_the_page_asks_about_a_drive_that_nobody_gave():
 def test_sheet_and_workbook_of_roller_and_study_are_saved(tmp_path, monkeypatch):
     values = {"axial_force": "40", "contact_model": "sliding"}
     book = openpyxl.load_workbook(io.BytesIO(file_of_roller(values, "roller.xlsx")))
-    assert ("axial_force", 40, "N", "given") in book["inputs"].values
+    assert ("axial_force", "axial force", 40, "N", "given") in book["inputs"].values
     monkeypatch.chdir(tmp_path)
     study = {"name": "small", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
     tr.run(tr.load_study(study | {"accuracy": "preview"}), results="results")

@@ -70,7 +70,8 @@ def test_the_workbook_of_one_roller_has_inputs_results_and_limits(tmp_path):
     book = openpyxl.load_workbook(tmp_path / "roller.xlsx")
     inputs, results, limits = (list(sheet.values) for sheet in book)
     assert book.sheetnames == ["inputs", "results", "limits"] and all(sheet.freeze_panes == "A2" for sheet in book)
-    assert ("axial_force", 40, "N", "given") in inputs and ("radial_force", -200, "N", "example") in inputs
+    assert ("axial_force", "axial force", 40, "N", "given") in inputs
+    assert ("radial_force", "radial force", -200, "N", "example") in inputs
     ds = tr.solve(tr.Case(axial_force=40), contact_model="sliding", accuracy="preview")
     found = {name: (value, unit) for name, _, value, unit in results}
     assert found["normal_force_2"] == (float(ds.normal_force.sel(contact=2)), "N")
