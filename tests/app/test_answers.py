@@ -150,7 +150,7 @@ def test_the_page_asks_about_a_drive_that_nobody_gave():
 def test_sheet_and_workbook_of_roller_and_study_are_saved(tmp_path, monkeypatch):
     values = {"axial_force": "40", "contact_model": "sliding"}
     book = openpyxl.load_workbook(io.BytesIO(file_of_roller(values, "roller.xlsx")))
-    assert ("axial_force", 40, "N", "given") in book["inputs"].values
+    assert ("axial_force", "axial force", 40, "N", "given") in book["inputs"].values
     monkeypatch.chdir(tmp_path)
     study = {"name": "small", "factors": {"axial_force": {"values": [0, 30]}}, "contact_model": "sliding"}
     tr.run(tr.load_study(study | {"accuracy": "preview"}), results="results")
@@ -287,3 +287,10 @@ def test_the_page_sums_a_spectrum_by_share_and_finds_how_far_a_force_may_go():
     case = {name: value for name, value in values.items() if name not in ("duty", "contact_model")}
     far = tr.find(tr.Case(**case), "axial_force", condition, contact_model="sliding")
     assert range_of(values, "axial_force", condition)["text"] == far.text
+
+
+def test_a_curve_of_a_life_says_how_many_hours_are_a_year():
+    values = {"motor_force": 0, "contact_model": "sliding", "duty": {"hours_per_day": 16, "days_per_year": 250}}
+    assert curve(values, "axial_force", [0, 30])["columns"]["roller_life_hours"]["unit"] == "h; 4000 h = 1 year"
+    del values["duty"]
+    assert curve(values, "axial_force", [0, 30])["columns"]["roller_life_hours"]["unit"] == "h"

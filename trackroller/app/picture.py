@@ -20,7 +20,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.report.figures.contact_outline import Patch, patches_of
 from trackroller.report.figures.roller_section import drawing
-from trackroller.report.numbers import lives_in_years, unit_text
+from trackroller.report.numbers import head_unit, lives_in_years, on_duty
 from trackroller.report.pages.sheet import collect, render, write_sheet
 from trackroller.report.workbook import write_roller
 from trackroller.roller.case import Case
@@ -192,14 +192,15 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
     if not cases:
         raise InputError(over, f"{low:g} to {high:g}", "values of which one at least can be solved", refused)
     ds = solve(cases, (*LIVE[:-1], *_JUDGED, "limits"), **{"accuracy": "preview", **read(values)[1]})
-    columns = {}
+    columns, duty = {}, read(values)[2].get("duty")
     names, regimes = every_name(ds, (), ("case",)), ("rolling", "full_slip", "lift_off")
     for one in outputs(ds, (), names, regimes, unlimited=True, scale="natural"):
         column = np.full(POINTS, np.nan)
         column[kept] = one.values
         if not np.isnan(column).all():
             label = re.sub(r", eqs?\. \(\d+\)", "", one.long_name)  # the number of an equation of the paper
-            columns[one.name] = {"label": label, "unit": unit_text(one.units), "values": column.tolist()}
+            with on_duty(duty):
+                columns[one.name] = {"label": label, "unit": head_unit(one.units), "values": column.tolist()}
     return {"over": over, "along": along.tolist(), "columns": columns, "refused": refused}
 
 

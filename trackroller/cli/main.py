@@ -185,7 +185,7 @@ def rerun(
 
 @command("trackroller.cli.case", "run_spectrum")
 def spectrum(
-    file: Annotated[Path | None, typer.Argument(help="loads and distances of a shift; with --from the roller")] = None,
+    file: Annotated[Path | None, typer.Argument(help="loads of a roller in blocks; with --from the roller")] = None,
     as_json: Annotated[bool, typer.Option("--json", help="print JSON")] = False,
     out: Annotated[Path | None, typer.Option("-o", "--out", help="write netCDF (.nc), with --from YAML")] = None,
     report: Annotated[Path | None, typer.Option("--report", help="write the page (.html or .pdf) too")] = None,

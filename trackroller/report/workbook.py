@@ -21,7 +21,7 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.parameters.of_carriage import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
-from trackroller.report.numbers import plain, unit_text
+from trackroller.report.numbers import long_name, plain, unit_text
 from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.table import Table, cell
 from trackroller.results.results import Results
@@ -112,7 +112,8 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     duty = duty_of(ds) or {}
     rows = [[n, _plain(v), units.get(n, unit_of(n)), "example" if n in example else "given"] for n, v in own.items()]
     rows += [[name, value, "-", "given"] for name, value in duty.items()]
-    sheets = [Table("inputs", "Inputs", ["input", "value", "unit", "from"], rows)]
+    rows = [[name, long_name(name), *others] for name, *others in rows]
+    sheets = [Table("inputs", "Inputs", ["input", "meaning", "value", "unit", "from"], rows)]
     known = parts_in(ds, (str(name) for name, v in ds.data_vars.items() if v.dtype.kind in "fiu"), ())
     found = [(name, part.words, part.values(ds).item()) for name, part in known.items() if "limit" not in part.at]
     told = [[name, words, in_words(name, [value])[0], unit_of(name)] for name, words, value in found if value == value]

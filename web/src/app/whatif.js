@@ -17,6 +17,7 @@ function facts(picture) {
   add("Verdict", "verdict", picture.verdict);
   for (const [words, one, two, unit] of picture.lines) add("Contacts 1 / 2", words, one === two ? one : `${one} / ${two}`, unit);
   for (const m of picture.margins) add("Used of the limit", `${m.title}, ${m.body}`, m.share || "–");
+  for (const m of picture.margins) if (Number.isFinite(m.hours)) add("Reached after", `${m.title}, ${m.body}`, m.life);
   for (const { words, value, unit } of picture.lives) add("Life", words, value, unit);
   return found;
 }
