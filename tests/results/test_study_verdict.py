@@ -151,6 +151,19 @@ def test_a_target_within_the_error_of_the_solution_cannot_be_told():
     assert made(lives, lives * 10, target={LIFE: {"min": 350}}, error=0.2).verdict.kind == "measure"
 
 
+def test_designs_outside_the_model_leave_a_target_open_that_the_others_miss():
+    """Only designs that the model does not judge may last long enough: the best of the others is named."""
+    results = solved()
+    outside = np.zeros((3, 2, 3), int)
+    outside[0] = flag(results, "half_space")
+    lives = [[[900, 400, 300], [120, 800, 900]], [[250, 260, 270], [10, 20, 30]], [[5, 6, 7], [8, 9, 9]]]
+    unsure = made(lives, flags=outside, target={LIFE: {"min": 290}})
+    assert (unsure.verdict.kind, unsure.verdict.why) == ("cannot_tell", "model")
+    said = [one.text for one in verdict_sentences(unsure)]
+    assert said[1].startswith("Of the designs that the model judges, 4, none meets the target of 290 h; the best, ")
+    assert "lasts 250 h" in said[1] and "outside the half-space" in said[2]
+
+
 def test_none_names_the_candidate_that_meets_the_target_in_most_conditions():
     """Met in two of three conditions before one in three, although the latter has the longer worst life."""
     lives = [[[10, 400, 300], [50, 60, 900]], [[40, 45, 50], [1, 2, 3]], [[5, 6, 7], [8, 9, 9]]]

@@ -75,7 +75,7 @@ def _input(results: Results, name: str) -> np.ndarray:
     return np.full(len(results.table), float(value) if isinstance(value, (int, float)) else np.nan)
 
 
-def _mixed(results: Results) -> np.ndarray:
+def mixed(results: Results) -> np.ndarray:
     """Return the rows of a random design that are no draws of their own, such as the mixtures of Saltelli's; (n,)."""
     out = np.ones(len(results.table), dtype=bool)
     out[results.design.method.independent_rows(results.design)] = False
@@ -157,8 +157,8 @@ class Candidates:
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)
-        if conditions and (mixed := _mixed(results)).any():
-            place = np.where(mixed, -1, place)
+        if conditions and (left_out := mixed(results)).any():
+            place = np.where(left_out, -1, place)
             place[place >= 0] = np.unique(place[place >= 0], return_inverse=True)[1]
         shared = _shared(place, use) if results.config.method.observed else np.zeros(len(use), dtype=bool)
         untried = own & ~shared if shared.any() else shared

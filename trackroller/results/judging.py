@@ -77,6 +77,21 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
     genes : numpy.ndarray, shape (n, choices), optional
         Genes of the designs; by default those of the design.
     """
+    design, goals = results.design, goals_of_search(results)
+    table, known = _values(results)
+    counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
+    if genes is None:
+        places = [list(design.factors).index(name) for name in design.meta["outer"]]
+        genes = design.unit[:: design.meta["inner_samples"], places]
+    costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
+    violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
+    short = shortfall(results, any(judged_by(goal)[0] == "b10" for goal in goals))
+    short = np.zeros(len(table)) if short is None else short
+    return Judged(genes, table, costs, violation.astype(float), short, _reasons(results, known.ravel()))
+
+
+def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
+    """Return the goals of each design, (designs, goals), and where all goals of a case are known, (designs, cases)."""
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
     valid, goals = results.valid.reshape(shape), goals_of_search(results)
@@ -90,16 +105,7 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
         good = valid & ~np.isnan(raw)
         known &= good | (kind == "b10")
         values.append(_over_conditions(raw, good, kind, goals[goal]))
-    counted = all(judged_by(goal)[0] in ("b10", "probability") for goal in goals)
-    table = np.stack(values, axis=1)
-    if genes is None:
-        places = [list(design.factors).index(name) for name in design.meta["outer"]]
-        genes = design.unit[:: shape[1], places]
-    costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
-    violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
-    short = shortfall(results, any(judged_by(goal)[0] == "b10" for goal in goals))
-    short = np.zeros(len(table)) if short is None else short
-    return Judged(genes, table, costs, violation.astype(float), short, _reasons(results, known.ravel()))
+    return np.stack(values, axis=1), known
 
 
 def required(results: Results) -> bool:
@@ -215,8 +221,8 @@ def choices_of(results: Results, number: int) -> dict[str, Any]:
 
 def goal_column(results: Results, goal: str) -> Column:
     """Return the values (n,) of a goal by design, its units and its name in words."""
-    judged, (kind, output) = judge(results), judged_by(goal)
-    values = judged.values[:, list(goals_of_search(results)).index(goal)]
+    kind, output = judged_by(goal)
+    values = _values(results)[0][:, list(goals_of_search(results)).index(goal)]
     if kind == "probability":
         if output in REGIMES:
             return values, "1", f"probability of {REGIME_LABELS[REGIMES.index(output)]}"

@@ -29,7 +29,7 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
-from trackroller.results.candidates import FEWEST, Candidates
+from trackroller.results.candidates import FEWEST, Candidates, mixed
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
@@ -144,6 +144,7 @@ def best_table(results: Results) -> Table | None:
         "shown": {row[0] for row in rows},
         "many": len(best),
     }
+    facts["mixed"] = bool(candidates.conditions) and bool(mixed(results).any())
     facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)

@@ -159,7 +159,7 @@ class _Words:
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
             known = {"sample": self.by_sample, "accuracy": self.by_error, "untried": self.where_tried}
-            return [known[found.why]() if found.why in known else None]
+            return [known.get(found.why, self.by_model)()]
         if found.kind == "none":
             return [self.nearest() if found.candidates else self.nowhere()]
         if found.kind == "measure":
@@ -270,6 +270,15 @@ class _Words:
             "where": condition_words(self.candidates, found.within_error) if self.candidates.conditions else "",
         }
         return say("verdict", "accuracy", **values, target=self.target(), accuracy=self.results.config.accuracy)
+
+    def by_model(self) -> Sentence:
+        """Say how far the designs come that the model judges, where only others may be enough."""
+        found = self.found
+        judged = [one for one in found.candidates if one.judged]
+        best = max(judged, key=lambda one: (one.met, one.low if found.goal_rises else -one.low), default=None)
+        name, lives = ("", "") if best is None else (self.name(best), self.span(best))
+        values = {"many": len(judged), "target": self.target(), "holds": best is not None and best.low > 0}
+        return say("verdict", "model", name=name, lives=lives, rises=found.goal_rises, **values)
 
     def where_tried(self) -> Sentence:
         """Say that a candidate meets the target under the conditions of a table that it was tried under."""
@@ -433,7 +442,7 @@ class _Words:
     def guessed(self) -> Sentence | None:
         """Say that fatigue ends the first candidate by an S-N line that rests on guesses."""
         found = self.found if self.found.rest is None else self.found.rest
-        if not found.best or "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
+        if not found.best or found.why == "model" or "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
             return None
         material = str(self.results.material(found.best[0].body)[found.best[0].case])
         return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
