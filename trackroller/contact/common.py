@@ -10,12 +10,14 @@ from __future__ import annotations
 import dataclasses
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import ClassVar, Literal, Protocol, Self
+from typing import TYPE_CHECKING, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
-from trackroller.contact.slip import Slip
 from trackroller.numerics.rows import Rows
+
+if TYPE_CHECKING:
+    from trackroller.contact.slip import Slip
 
 # Share of the largest possible error of the friction work, see `error_of_work`. The error exceeded this share in 1 of
 # 100 designs.
