@@ -62,4 +62,6 @@ def test_the_scatter_of_the_material_enters_verdict_and_target():
     assert best.low < 0.95 * plain and "with the scatter of the material" in verdict_sentences(results)[1].text
     least = 1.02 * plain  # reached without the scatter by the interval of the sample, at most
     judged = run("inner_outer", 64, analysis={"material_scatter": 4, "target": {"min": least}}).verdict
+    wide = next(c for c in judged.candidates if c.choices == best.choices)
+    assert wide.met == (row >= least).sum()  # of the conditions themselves
     assert judged.kind == ("none" if best.interval[1] < least else "cannot_tell")

@@ -116,8 +116,13 @@ class Cases:
     @cached_property
     def ends(self) -> tuple[np.ndarray, np.ndarray]:
         """Return both ends of the goal of each case, as a life or as 1/stress, shape (n,) each."""
-        low, high = self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
+        low, high = self.unscattered
         return (low, high) if self.scatter is None else (low * self.scatter[0], high * self.scatter[1])
+
+    @cached_property
+    def unscattered(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return `ends` without the scatter of the material: the lives of the cases themselves."""
+        return self._between(*((self._by_tests(i), end) for i, end in enumerate(("_low", "_high"))))
 
     @cached_property
     def scatter(self) -> tuple[np.ndarray, np.ndarray] | None:
@@ -320,16 +325,17 @@ class Cases:
         groups = (high[rows & (self.candidates.place == i)] for i in range(len(self.candidates.size)))
         return any(len(own) and b10(own)[0] > 0.0 for own in groups)
 
-    def on_target(self, exact: bool = True) -> tuple[float, np.ndarray, np.ndarray]:
+    def on_target(self, exact: bool = True, scattered: bool = True) -> tuple[float, np.ndarray, np.ndarray]:
         """Return the required hours, the cases that surely meet the target, and the cases that may meet it.
 
         A target on a life of the pair or of the roller is judged by the life that is compared: a longer life by one
         limit is of no use if another limit comes first. Unless `exact`, the error of the solution widens the range of
-        each life.
+        each life. Unless `scattered`, the lives of the cases themselves count, without the scatter of the material.
         """
         results = self.results
         error = 1.0 if exact else 1.0 + self.error
-        low, high = self.ends[0] / error, self.ends[1] * error
+        both = self.ends if scattered else self.unscattered
+        low, high = both[0] / error, both[1] * error
         required, others = np.nan, np.ones(len(low), dtype=bool)
         for name, ends in results.config.analysis.target.items():
             if name in OF_PAIR and self.candidates.goal[2] == "h" and set(ends) == {"min"}:

@@ -125,21 +125,24 @@ def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray | None:
     Returns
     -------
     0 where the design meets the target; 1 where a range or an error leaves that open, 2 where it misses the target,
-    plus half the share of the conditions that may miss it. None without a target, or without lives and stresses, and
-    where the probability of the target is a goal itself.
+    plus a part below 1 by the share of the conditions that may miss it, then by the life. None without a target,
+    without lives and stresses, and where the probability of the target is a goal itself.
     """
     goal = results.life or STRESS
     if not required(results) or goal[0] not in results.table:
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    hits = Cases(Candidates.grouped(results, goal)).on_target(exact=False)[1:]
+    cases = Cases(Candidates.grouped(results, goal))
+    least, *hits = cases.on_target(exact=False)
     sure, may = (own.astype(float).reshape(shape) for own in hits)
 
-    def enough(hits: np.ndarray) -> np.ndarray:
-        return np.array([b10(own)[0] if nine_of_ten else own.min() for own in hits]) > 0
+    def of_design(values: np.ndarray) -> np.ndarray:
+        return np.array([b10(own)[0] if nine_of_ten else own.min() for own in values])
 
-    missing = 0.5 * (1.0 - sure.mean(axis=1))
-    return np.asarray(np.where(enough(sure), 0.0, np.where(enough(may), 1.0, 2.0) + missing))
+    lives = of_design(cases.ends[0].reshape(shape))
+    gap = 0.0 if np.isnan(least) else 1.0 - np.clip(lives / least, 0.0, 1.0)
+    missing = 0.9 * (1.0 - sure.mean(axis=1)) + 0.09 * gap * (0.5 / shape[1])
+    return np.asarray(np.where(of_design(sure) > 0, 0.0, np.where(of_design(may) > 0, 1.0, 2.0) + missing))
 
 
 def _met(results: Results, output: str) -> np.ndarray:

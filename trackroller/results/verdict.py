@@ -488,7 +488,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     kept = kept if kept.any() else wanted
     scores = _scores(cases, kept)
     required, sure, may = cases.on_target()
-    counted, good = (wanted, sure) if target else (kept, cases.ends[0] > 0)
+    counted, good = (wanted, cases.on_target(scattered=False)[1]) if target else (kept, cases.ends[0] > 0)
     size = cases.conditions_in(counted)
     met = size - cases.conditions_in(counted & ~good)
     rows = [np.flatnonzero(counted & (candidates.place == i)) for i in range(len(size))]
