@@ -38,6 +38,7 @@ def test_an_end_that_ties_is_the_best_of_the_others():
     assert f"at {quantity(small['power'], 'W')} at 16 mm" in said and quantity(small["life"], "h") in said
     assert f"{quantity(power['power'], 'W')} at {quantity(power['axis_distance'], 'mm')}" in said
     assert "beyond the S-N data" in said
+    assert sum(len(one.text.split()) for one in verdict_sentences(results)) <= 120
     decided = pareto_sentence(results.pareto(), results).text
     assert quantity(small["life"], "h") in decided and quantity(power["life"], "h") in decided
 

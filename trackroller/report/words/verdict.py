@@ -100,7 +100,8 @@ def verdict_sentences(results: Results) -> list[Sentence]:
 
 def _fitting(said: list[Sentence]) -> list[Sentence]:
     """Return the sentences of a verdict within `WORDS`: what is least needed for the decision is left out first."""
-    for kind in LEAST_NEEDED:
+    traded = any(sentence.kind == "tradeoff" for sentence in said)  # which asks for more than one life
+    for kind in (*LEAST_NEEDED, *(("ends",) if traded else ())):
         if sum(len(sentence.text.split()) for sentence in said) > WORDS:
             said = [sentence for sentence in said if sentence.kind != kind]
     return said
