@@ -28,6 +28,7 @@ from synthetic_results import PAIRS, grid_study, results_of
 
 import trackroller as tr
 from trackroller.carriage.example import EXAMPLE
+from trackroller.cli.case import SHEET_OUTPUTS, groups_of
 from trackroller.report.pages.carriage import write_carriage
 from trackroller.report.pages.sheet import render
 from trackroller.report.pages.spectrum import write_spectrum
@@ -175,6 +176,13 @@ def sheet() -> str:
     return render(tr.solve(case, [*LIVES, "limits", "wear"], **QUICK), "roller")
 
 
+def limits() -> str:
+    """Return the sheet of a roller with all limits, of which heat and bearing lack a value."""
+    loads = {"radial_force": -30, "axial_force": 3, "motor_force": 0, "guide_overrollings_per_hour": 100}
+    case = tr.Case(**loads, cooled_area=500, guide_material="PA6", friction_coefficient=None)
+    return render(tr.solve(case, (*SHEET_OUTPUTS, *groups_of("all")), **QUICK), "R 1")
+
+
 def spectrum() -> str:
     """Return the page of a shift with a jerk."""
     base = {"friction_coefficient": 0.2, "motor_force": 0, "guide_overrollings_per_hour": 120}
@@ -204,7 +212,7 @@ def _written(write: Callable[[Path], object]) -> str:
 
 PAGES: dict[str, Callable[[], str]] = {
     page.__name__: page
-    for page in (wear, draws, loads, proposals, indices, search, tie, regimes, models, grown, sheet, spectrum, carriage)
+    for page in (wear, draws, loads, proposals, indices, search, tie, regimes, models, grown, sheet, limits, spectrum, carriage)
 }
 
 
