@@ -210,10 +210,8 @@ def _written(write: Callable[[Path], object]) -> str:
         return page.read_text(encoding="utf-8")
 
 
-PAGES: dict[str, Callable[[], str]] = {
-    page.__name__: page
-    for page in (wear, draws, loads, proposals, indices, search, tie, regimes, models, grown, sheet, limits, spectrum, carriage)
-}
+REPORTS = (wear, draws, loads, proposals, indices, search, tie, regimes, models, grown)
+PAGES: dict[str, Callable[[], str]] = {page.__name__: page for page in (*REPORTS, sheet, limits, spectrum, carriage)}
 
 
 # what a reader sees of a page

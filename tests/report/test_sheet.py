@@ -353,7 +353,7 @@ def test_a_life_beyond_the_data_says_so():
 
 def test_the_sheet_names_what_it_rests_on(complete):
     """The standards of limits that were checked, and what was not; the golden page `limits` holds the other words."""
-    facts, ds = complete
+    facts, _ = complete
     assert "ISO" not in facts.standards and "EN 13001-3-3" in facts.standards  # no bearing was given
     (told,) = facts.not_checked
     assert "heat (give heat_transfer_coefficient)" in told and "bearing (give bearing)" in told
