@@ -78,9 +78,10 @@ def compared(gathered, place):
     return {i.name: i for i in infos}, page.read_text(encoding="utf-8")
 
 
-def sentences(paired):
-    """Return all sentences of a comparison."""
-    return [comparison.overview(paired), *comparison.short(paired), *comparison.details(paired)]
+def designs_of(gathered):
+    """Return the number of cases that differ in nothing but the model."""
+    with xr.open_dataset(gathered) as ds:
+        return ladder.pairs(results_of(ds)).sizes["design"]
 
 
 @pytest.fixture(scope="module")
@@ -95,8 +96,7 @@ def own(tmp_path_factory):
 def test_a_study_with_the_models_as_a_factor_is_compared_in_figures_and_report(own):
     drawn, text = shown(*own)
     assert set(drawn) >= FIGURES
-    assert "normal forces up to a friction of 0.04" in text and "Contact models compared" in text
-    assert "The sliding model is within 5 % of kalker" in text
+    assert "Contact models compared" in text
     with xr.open_dataset(own[0]) as ds:
         paired = ladder.pairs(results_of(ds))
     assert paired.sizes["design"] == 4 and paired.attrs["reference"] == "kalker"
@@ -125,7 +125,6 @@ def test_best_designs_and_pareto_set_are_those_of_one_model(own):
         valid = (ds["regime"] == 0) & ((ds["validity"] & 0b100001111) == 0)
         best = {row[0]: row[1:] for row in page["tables"]["decide"][0].rows}
         expected = exact.where(valid.sel(contact_model="kalker")).values
-    assert page["tables"]["decide"][0].note.endswith("Designs solved with kalker.")
     lives = expected[np.isfinite(expected)]
     told = [best[f"Life of the roller, {row} [h]"][0] for row in ("worst condition", "median")]
     assert told == pytest.approx([lives.min(), np.median(lives)])
@@ -176,10 +175,10 @@ def test_an_inner_outer_design_has_pairs_and_a_sample_that_draws_the_model_says_
     }
     gathered = study(tmp_path, factors, design="inner_outer", samples=24, models=["sliding", "kalker"])
     drawn, text = compared(gathered, tmp_path)
-    assert set(drawn) >= FIGURES and "48 cases that differ in nothing but the model" in text
+    assert set(drawn) >= FIGURES and designs_of(gathered) == 48
     gathered = study(tmp_path, factors, design="lhs", samples=24, models=["sliding", "kalker"])
     drawn, text = compared(gathered, tmp_path)
-    assert not set(drawn) & FIGURES and "The contact models cannot be compared: no case was solved" in text
+    assert not set(drawn) & FIGURES and designs_of(gathered) == 0 and "cannot be compared" in text
 
 
 @pytest.mark.slow
@@ -192,7 +191,7 @@ def test_without_kalker_its_table_is_the_reference(tmp_path):
         "sliding",
         "kalker_table",
     ]
-    assert "cannot be compared with the reference" in " ".join(sentences(paired))
+    assert ladder.compared(ladder.errors(paired).sel(contact_model="sliding")) == 2 < comparison.FEWEST
 
 
 def test_one_model_or_none_is_not_compared():
@@ -216,8 +215,7 @@ def test_models_that_change_nothing_else_are_matched_whatever_the_order_of_the_c
     found = ladder.errors(paired).normal_force
     np.testing.assert_allclose(found.sel(contact_model="sliding").dropna("design"), 0.1, rtol=1e-9)
     np.testing.assert_allclose(found.sel(contact_model="kalker_table").dropna("design"), 0.02, rtol=1e-9)
-    words = sentences(paired)
-    assert "normal forces in 0 %" in words[1] and "normal forces in 100 %" in words[2]
+    assert [re.findall(r"forces in (\d+) %", said) for said in comparison.short(paired)] == [["0"], ["100"]]
 
 
 def test_the_levels_that_keep_the_tolerance_are_named():
@@ -270,12 +268,6 @@ def test_the_shipped_study_holds_friction_drive_and_spin():
     assert shipped["contact_model"] == MODELS
 
 
-def test_the_sentences_of_a_solved_study_say_where_sliding_is_good_enough(own):
-    with xr.open_dataset(own[0]) as ds:
-        words = sentences(ladder.pairs(results_of(ds)))
-    assert any(w.startswith("The sliding model, free rolling: good enough") for w in words)
-
-
 @pytest.mark.slow
 def test_the_table_of_the_exact_theory_is_compared_like_any_other_model(tmp_path):
     """Its section stands in the report; full sliding is not judged by an adhesion area that it does not have."""
@@ -283,14 +275,13 @@ def test_the_table_of_the_exact_theory_is_compared_like_any_other_model(tmp_path
     ds = xr.load_dataset(study(tmp_path, factors, {"motor_force": 0}, ["sliding", "kalker_table", "kalker"]))
     paired = ladder.pairs(results_of(ds))
     assert paired.attrs["same"] == ("kalker_table",)  # at preview
-    said = " ".join(sentences(paired))
-    assert "kalker solved these cases by kalker_table itself" in said and "The table of the exact theory" not in said
+    assert len(comparison.short(paired)) == 1  # on full sliding alone
     ds["contact_model_used"].loc[{"contact_model": "kalker"}] = 1  # as at standard
     paired = ladder.pairs(results_of(ds))
     rolls = int(((ds["regime"] == 0).all("contact_model")).sum())
-    said = " ".join(sentences(paired))
-    assert f"{rolls} with sliding and {rolls} with kalker_table" in said and 0 < rolls < paired.sizes["design"]
-    assert "The table of the exact theory is within 5 % of kalker" in said
+    one, two = ladder.errors(paired).transpose("contact_model", ...)["contact_model"].values
+    both = [ladder.compared(ladder.errors(paired).sel(contact_model=model)) for model in (one, two)]
+    assert both == [rolls, rolls] and 0 < rolls < paired.sizes["design"] and len(comparison.short(paired)) == 2
     stick = ladder.errors(paired)["stick"]
     assert stick.sel(contact_model="sliding").isnull().all() and stick.sel(contact_model="kalker_table").notnull().any()
     rows = [row[0] for row in comparison.report_section(results_of(ds))["tables"][0].rows]

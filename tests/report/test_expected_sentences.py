@@ -38,7 +38,8 @@ GRIDS = {
 }
 SAMPLES = {"a sample": 300, "a small sample": 60}
 CONSTRAINED = ("axial", "materials")
-NAMES = {"friction_coefficient": "friction coefficient", "roller_profile_radius": "roller profile radius"}
+NUMBERS = ("friction_coefficient", "roller_profile_radius")
+OUTSIDE = {"static": 4, "conformal": 8}
 
 
 def study_of(name):
@@ -51,12 +52,9 @@ def study_of(name):
     return ds.drop_vars("peak"), table
 
 
-def page(results):
-    """Return all sentences and tables of the page."""
-    told = contents(results)
-    lines = [s.text for _, said in told["summary"] for s in said]
-    lines += [str(cell) for key in ("decide", "ends") for t in told["tables"][key] for row in t.rows for cell in row]
-    return " ".join([*lines, *(t.note for key in ("decide", "ends") for t in told["tables"][key])])
+def said_of(results):
+    """Return all sentences of the page."""
+    return [sentence for _, own in contents(results)["summary"] for sentence in own]
 
 
 @pytest.mark.slow
@@ -64,49 +62,42 @@ def page(results):
 def test_a_sentence_that_should_appear_does(name):
     ds, table = study_of(name)
     grid = name in GRIDS
-    text = page(results_of(ds, analyse(results_of(ds)) if grid else None))
+    said = said_of(results_of(ds, analyse(results_of(ds)) if grid else None))
     rolls, total = int((table["regime"] == 0).sum()), len(table)
     counts = {"full slip": int((table["regime"] == 1).sum()), "lift-off": int((table["regime"] == 2).sum())}
-    why = ", ".join(f"{n} {words}" for words, n in counts.items() if n)
-    assert f"{rolls} of {total} cases roll" + (f" (the others: {why})" if why else "") in text
-    for code, words in ((1, "Full slip"), (2, "Lift-off")):
+    (valid,) = (one for one in said if one.kind == "valid")
+    assert (valid.values["rolling"], valid.values["total"]) == (rolls, total)
+    assert valid.values["lost"] == {words: n for words, n in counts.items() if n}
+    assert f"{rolls} of {total} cases roll" in valid.text
+    for code, what in ((1, "full_slip"), (2, "lift_off")):
         hit = int((table["regime"] == code).sum())
-        where = f"occurs in all {total}" if hit == total else f"occurs in {hit} of {total} cases"
-        assert (f"{words} {where}" in text) == (hit > 0), (words, hit)
+        told = [(one.values["count"], one.values["of"]) for one in said if one.values.get("what") == what]
+        assert told == [(hit, total)] * (hit > 0), (what, hit)
     inside = (table["regime"] == 0) & (table["validity"] & 15 == 0)
-    outside = rolls - int(inside.sum())
-    assert ("all of them lie inside the model" in text) == (outside == 0 < rolls)
-    assert (f"{inside.sum()} of them stay inside the model" in text) == (0 < outside < rolls)
-    for bit, words in ((4, "the peak stress exceeds the tensile strength"), (8, "the patch reaches the edge")):
-        hit = int(((table["regime"] == 0) & (table["validity"] & bit > 0)).sum())
-        assert (f"{words}" in text) == (hit > 0) and (hit == 0 or f"({hit})" in text)
+    assert valid.values["inside"] == inside.sum()
+    hits = {flag: int(((table["regime"] == 0) & (table["validity"] & bit > 0)).sum()) for flag, bit in OUTSIDE.items()}
+    assert {flag: cases for flag, _, cases in valid.values["reasons"]} == {f: hit for f, hit in hits.items() if hit}
+    assert all(f"({hit})" in valid.text for hit in hits.values() if hit)
     if grid:
-        expect_deciding_factor(table[table["regime"] == 0], list(GRIDS[name]), rolls == total, text)
-        expect_largest_effect(table[inside], list(GRIDS[name]), text)
+        expect_deciding_factor(table[table["regime"] == 0], list(GRIDS[name]), rolls == total, said)
+        expect_largest_effect(table[inside], list(GRIDS[name]), said)
 
 
-def expect_deciding_factor(rows, factors, complete, text):
+def expect_deciding_factor(rows, factors, complete, said):
     """On a complete grid the factor with the largest variance of its level means decides, with its share."""
     if not complete:
         return
     logs = np.log10(rows["roller_life_hours"])
     share = {f: logs.groupby(rows[f]).mean().var(ddof=0) / logs.var(ddof=0) for f in factors}
     lead = max(share, key=share.get)
-    words = {"material_pair": "Material pair", "motor_force": "Motor force", "axial_force": "Axial force"} | {
-        "radial_force": "Radial force",
-        "contact_angle": "Contact angle",
-        "guide_curve_radius": "Guide curve radius",
-        **{k: v.capitalize() for k, v in NAMES.items()},
-    }
-    exact = 100 * share[lead]
-    shown = [f"{exact:.0f} %", f"{exact:.4g} %"]
-    assert any(f"{words[lead]} explains {s} of the variance of log life of the roller" in text for s in shown), lead
+    first = [one.values["first"] for one in said if one.kind == "index" and one.values["output"] == "roller_life_hours"]
+    assert [rank.factor for rank in first] == [lead] and first[0].value == pytest.approx(share[lead])
 
 
-def expect_largest_effect(rows, factors, text):
+def expect_largest_effect(rows, factors, said):
     """Of the two numbers the one with the larger median ratio between its ends stands in the figure's sentence."""
     folds = {}
-    for name in (f for f in NAMES if f in factors):
+    for name in (f for f in NUMBERS if f in factors):
         others = [f for f in factors if f != name]
         wide = rows.pivot_table(index=others, columns=name, values="roller_life_hours", dropna=False)
         steps = np.log10(wide[max(wide)] / wide[min(wide)]).replace([np.inf, -np.inf], np.nan).dropna()
@@ -116,17 +107,15 @@ def expect_largest_effect(rows, factors, text):
         return
     name = max(folds, key=lambda n: abs(folds[n][0]))
     median, pairs = folds[name]
-    fold = 10 ** abs(median)
-    written = f"{float(f'{fold:.3g}' if fold < 10 else f'{fold:.2g}'):.10g}-fold"
-    verb = "lengthens" if median > 0 else "shortens"
-    levels = [f"{v:.10g}".replace("-", "−") for v in (rows[name].min(), rows[name].max())]
-    head = f"{NAMES[name].capitalize()} {levels[0]} → {levels[1]}"
-    found = [s for s in text.replace(" mm ", " ").split(". ") if s.strip().startswith(head)]
-    others = [s for s in text.split(". ") if "-fold, the median of" in s]
-    assert found or len(others) == 2, (head, others)  # two factors of more effect may stand before it
+    effects = [one for one in said if one.kind == "pairs"]
+    found = [one.values for one in effects if one.values["factor"] == name]
+    assert found or len(effects) == 2, (name, effects)  # two factors of more effect may stand before it
     if found:
-        assert f"{verb} the life of the roller {written}, the median of {pairs} pairs" in found[0], found[0]
-        assert f"{'rises' if median > 0 else 'falls'} in all pairs" in found[0]
+        values = found[0]
+        assert (values["low"], values["high"]) == (rows[name].min(), rows[name].max())
+        assert values["ratio"] == pytest.approx(10**median) and values["size"] == pairs
+        assert (values["rising"], values["falling"]) == ((pairs, 0) if median > 0 else (0, pairs))
+        assert values["verb"] == ("lengthens" if median > 0 else "shortens")
 
 
 @pytest.mark.parametrize("name", CONSTRAINED)
@@ -137,16 +126,14 @@ def test_what_a_constraint_removes_is_named(name):
     ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": [limit]}, sort_keys=False)
     inside = (table["regime"] == 0) & (table["validity"] & 15 == 0)
     kept = inside & (table["axial_force"] < 20 if name == "axial" else table["material_pair"] != PAIRS[2])
-    text = dict(contents(results_of(ds))["summary"])["Where it ends"][0].text
-    assert f"{kept.sum()} of the {inside.sum()} meet `{limit}`" in text
-    gone = "Axial force 30 N" if name == "axial" else "EN AW-7075 on 1.7225-normalised"
-    assert f"{gone} meets the constraints nowhere." in text
+    said = dict(contents(results_of(ds))["summary"])["Where it ends"][0].values
+    assert (said["valid"], said["inside"], said["constraints"]) == (kept.sum(), inside.sum(), [f"`{limit}`"])
+    (removed,) = said["removed"]
+    assert removed.startswith("Axial force 30 N" if name == "axial" else "EN AW-7075 on 1.7225-normalised")
     one = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": ["friction_coefficient > 0.35"]})
     ds.attrs["study"] = one
-    assert (
-        "Only friction coefficient 0.4 meets the constraints."
-        in dict(contents(results_of(ds))["summary"])["Where it ends"][0].text
-    )
+    (removed,) = dict(contents(results_of(ds))["summary"])["Where it ends"][0].values["removed"]
+    assert removed.startswith("Only friction coefficient 0.4")
 
 
 def test_pairs_of_materials_say_that_the_friction_of_the_database_changes_too():
@@ -155,9 +142,8 @@ def test_pairs_of_materials_say_that_the_friction_of_the_database_changes_too():
     same = results_of(ds)
     ds = ds.assign_coords(friction_coefficient_value=("material_pair", [0.19, 0.4]))
     both = results_of(ds)
-    one, two = (effect_of(r, "roller_life_hours", "material_pair", r.valid).text for r in (same, both))
-    assert "pairs of valid cases that differ in nothing else;" in one
-    assert "that differ in nothing else than the friction coefficient that follows from it" in two
+    one, two = (effect_of(r, "roller_life_hours", "material_pair", r.valid).values["changed"] for r in (same, both))
+    assert (one, two) == ([], ["friction_coefficient"])
 
 
 def test_an_index_over_a_grid_with_gaps_is_not_given():
@@ -178,9 +164,10 @@ def test_small_sets_are_named_by_their_common_property_and_radial_loads_by_their
     hit = (ds["radial_force"] > -100) & (ds["axial_force"] == 30)
     few = ds.isel(friction_coefficient=[1], roller_profile_radius=[1])
     few["regime"] = xr.where(hit, 2, 0).broadcast_like(few["regime"]).transpose(*few["regime"].dims)
-    said = dict(contents(results_of(few))["summary"])["Where it ends"][1].text
-    assert said.startswith("Lift-off occurs in 2 of 8 cases (25 %), only at ") and "in all cases there" in said
-    assert "radial force −60 N or −50 N" in said and "axial force 30 N" in said and "(" not in said.split(",", 1)[1]
+    said = dict(contents(results_of(few))["summary"])["Where it ends"][1]
+    assert said.kind == "only" and said.values["inside"] == said.values["count"] == 2 and said.values["of"] == 8
+    assert dict(said.values["conditions"]) == {"radial_force": [-60.0, -50.0], "axial_force": [30.0]}
+    assert "−60 N or −50 N" in said.text and "(" not in said.text.split(",", 1)[1]
 
 
 def test_long_lists_say_how_many_names_they_leave_out():
@@ -205,7 +192,8 @@ def test_a_difference_between_levels_is_named_above_noise_and_a_tenth(rows, low,
     ds = xr.Dataset({"regime": ("case", hit.astype("i1"))}, {"contact_angle": ("case", angle), "case": np.arange(rows)})
     ds.attrs["study"] = yaml.safe_dump({"factors": {"contact_angle": {"values": [30.0, 40.0]}}})
     said = occurrence(results_of(ds), hit, "Full slip")
-    assert (said.kind == "frequent") == named and said.text.startswith(f"Full slip occurs in {hit.sum():,} of {rows:,}")
+    assert (said.kind == "frequent") == named
+    assert (said.values["count"], said.values["of"]) == (hit.sum(), rows)
     if named:
         wanted = [f"contact angle {a}° ({hit[angle == a].sum():,} of {half:,} cases)" for a in (40, 30)]
         assert f"most often at {wanted[0]} and least at {wanted[1]}." in said.text

@@ -15,6 +15,7 @@ from browser import CHROMIUM, Browser
 from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 
 from trackroller.report.explorer.page import write_explorer
+from trackroller.report.numbers import BEYOND
 from trackroller.report.pages.study import write_report
 from trackroller.results.pareto import pareto, study_pareto
 from trackroller.results.sensitivity import analyse
@@ -406,7 +407,8 @@ def test_any_number_of_cases_stand_side_by_side_with_the_rows_that_differ(page, 
     assert 0 < len(rows) < len(alone) and all(len(set(values)) > 1 for _, *values in rows)
     assert "Life of the roller" in [words for words, *_ in rows]
     said = page.run("document.querySelector('.pinned').textContent")
-    assert f"The 4 cases differ in {len(rows)} of {len(alone)} rows, as they are rounded here." in said
+    counted = re.search(r"The (\d+) cases differ in (\d+) of (\d+)", said)
+    assert [int(number) for number in counted.groups()] == [4, len(rows), len(alone)]
     page.run("document.querySelector('.pinned input').focus()")
     page.key(" ")
     whole = page.run(COMPARED)
@@ -415,7 +417,7 @@ def test_any_number_of_cases_stand_side_by_side_with_the_rows_that_differ(page, 
     assert "pins=" + "%2C".join(map(str, (one, two, three, four))) in page.run("trackroller.fragment()")
     commands = page.run("[...document.querySelectorAll('.pinned .command code')].map(e => e.textContent)")
     assert commands[1] == f"trackroller repeat friction-and-fit {one}"
-    assert commands[0].startswith("trackroller solve --set axis_distance=21.75")
+    assert commands[0].startswith("trackroller solve --set") and "axis_distance=21.75" in commands[0]
     level = grid["roller_profile_radius"].values[np.unravel_index(one, grid["regime"].shape)[1]]
     assert f"--set roller_profile_radius={level}" in commands[0]
 
@@ -430,12 +432,12 @@ def test_a_life_beyond_the_data_never_stands_alone(browser, place):
     for row in (0, 2, 1):
         page.run(f"trackroller.pin({row})")
     (lives,) = [cells[1:] for cells in page.run(COMPARED) if cells[0] == "Life of the roller"]
-    assert lives == ["1·10¹² h (beyond the S-N data)", "1 h", "no failure (beyond the S-N data)"]
+    assert lives == [f"1·10¹² h ({BEYOND})", "1 h", f"no failure ({BEYOND})"]
     column = (
         "[...document.querySelectorAll('.head > *')].findIndex(e => e.textContent.startsWith('Life of the roller'))"
     )
     cells = page.run(f"[...document.querySelectorAll('.rows .row')].map(e => e.children[{column}].textContent)")
-    assert cells[0].endswith("(beyond the S-N data)") and cells[2] == "1"
+    assert cells[0].endswith(f"({BEYOND})") and cells[2] == "1"
     page.close()
 
 
@@ -450,7 +452,8 @@ def test_pinned_cases_tell_how_far_they_are_from_lift_off(page, grid):
     page.run(f"trackroller.pin({row})")
     told = page.run("[...document.querySelectorAll('.pinned tbody tr')].map(e => e.textContent)")
     ends = FACTORS["axial_force"][end - 1 : end + 1]
-    assert f"Lift-off by axial force, all else equalbetween {ends[0]:g} and {ends[1]:g} N" in told
+    (lift,) = [t for t in told if t.startswith("Lift-off by axial force")]
+    assert [float(number) for number in re.findall(r"[\d.]+", lift)] == ends
     least = grid["normal_force"].values.reshape(-1, 2)[row].min()
     (said,) = [t for t in told if t.startswith("Least normal force (0 at lift-off)")]
     assert float(re.search(r"\)([\d.]+) N", said)[1]) == pytest.approx(least, rel=5e-3)
@@ -482,7 +485,7 @@ def designs_of(results):
 def test_designs_and_conditions_are_chosen_in_their_lists(page, grid):
     results = results_of(grid)
     keys, worst = designs_of(results)
-    assert "guide's hours are unknown" in page.run("document.querySelector('[data-list=design]').textContent")
+    assert "unknown" in page.run("document.querySelector('[data-list=design]').textContent")  # the hours of the guide
     cells = "[...document.querySelectorAll('[data-list=%s] tbody tr')].map(e => [...e.cells].map(c => c.textContent))"
     designs, conditions = page.run(cells % "design"), page.run(cells % "condition")
     assert len(designs) == len(worst) == 15 and len(conditions) == results.valid.size // 15
@@ -648,7 +651,7 @@ def test_the_address_holds_the_view_and_wrong_addresses_do_no_harm(browser, page
     again = browser.open(pages["grid"], fragment)
     assert again.run("trackroller.selected()") == rows
     heads = again.run("[...document.querySelectorAll('.pinned thead th')].map(e => e.textContent)")
-    assert heads == ["A: case 7 Unpin", "B: case 3 Unpin", "C: case 5 Unpin"] and rows
+    assert [head.split()[2] for head in heads] == ["7", "3", "5"] and rows
     again.close()
     wrong = "#explore&brush.__proto__=[1]&brush.nothing=[1,2]&x=constructor&pins=a,-1,99999999&axes=7&slice=[1,[2]]"
     payload = "&colour=%3Cimg%20src%3Dx%20onerror%3Dalert(1)%3E&brush.regime={%22a%22:1}&sort=%3Cb%3E"
@@ -686,14 +689,14 @@ def test_goals_compare_the_selected_cases_and_ask_the_same_in_a_study_file(page,
         question = yaml.safe_load(asked)
         out = pareto(results_of(grid), question["pareto"], question["constraints"])
         front = out["row"].values[out["optimal"].values == 1].tolist()
-        assert f"{len(front)} cases are beaten by no other selected case" in said and front
+        assert int(re.search(r"(\d+) cases are beaten", said)[1]) == len(front) > 0
         pressed(page, "Show the set only")
         assert page.run("trackroller.selected()") == front
         pressed(page, "Clear the selection")
         assert shown(page)[0] == grid_size()
     page.run(f"trackroller.select({{material_pair: [{PAIRS[0]!r}], axial_force: [30, 30]}})")
     asked = page.run("[...document.querySelectorAll('#explorer .command code')].map(e => e.textContent).join('')")
-    assert asked.endswith("# selected here, but not by a constraint: Material pair")
+    assert asked.splitlines()[-1].startswith("#") and asked.endswith("Material pair")
     assert yaml.safe_load(asked)["constraints"] == ["axial_force >= 30", "axial_force <= 30"]
 
 
@@ -780,7 +783,7 @@ def test_a_larger_study_shows_a_stated_sample_with_its_own_pareto_set(browser, p
     page = browser.open(written(ds, place, "sampled"))
     said = page.run("document.querySelector('#explore p').textContent")
     results, rows = results_of(ds), page.run("trackroller.selected()")
-    assert said.startswith(f"{len(rows):,} of 60,000 cases are shown: a sample by regime and validity")
+    assert said.startswith(f"{len(rows):,} of 60,000 cases")
     assert 49_900 < len(rows) <= 50_000 and len(rows) == shown(page)[0] == len(set(rows)) and max(rows) < 60_000
     assert shown(page)[1] == results.valid[rows].sum()
     for regime in np.unique(results.regime):

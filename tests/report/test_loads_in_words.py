@@ -78,5 +78,7 @@ def test_a_design_that_lasts_longer_where_it_rolls_and_slips_elsewhere_is_not_bu
         {k: ("case", v) for k, v in columns.items()} | {"case": np.arange(8)},
     )
     ds.attrs["study"] = yaml.safe_dump({"design": "table", "factors": {k: {} for k in columns}})
-    said = {s.kind: s.text for s in verdict_sentences(results_of(ds))}
-    assert said["build"] == "Build roller profile radius −8 mm." and "100 h" in said["ends"] and "next" not in said
+    results = results_of(ds)
+    (best,) = results.verdict.best
+    assert results.verdict.kind == "build" and best.choices == {"roller_profile_radius": -8.0} and best.low == 100
+    assert "next" not in {s.kind for s in verdict_sentences(results)}

@@ -133,15 +133,19 @@ def test_regimes_name_the_levels_at_which_they_occur():
     results = results_of(grid_study(FACTORS))
     rows = {row[0]: row for row in regime_table(results).rows}
     assert sum(row[1] for row in rows.values()) == len(results.table)
-    slip, lift = (s.text for s in dict(contents(results)["summary"])["Where it ends"][1:3])
-    assert lift.endswith("only at axial force 130 N: in all cases there.")
-    assert slip.endswith("all those with |F_Motor| cos α > μ |F_rad| that do not lift off.") and "failed" not in rows
+    slip, lift = dict(contents(results)["summary"])["Where it ends"][1:3]
+    table = results.table
+    assert lift.kind == "only" and lift.values["conditions"] == [("axial_force", [130.0])]
+    assert lift.values["inside"] == lift.values["count"] == (table["axial_force"] == 130).sum()
+    drive = table["motor_force"].abs() * np.cos(np.deg2rad(30)) > 200 * table["friction_coefficient"]
+    assert slip.kind == "slip_law" and slip.values["count"] == (drive & (table["axial_force"] < 130)).sum()
+    assert "failed" not in rows
 
 
 def test_events_of_all_designs_and_of_none():
     results = results_of(grid_study(FACTORS))
     everywhere = occurrence(results, np.ones(len(results.table), bool), "Slip")
-    assert everywhere.text == "Slip occurs in all 540 cases."
+    assert everywhere.kind == "everywhere" and everywhere.values["count"] == 540
     assert occurrence(results, np.zeros(len(results.table), bool), "Slip") is None
 
 
@@ -190,7 +194,7 @@ def test_a_sample_says_how_its_factors_were_drawn(tmp_path):
     found = contents(results_of(sampled_study(60)))
     values, spec = next(row[2:4] for row in found["factors"].rows if row[0].startswith("Friction coefficient"))
     assert spec == "uniform 0.02, 0.4" and "…" in values
-    assert "design of experiments lhs" in found["facts"] and "60 cases" in found["facts"]
+    assert "60 cases" in found["facts"] and "lhs" in found["facts"]
 
 
 OVERFLOW = """(() => {
@@ -241,7 +245,7 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     assert models_used(asked.assign_attrs(contact_model="kalker_table")) == []
     told = contents(results_of(ds))
     valid = dict(told["summary"])["Where it ends"]
-    assert any(s.text.startswith("7 of 40 cases met the condition of `stop_if`") for s in valid)
+    assert [(s.values["count"], s.values["of"]) for s in valid if s.kind == "stopped"] == [(7, 40)]
     assert models_used(sampled_study(40)) == []
 
 
@@ -250,7 +254,8 @@ def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
     hit = np.zeros(400, dtype=bool)
     hit[:3] = True
     said = occurrence(results, hit, "Jamming")
-    assert said.kind == "cases" and said.text == "Jamming occurs in 3 of 400 cases (0, 1 and 2)."
+    assert said.kind == "cases" and said.values["cases"] == [0, 1, 2]
+    assert (said.values["count"], said.values["of"]) == (3, 400)
 
 
 @pytest.mark.slow

@@ -163,14 +163,13 @@ def test_a_sample_without_designs_says_so_and_nothing_contradicts_it(name):
     if target and longest < target["pair_life_hours"]["min"]:  # no need to compare designs
         assert solved.verdict.kind == "none" and f"None of the {len(solved.table)} cases meets" in best["nowhere"]
     else:
-        assert "cannot say which design is best" in best["unanswered"] and "design: inner_outer" in best["unanswered"]
+        assert solved.verdict.kind == "cannot_tell" and "design: inner_outer" in best["unanswered"]
     assert not {"build", "a_or_b", "next"} & set(best)
     assert not re.search(r"\bBuild |Candidate [1-9]|designs tie|best design", " ".join(text for _, text in prose))
     names = {t.name: t for t in found["tables"]["decide"]}
     assert "candidates" not in names
     if "pareto" in names:
         assert names["pareto"].title == "Pareto-optimal cases"
-        assert any("Each case is one design at one condition" in text for _, text in prose)
     decide = {s.kind: s.text for s in dict(found["summary"]).get("Decide", [])}
     if "target" in decide:
         assert "over all cases" in decide["target"]

@@ -51,7 +51,9 @@ def test_a_trend_that_pooling_turns_is_told_by_category():
     life = 10 ** (2 - 3 * friction + 0.2 * (pair == "steel / steel") + rng.normal(0, 0.05, 400))
     results = results_of(study({"friction_coefficient": friction, "material_pair": pair}, roller_life_hours=life))
     said = effect_of(results, "roller_life_hours", "friction_coefficient", results.valid)
-    assert said.kind == "classes" and "shortens the median life of the roller" in said.text
+    assert said.kind == "classes" and said.values["verb"] == "shortens"
+    low, high = np.median(life[friction <= said.values["low"]]), np.median(life[friction >= said.values["high"]])
+    assert said.values["ratio"] == pytest.approx(high / low, rel=0.05)
 
 
 def test_no_effect_is_stated_where_the_interval_holds_zero():
@@ -60,7 +62,8 @@ def test_no_effect_is_stated_where_the_interval_holds_zero():
     life = 10 ** (3 + 3.0 * (rng.random(300) < 0.5))  # bimodal, whatever the axial force
     results = results_of(study({"axial_force": axial}, roller_life_hours=life))
     said = effect_of(results, "roller_life_hours", "axial_force", results.valid)
-    assert said.kind == "classes_none" and said.text.startswith("No effect of axial force")
+    low, high = said.values["interval"]
+    assert said.kind == "classes_none" and low < 1 < high
 
 
 def test_sentences_use_all_rows_and_not_those_of_a_figure():
@@ -76,8 +79,9 @@ def test_a_single_event_is_named_and_attributed_to_nothing():
     results = results_of(grid_study())
     hit = np.zeros(len(results.table), bool)
     hit[77] = True
-    text = occurrence(results, hit, "Lift-off").text
-    assert text == f"Lift-off occurs in 1 of {len(hit):,} cases (77)."
+    said = occurrence(results, hit, "Lift-off")
+    assert said.kind == "cases" and said.values["cases"] == [77]
+    assert (said.values["count"], said.values["of"]) == (1, len(hit))
 
 
 def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
@@ -89,8 +93,8 @@ def test_head_lines_count_valid_cases_and_say_by_body_why_others_are_not():
     said = valid_cases(results)
     rolls = ds["regime"] == 0
     exceeds = int((roller & rolls).sum())
-    assert f"the peak stress exceeds the tensile strength of the roller ({exceeds:,})" in said.text
-    assert "strength of the guide" not in said.text  # the guide never exceeds its strength here
+    strength = [(body, cases) for flag, body, cases in said.values["reasons"] if flag == "static"]
+    assert strength == [("roller", exceeds)] and f"({exceeds:,})" in said.text  # the guide never exceeds its strength
     rows = {(row[0], row[1]): row[3] for row in validity_table(results).rows}
     assert rows[("static", "roller")] == exceeds and ("static", "guide") not in rows
 
@@ -139,10 +143,12 @@ def test_error_of_full_sliding_that_is_told_is_the_measured_one():
 @pytest.mark.parametrize(("middle", "told"), [(1.27, True), (0.03, False)])
 def test_a_known_model_error_above_5_percent_is_told_with_its_size(middle, told):
     ds = with_error(middle)
-    assert (friction_error(results_of(ds)) is not None) == told
+    said = friction_error(results_of(ds))
+    assert (said is not None) == told
+    assert said is None or said.values["median"] == pytest.approx(middle)
     found = contents(results_of(ds))
-    sure = " ".join(s.text for s in dict(found["summary"]).get("How sure", []))
-    assert ("127 % in the median" in sure) == told
+    sure = [s.text for s in dict(found["summary"]).get("How sure", [])]
+    assert ((said and said.text) in sure) == told
 
 
 def test_a_set_with_designs_outside_the_model_says_how_many():
@@ -156,7 +162,7 @@ def test_a_set_with_designs_outside_the_model_says_how_many():
         attrs={"objectives": "a max, b min", "excluded": "nothing"},
     )
     ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
-    assert "1 of the set lies outside the model" in pareto_sentence(front, results_of(ds)).text
+    assert pareto_sentence(front, results_of(ds)).values["outside"] == 1
 
 
 def test_every_output_of_an_inner_outer_design_that_was_asked_for_has_a_table():
@@ -223,7 +229,7 @@ def test_pairs_agree_with_a_closed_form():
     ds = study({"friction_coefficient": friction, "axial_force": axial}, roller_life_hours=10 ** (3 - friction))
     results = results_of(ds)
     said = effect_of(results, "roller_life_hours", "friction_coefficient", results.valid)
-    assert said.text == (
-        "Friction coefficient 0 → 0.4 shortens the life of the roller 2.51-fold, the median of 6 pairs of valid "
-        "cases that differ in nothing else; it falls in all pairs."
-    )
+    values = said.values
+    assert (values["low"], values["high"], values["ratio"]) == (0.0, 0.4, pytest.approx(10**-0.4))
+    assert (said.kind, values["size"], values["rising"], values["falling"]) == ("pairs", 6, 0, 6)
+    assert (values["fold"], values["verb"], values["changed"]) == ("2.51-fold", "shortens", [])

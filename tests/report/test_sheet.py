@@ -25,7 +25,7 @@ from trackroller.materials import builtin_database
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.figures.roller_section import _roller as roller_outline
 from trackroller.report.figures.roller_section import content_of
-from trackroller.report.numbers import number
+from trackroller.report.numbers import BEYOND, number
 from trackroller.report.pages.sheet import as_json, collect, render
 from trackroller.report.words.accuracy import flags_of
 from trackroller.roller.dataset import validity_bit
@@ -96,18 +96,18 @@ def test_scatter_gives_lives_at_three_probabilities(solved, facts):
 
 
 def test_the_verdict_names_what_decides(solved, facts):
-    told = "Rolls. Rolling-contact fatigue ends the roller after 3.78 h; the guide's hours are not known; contact 2"
-    assert facts["example"].verdict.startswith(told) and "Not checked: bearing" in facts["example"].verdict
-    weakest = int(solved["example"].contact.values[solved["example"].life_hours.sel(body="roller").values.argmin()])
-    assert weakest == 2
-    assert facts["skidding"].verdict.startswith("Skids")
+    own, verdict = solved["example"], facts["example"].verdict
+    hours, weakest = float(own.roller_life_hours), own.life_hours.sel(body="roller").values.argmin()
+    assert float(re.search(r"after ([\d.]+) h", verdict)[1]) == pytest.approx(hours, rel=5e-3)
+    assert int(re.search(r"contact (\d)", verdict)[1]) == own.contact.values[weakest] == 2
 
 
 def test_overload_and_skidding_rule_before_any_life(solved, facts):
     """No life stands on the sheet of a body that breaks at once, or of a roller that skids."""
     over, skid = facts["overloaded"], facts["skidding"]
     worst = float(solved["overloaded"].peak_stress.sel(body="roller").max()) / 720.0
-    assert worst > 1 and over.verdict.startswith(f"Overloaded: at the roller the peak stress is {worst:.2g} times its")
+    assert worst > 1 and over.verdict.startswith("Overloaded: at the roller")
+    assert float(re.search(r"is ([\d.]+) times", over.verdict)[1]) == pytest.approx(worst, rel=0.05)
     assert "lasts" not in over.verdict + skid.verdict and skid.verdict.startswith("Skids")
     for fact, why in ((over, "tensile strength"), (skid, "skids")):
         lives = [row for row in fact.lives if "life" in row.words]
@@ -143,7 +143,7 @@ def test_a_lift_off_answers_with_the_axial_force_that_holds(facts):
 
 def test_flags_name_the_body_they_hold_for(facts):
     plastic = {flag.name: flag.sentence for flag in facts["plastic"].flags}
-    assert "fatigue limit of the guide" in plastic["deep_life"]  # a steel guide under a plastic roller
+    assert plastic["deep_life"].endswith("of the guide.")  # a steel guide under a plastic roller
     assert "static" in {flag.name for flag in facts["overloaded"].flags}
     assert all(flag.remedy for fact in facts.values() for flag in fact.flags)
 
@@ -154,8 +154,7 @@ def test_every_validity_flag_has_words_and_a_remedy(solved):
     ds = solved["example"].assign(validity=every, validity_body=("body", [every, every]))
     flags = [flag for flag in flags_of(ds) if flag.name in VALIDITY]
     assert [flag.name for flag in flags] == list(VALIDITY) and all(flag.remedy for flag in flags)
-    heat = flags[list(VALIDITY).index("overheated")]
-    assert heat.sentence == "The temperature rises above the limit of the material of the roller and the guide."
+    assert all({"roller", "guide"} <= set(re.findall(r"\w+", f.sentence)) for f in flags if VALIDITY[f.name].of_body)
 
 
 def test_deep_life_is_flagged_where_the_worse_contact_stays_below_the_fatigue_limit():
@@ -221,16 +220,13 @@ def test_the_head_holds_texts_to_sign_and_inputs_the_outer_radius_and_the_duty(t
     texts = 'duty: {hours_per_day: 16}\nsheet: {project: "<i>Lift</i> 7", revision: 2, checker: null}\n'
     (tmp_path / "case.yaml").write_text(radii + options + texts)
     told = trackroller("solve", "case.yaml", "--report", "sheet.html", cwd=tmp_path).stdout
-    assert "│ 16 h a day, 365 days a year │" in told
     page = (tmp_path / "sheet.html").read_text(encoding="utf-8")
     signed = dict(re.findall(r"<span>(\w+)</span><b [^>]*>(.*?)</b>", page))
     blank = dict.fromkeys(("Part", "Date", "Author", "Checker", "Signature"), "")
     assert signed == {"Project": "&lt;i&gt;Lift&lt;/i&gt; 7", "Revision": "2", **blank}
-    head = page[: page.index("</header>")]
-    assert "First limit of the pair: rolling-contact fatigue" in head
     inputs = dict(re.findall(r"<tr><th scope=\"row\">(.*?)</th><td>(.*?)</td>", page))
     assert inputs["outer radius of the roller"] == "26&nbsp;mm" and inputs["groove depth of the roller"] == "3&nbsp;mm"
-    assert inputs["duty"] == "16 h a day, 365 days a year"
+    assert re.findall(r"\d+", inputs["duty"]) == ["16", "365"] and f"│ {inputs['duty']} │" in told
     again = shlex.split(html.unescape(re.search(r"<code>(trackroller solve.*?)</code>", page)[1]))[1:]
     assert trackroller(*again, cwd=tmp_path).stdout.splitlines()[0] == told.splitlines()[0]  # in years, too
     ds = solve_case(*case_of(tmp_path / "case.yaml", ["sheet={author: Ada}", "axis_distance=29"]))
@@ -255,10 +251,7 @@ def test_a_wrong_head_of_a_sheet_is_refused_by_name(texts, told):
 def test_every_regime_has_a_page(solved):
     for ds in solved.values():
         page = render(ds)
-        assert (
-            "Margins, the first limit first" in page
-            and "nan" not in re.sub(r"<style.*?</style>", "", page, flags=re.S).lower()
-        )
+        assert "nan" not in re.sub(r"<style.*?</style>", "", page, flags=re.S).lower()
 
 
 def test_a_report_is_written_for_one_case_only(tmp_path, solved):
@@ -283,7 +276,6 @@ def written(tmp_path_factory):
 def test_the_command_line_writes_sheet_and_text(written):
     page = written[0].read_text(encoding="utf-8")
     assert "my-roller" in page and page.count("<figure") == 4  # one of them is small: the worn depth
-    assert "(run-in distance) the profiles have changed" in page
     rows = {cells[1].strip(): cells[2:5] for line in written[1].splitlines() if len(cells := line.split("│")) == 6}
     assert [cell.strip() for cell in rows["radial force F_rad"]] == ["−20", "N", "given"]
     assert rows["friction coefficient mu"][0].strip() == "0.3"
@@ -342,49 +334,34 @@ def test_lives_stand_in_hours_kilometres_and_turns(solved, facts):
 
 def test_the_body_that_fails_first_ends_the_pair(complete):
     facts, ds = complete
-    pair = facts.lives[-1]
-    assert "the guide fails first" in pair.words and float(ds.guide_life_hours) < float(ds.roller_life_hours)
-    assert "ends the guide after" in facts.verdict
+    hours = float(ds.guide_life_hours)
+    assert hours < float(ds.roller_life_hours)
+    assert float(facts.lives[-1].value.split()[0].replace(",", "")) == pytest.approx(hours, rel=5e-3)
+    assert re.search(r"ends the (\w+)", facts.verdict)[1] == "guide"
 
 
 def test_a_life_beyond_the_data_says_so():
     steel = {"roller_material": "1.7225-quenched-tempered", "guide_material": "1.7225-quenched-tempered"}
     case = tr.Case(radial_force=-20, axial_force=0, motor_force=0, **steel)
     facts = collect(tr.solve(case, (*COMPLETE, "limits"), contact_model="sliding"))
-    assert "beyond the S-N data" in facts.verdict
+    assert BEYOND in facts.verdict
     lives = [row.value for row in facts.lives if row.words.startswith(("roller, median", "pair"))]
-    assert len(lives) == 2 and all("beyond the S-N data" in value for value in lives)
+    assert len(lives) == 2 and all(BEYOND in value for value in lives)
     fatigue = next(m for m in facts.margins if m.title == LIMITS["fatigue"].title and m.body == "roller")
-    assert "beyond the S-N data" in fatigue.life
+    assert fatigue.beyond and BEYOND in fatigue.life
 
 
-@pytest.mark.slow
 def test_the_sheet_names_what_it_rests_on(complete):
-    facts, ds = complete
-    page = render(ds, "R 1")
-    for text in (
-        "Author",
-        "Revision",
-        "Date",
-        "Signature",
-        "Dry contact",
-        "Isothermal",
-        "Wear: the life lies between",
-        "mean stress",
-    ):
-        assert text in page, text
-    assert any("R_m stands for the yield strength" in text for text in facts.assumptions)
-    assert any("one value for all materials, no test named" in text for text in facts.data)
-    assert any(text.startswith("PA6: stiffness") and "moisture" in text for text in facts.data)
-    assert any(
-        text.startswith("Friction coefficient 0.22: typical value") and "source: " in text for text in facts.data
-    )
+    """The standards of limits that were checked, and what was not; the golden page `limits` holds the other words."""
+    facts, _ = complete
     assert "ISO" not in facts.standards and "EN 13001-3-3" in facts.standards  # no bearing was given
     (told,) = facts.not_checked
     assert "heat (give heat_transfer_coefficient)" in told and "bearing (give bearing)" in told
-    assert any(
-        row.words.startswith("scatter of the life T_N") and row.value == "not given" for row in facts.materials[0][1]
-    )
+    (value,) = (text for text in facts.data if text.startswith("Friction coefficient"))
+    known = builtin_database().friction("1.7225-normalised", "PA6")
+    assert float(value.split()[2].rstrip(":")) == pytest.approx(known.value, rel=5e-3)
+    (scatter,) = (row.value for row in facts.materials[0][1] if "T_N" in row.words)
+    assert scatter == "not given"
 
 
 def test_a_drawn_profile_stands_in_the_drawing_as_given():

@@ -12,6 +12,7 @@ from synthetic_results import results_of
 from verdict_by_hand import check_verdict
 
 import trackroller as tr
+from trackroller.report.numbers import BEYOND
 from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import best_table
 from trackroller.report.words.pareto import pareto_sentence
@@ -119,16 +120,16 @@ def test_designs_of_a_grid_against_a_group_by(rate):
         np.testing.assert_allclose(table[name], expected[name], err_msg=name)
     conditions = frame[frame["valid"]][list(designs.conditions)].drop_duplicates()
     assert designs.possible == len(conditions)
-    said = {s.kind: s.text for s in verdict_sentences(results)}
+    said = {s.kind: s.values for s in verdict_sentences(results)}
     pairs = frame.assign(material_pair=results.table["material_pair"].to_numpy())
     check_verdict(results.verdict, pairs, list(designs.choices), list(designs.conditions), life)
     if rate is None:
-        assert "give `guide_overrollings_per_hour`" in said["not_checked"]
-        assert "Life of the roller, worst condition [h]" in {row[0] for row in best_table(results).rows}
+        assert any("guide_overrollings_per_hour" in name for name in said["not_checked"]["names"])
+        assert said["ends"]["who"] == "roller"
     else:
         best = results.verdict.best[0]
         assert best.body == ("guide" if frame["first_to_fail"][best.case] == 1 else "roller")
-        assert f"ends the {best.body}" in said["ends"] and "the pair lasts" in said["ends"]
+        assert (said["ends"]["who"], said["ends"]["body"]) == ("pair", best.body)
 
 
 def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
@@ -137,12 +138,12 @@ def test_the_worst_condition_is_named_and_the_pair_fails_with_its_first_body():
         frame["pair_life_hours"], np.minimum(frame["roller_life_hours"], frame["guide_life_hours"])
     )
     results = results_of(ds)
-    best, said = results.verdict.best[0], {s.kind: s.text for s in verdict_sentences(results)}
+    best, said = results.verdict.best[0], {s.kind: s.values for s in verdict_sentences(results)}
     worst = frame.iloc[best.case]
     assert worst["valid"] and worst["pair_life_hours"] == best.low
     drive = "free rolling" if worst["motor_force"] == 0 else "driven −30 N"
     friction = f"friction coefficient {worst['friction_coefficient']:g}"
-    assert f"({friction}, {drive}, axial force {worst['axial_force']:g} N)" in said["ends"]
+    assert said["ends"]["where"] == f"{friction}, {drive}, axial force {worst['axial_force']:g} N"
 
 
 def test_an_inner_outer_design_is_compared_by_the_life_that_nine_of_ten_reach():
@@ -154,8 +155,8 @@ def test_an_inner_outer_design_is_compared_by_the_life_that_nine_of_ten_reach():
     groups = lives.groupby([frame["roller_profile_radius"], frame["contact_angle"]])
     expected = groups.apply(lambda own: np.sort(own)[math.ceil(0.1 * len(own)) - 1]).sort_values(ascending=False)
     np.testing.assert_allclose(designs.table["b10"], expected)
-    text = verdict_sentences(results_of(ds))[1].text
-    assert text.startswith("Nine of ten sampled conditions reach") and "95 % interval" in text
+    said = verdict_sentences(results_of(ds))[1].values
+    assert said["sampled"] and said["candidate"].low == pytest.approx(expected.max()) and len(said["interval"]) == 2
 
 
 def test_conditions_that_no_design_meets_are_left_out_of_the_life_that_nine_of_ten_reach():
@@ -178,9 +179,9 @@ def test_a_sample_in_which_no_design_repeats_names_the_design_of_experiments_tha
     ds, frame = solved(design="lhs", samples=40, factors=factors)
     said = verdict_sentences(results_of(ds))
     assert [s.kind for s in said][:2] == ["cannot_tell", "unanswered"] and frame["valid"].any()
-    assert said[1].text.startswith("Each of the 40 cases is a design of its own at one condition, so this lhs study")
-    assert "give roller profile radius and contact angle as lists" in said[1].text
-    assert "friction coefficient and axial force as distributions with `design: inner_outer`" in said[1].text
+    assert (said[1].values["designs"], said[1].values["most"], said[1].values["method"]) == (40, 1, "lhs")
+    assert said[1].values["choices"] == ["roller profile radius", "contact angle"]
+    assert said[1].values["conditions"] == ["friction coefficient", "axial force"] and "inner_outer" in said[1].text
     page = contents(results_of(ds))
     assert "candidates" not in {t.name for t in page["tables"]["decide"]}
     ds, _ = solved(design="lhs", samples=40, factors={"roller_profile_radius": {"uniform": [-8, -6.5]}})
@@ -195,11 +196,11 @@ def test_lives_beyond_the_data_are_never_bare():
     ds, frame = solved(base=light | {"axial_force": 0}, factors=factors)
     assert frame["beyond"].all()
     said = {one.kind: one.text for one in verdict_sentences(results_of(ds))}
-    assert "(beyond the S-N data)" in said["ends"] and "(beyond the S-N data)" in said["next"]
+    assert BEYOND in said["ends"] and BEYOND in said["next"]
     ds, _ = solved(base=light | {"axial_force": 0}, factors=factors, life_rule="unlimited")
     results = results_of(ds)
     said = {one.kind: one.text for one in verdict_sentences(results)}
-    assert "no failure (beyond the S-N data)" in said["ends"] and "unlimited" not in said["ends"]
+    assert f"no failure ({BEYOND})" in said["ends"] and "unlimited" not in said["ends"]
     assert results.verdict.kind == "a_or_b" and results.verdict.why == "tie" and "They tie" in said["ends"]
     assert best_table(results_of(ds)).heads[1:] == ["Candidate 1 (tie)", "Candidate 1 (tie)"]
 
@@ -263,13 +264,12 @@ def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
     costs = found.to_numpy() * [-1, 1, -1]
     beaten = [any((o <= c).all() and (o < c).any() for o in costs) for c in costs]
     assert front["optimal"].values.tolist() == [int(not b) for b in beaten]
-    text = pareto_sentence(front, results).text
+    said = pareto_sentence(front, results).values
     assert 1 < sum(front["optimal"].values) and len(expected) > 2
-    assert text.startswith(f"{sum(front['optimal'].values)} of {len(expected)} allowed designs are Pareto-optimal")
-    assert "each goal at the worst of the conditions" in text
+    assert (said["count"], said["of"], said["kind"]) == (sum(front["optimal"].values), len(expected), "design")
     ds, _ = solved(base={})
     results = results_of(ds)
-    assert "h (beyond the S-N data) life of the roller" in pareto_sentence(study_pareto(results), results).text
+    assert BEYOND in pareto_sentence(study_pareto(results), results).values["first"][0]
 
 
 def test_a_condition_that_is_a_goal_is_no_condition():
@@ -285,8 +285,8 @@ def test_a_sample_of_cases_has_no_pareto_set_of_designs():
     assert study_pareto(results_of(ds)) is None
     ds, _ = solved(design="lhs", samples=40, factors=factors, pareto={"pair_life_hours": "max", "max_pressure": "min"})
     results = results_of(ds)
-    text = pareto_sentence(study_pareto(results), results).text
-    assert "allowed cases" in text and "`design: inner_outer` compares designs" in text
+    said = pareto_sentence(study_pareto(results), results)
+    assert said.values["kind"] == "case" and "inner_outer" in said.text
 
 
 def test_equal_designs_tie_and_one_design_is_no_set():
@@ -295,13 +295,12 @@ def test_equal_designs_tie_and_one_design_is_no_set():
     goals = {"pair_life_hours": "max", "radial_force": "min"}
     ds, _ = solved(base=light, factors=same, pareto=goals, life_rule="unlimited")
     results = results_of(ds)
-    text = pareto_sentence(study_pareto(results), results).text
-    assert text.startswith("2 of 2 allowed designs tie") and "no failure (beyond the S-N data)" in text
+    said = pareto_sentence(study_pareto(results), results)
+    assert (said.values["count"], said.values["of"], said.values["alike"]) == (2, 2, True)
+    assert f"no failure ({BEYOND})" in said.text
     ds, _ = solved(factors={"friction_coefficient": {"values": [0.1, 0.2]}})
     results = results_of(ds)
-    assert pareto_sentence(study_pareto(results), results).text.startswith(
-        "One design is left, so there is no Pareto set"
-    )
+    assert pareto_sentence(study_pareto(results), results).values["of"] == 1
 
 
 def test_targets_are_met_by_designs():
@@ -316,9 +315,7 @@ def test_targets_are_met_by_designs():
     first = found.candidates[0]
     assert (first.choices["roller_profile_radius"], first.met, first.conditions) == (radius, most, 12)
     assert first.choices["material_pair"].startswith(material)
-    told = " ".join(one.text for one in verdict_sentences(results))
-    assert f"radius −{-radius:g} mm, in {most} of 12 conditions" in told or found.kind == "give"
     row = next(r for r in best_table(results).rows if r[0] == "Meets the targets in")
     assert row[1] == f"{hits[results.candidates().table.iloc[0][CHOICES[0]], material]} of 12"
     ds, _ = solved(base={}, analysis={"target": {"min": 100}})
-    assert "give `guide_overrollings_per_hour`" in verdict_sentences(results_of(ds))[-1].text
+    assert any("guide_overrollings_per_hour" in name for name in verdict_sentences(results_of(ds))[-1].values["names"])
