@@ -76,7 +76,7 @@ def test_sentence_tells_the_size_and_the_ends():
     best = front.isel(row=np.flatnonzero(front["optimal"]))
     low = best.isel(row=int(best["friction_power"].values.argmin()))
     ends = quantity(float(low["roller_life_hours"]), "h"), quantity(float(low["friction_power"]), "W")
-    assert tuple(said["last"]) == ends
+    assert said["others"] == [" and ".join(ends)]
 
 
 def test_a_single_best_design_is_called_so():
@@ -84,7 +84,7 @@ def test_a_single_best_design_is_called_so():
     ds = trade(lambda a, b: 100 - a, lambda a, b: a)
     front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
     said = pareto_sentence(front).values
-    assert (said["count"], said["of"], said["last"]) == (1, 400, [])
+    assert (said["count"], said["of"], said["others"]) == (1, 400, [])
     assert said["first"][0].startswith(quantity(float(front["roller_life_hours"].max()), "h"))
 
 
