@@ -106,7 +106,7 @@ def test_proposals_are_compared_over_the_loads_that_each_was_tried_under(tmp_pat
     assert best.choices["roller_profile_radius"] == max(worst, key=worst.get)
     assert best.low == max(worst.values())
     (said,) = (one.values for one in verdict_sentences(results) if one.kind == "untried")
-    assert (said["shared"], said["rows"], said["left"]) == (2, 2, 0)
+    assert (said["shared"], said["rows"]) == (2, 2)
     assert [re.findall(r"\d+", text) for text in said["named"]] == [["240", "20"]]
 
 
