@@ -238,7 +238,9 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     ds = ds.assign_coords(friction_law=("case", law.astype(object)))
     ds["contact_model_used"] = ("case", np.arange(40) % 2 + 2, {"flag_meanings": "sliding fastsim kalker kalker_table"})
     ds["stopped"] = ("case", (np.arange(40) < 7).astype("i1"))
-    assert models_used(ds) == [Row("Contact model used", "kalker in 20, kalker_table in 20 of 40 cases")]
+    (row,) = models_used(ds)
+    counts = [("kalker", "20"), ("kalker_table", "20")]
+    assert row.words == "Contact model used" and re.findall(r"(\w+) in (\d+)", row.value) == counts
     asked = ds.assign_attrs(contact_model="kalker")
     asked["contact_model_used"][:] = 3
     assert models_used(asked) == [Row("Contact model used", "kalker_table in 40 of 40 cases")]

@@ -102,11 +102,8 @@ def test_first_order_indices_above_100_percent_say_why():
         return str(found["first_order_sum_note"].values[0])
 
     small = [note(40, seed) for seed in range(12)]
-    assert any("the sum of so small a sample has a 95 % interval of ±" in text for text in small)
+    assert any("small a sample" in text and "±" in text for text in small)
     tied = note(400, 1, rank_correlations=[["axial_force", "motor_force", 0.8]])
-    assert re.match(
-        r"The first-order indices add up to 1[5-9]\d %, those of independent factors to 100 % at most: ", tied
-    )
-    assert "are correlated, and each index holds influence of the others." in tied
+    assert 150 <= int(re.search(r"(\d+) %", tied)[1]) < 200 and "are correlated" in tied
     exact = [note(3000, seed, factors=dict(list(CARRIERS.items())[:2])) for seed in range(3)]
     assert [text for text in exact if text and not re.search("10[1-4] %, .* ± [1-4] %", text)] == []
