@@ -5,6 +5,7 @@ import pytest
 
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.errors import InputError
+from trackroller.report.numbers import rounded
 from trackroller.report.pages.spectrum import limit_table
 from trackroller.report.words.spectrum import sentences
 from trackroller.study.spectrum.file import Spectrum
@@ -61,8 +62,11 @@ def test_the_first_limit_is_the_one_that_comes_first():
             shifts.limit[int(shifts.sel(body=body).fillna(np.inf).values.argmin())].values
         )
     assert float(ds.pair_life_to_first_limit_shifts) == float(shifts.min())
-    said = [one for one in sentences(ds) if one.kind == "spectrum_limit"]
-    assert [one.values["body"] for one in said] == ["roller", "guide"] and all("after" in one.text for one in said)
+    head, other = sentences(ds)[:2]
+    hours = shifts.min("limit") * float(ds["duration"].sum())
+    assert (head.kind, head.values["body"]) == ("spectrum_pair", str(hours.body.values[int(hours.argmin())]))
+    assert head.values["hours"].startswith(f"{rounded(float(ds.pair_life_to_first_limit_hours_low))}")
+    assert other.kind == "spectrum_limit" and other.values["body"] != head.values["body"]
     assert [row[0].split()[0] for row in limit_table(ds).rows] == ["static", "rolling-contact", "wear"]
 
 

@@ -29,15 +29,24 @@ def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
 
 
 def sentences(ds: xr.Dataset) -> list[Sentence]:
-    """Return one sentence for each body: its life, the track that fails first, and the block with the most damage.
+    """Return what a spectrum says of roller and guide, the life of the pair to its first limit at the head.
 
-    For a spectrum with limits a second sentence for each body names its first limit and the decisive block.
+    Then follow the first limit of the other body, and for each body its life by fatigue, the track that fails first and
+    the block with the most damage. Without limits only fatigue is known.
     """
-    first = [_first_limit(ds, body) for body in BODIES] if "limiting_mechanism" in ds else []
-    return [_sentence(ds, body) for body in BODIES] + first
+    by_fatigue = [_sentence(ds, body) for body in BODIES]
+    if "limiting_mechanism" not in ds:
+        return by_fatigue
+    lives = {body: float(ds["life_to_first_limit_hours_low"].sel(body=body)) for body in BODIES}
+    sooner, later = sorted(BODIES, key=lambda body: (np.isnan(lives[body]), lives[body]))
+    head = _first_limit(ds, sooner, later if np.isnan(lives[later]) else "none")
+    if head.kind != "spectrum_pair":  # why no life is known or left stands in the sentences on fatigue
+        return [*by_fatigue, *(_first_limit(ds, body) for body in BODIES)]
+    return [head, _first_limit(ds, later), *by_fatigue]
 
 
-def _first_limit(ds: xr.Dataset, body: str) -> Sentence:
+def _first_limit(ds: xr.Dataset, body: str, unknown: str = "") -> Sentence:
+    """Return the first limit of a body; `unknown` makes it that of the pair, and names the body of unknown hours."""
     own, names = ds.sel(body=body), str(ds["limiting_mechanism"].attrs["flag_meanings"]).split()
     name, shifts = names[int(own["limiting_mechanism"])], float(own["life_to_first_limit_shifts"])
     if name not in LIMITS:
@@ -52,6 +61,9 @@ def _first_limit(ds: xr.Dataset, body: str) -> Sentence:
     damage = own["damage_by_limit"].values
     worst = int(np.nanargmax(damage))
     values |= {"block": str(ds["block"].values[worst]), "share": float(damage[worst] / damage.sum())}
+    if unknown:
+        beyond = name == "fatigue" and _beyond(ds, body, shifts)
+        return say("spectrum", "spectrum_pair", **values, beyond=beyond, unknown=unknown)
     return say("spectrum", "spectrum_limit", **values)
 
 
