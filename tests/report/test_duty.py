@@ -101,7 +101,8 @@ def test_a_spectrum_has_years_doubts_and_what_was_not_given_everywhere(tmp_path)
     assert life["years"] == pytest.approx(life["value"] / 1760)
     page = (tmp_path / "b.html").read_text(encoding="utf-8")
     for text in (told.stdout, page):
-        assert f"({rounded(life['years'], 2)} years)" in " ".join(text.split())
+        years = rounded(life["years"], 2)
+        assert f"({years} year{'s' * (years != '1')})" in " ".join(text.split())
         assert "motor_force -30 N" in " ".join(text.split())
     (doubt,) = found["doubts"]
     assert "write '0.25 m/s' or 15" in doubt and doubt in told.stderr and doubt.replace("'", "&#39;") in page

@@ -109,7 +109,12 @@ def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
 def hour_unit(hours: float) -> str:
     """Return the unit behind a life: 'h', or with its years if the duty of the roller is known: 'h (4.2 years)'."""
     duty = _duty.get()
-    return f"h ({rounded(years(hours, duty), 2)} years)" if duty and math.isfinite(hours) else "h"
+    return f"h ({_year_words(rounded(years(hours, duty), 2))})" if duty and math.isfinite(hours) else "h"
+
+
+def _year_words(*ends: str) -> str:
+    """Write years, or a range of them: '1 year', '1 to 4.2 years'."""
+    return f"{' to '.join(dict.fromkeys(ends))} year{'s' * (set(ends) != {'1'})}"
 
 
 def life_unit(unit: str, value: float) -> str:
@@ -131,8 +136,7 @@ def between(low: float, high: float, beyond: bool = False) -> str:
     if math.isinf(high):
         return f"{lasting(low, 'h')} or more ({BEYOND})"
     duty = _duty.get()
-    ends = (rounded(years(end, duty), 2) for end in (low, high)) if duty else ()
-    in_years = f" ({' to '.join(dict.fromkeys(ends))} years)" if duty else ""
+    in_years = f" ({_year_words(*(rounded(years(end, duty), 2) for end in (low, high)))})" if duty else ""
     return f"{rounded(low)} to {rounded(high)} h{in_years}" + (f" ({BEYOND})" if beyond else "")
 
 

@@ -328,7 +328,7 @@ def pareto_of_search(results: Results) -> xr.Dataset:
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
     left = len(judged.violation) - len(kept)
-    excluded = f"{left} that are valid in {'fewer conditions' if least < 1 else 'no condition'}" if left else ""
+    excluded = f"{left} that are allowed in {'fewer conditions' if least < 1 else 'no condition'}" if left else ""
     attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
     lives = [name for name in goals if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"]

@@ -105,6 +105,7 @@ def unanswered(candidates: Candidates) -> Sentence:
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
     values["weighted"] = candidates.weighted or values["least"] < FEWEST
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
+    values |= {"cases": len(candidates.results.table), "independent": int((~mixed(candidates.results)).sum())}
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
 
 
@@ -146,6 +147,8 @@ def best_table(results: Results) -> Table | None:
     }
     facts["mixed"] = bool(candidates.conditions) and bool(mixed(results).any())
     facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
+    found = results.verdict
+    facts["hopeless"] = bool(found is not None and found.out_of_reach is not None and not candidates.drawn)
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)

@@ -31,6 +31,7 @@ from trackroller.results.results import Results
 from trackroller.results.verdict import not_checked
 from trackroller.roller.limit_notes import guessed_lines
 from trackroller.roller.output_names import is_life
+from trackroller.study.file.goals import names_in
 from trackroller.study.file.search import judged_by
 
 AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
@@ -123,9 +124,14 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     alike = all(one["values"] == best["values"] for one in search["optima"])
     values["goals"] = goal_texts(results, search, best)
     several = len(search["goals"]) > 1 and search["front"] > 1 and not alike
-    if several and not values["least"] and not required(results):  # the goals alone do not choose
+    named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
+    bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
+    if several and not values["least"] and not (required(results) or bounded):  # the goals alone do not choose
         ends = [goal_texts(results, search, one) for one in _ends(search)]
         return say("optimum", "requirement", ends=ends, **values)
+    # a range may reach below the certain life of another design
+    both = (ends_of_goal(results, goal) for goal in search["goals"])
+    values["ranged"] = any(e is not None and bool((e[1] > e[0] * (1 + SAME))[best["design"]]) for e in both)
     judged = judge(results)
     front = nondominated_ranks(judged.costs, judged.violation) == 0
     values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}

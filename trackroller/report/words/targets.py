@@ -64,7 +64,8 @@ def target(table: xr.Dataset, number: int) -> Sentence:
     number : of the target
     """
     part = table.isel(target=number)
-    share, low, high = np.atleast_2d(estimate(part, "target_probability").T).T
+    all_of = np.atleast_2d(estimate(part, "target_probability").T)
+    share, low, high = all_of.T
     order = [int(np.argmax(share)), int(np.argmin(share))]
     robust = "point" in part["target_probability"].dims
     method = method_of(table)
@@ -77,6 +78,7 @@ def target(table: xr.Dataset, number: int) -> Sentence:
         many=len(share) if robust else None,
         same=bool(np.ptp(share) < SAME),
         chances=[chance(share[i], low[i], high[i], INTERVAL) for i in order],
+        ties=[sum(np.allclose(own, all_of[i], rtol=0.0, atol=SAME) for own in all_of) for i in order],
         points=[point_words(table, i) for i in order] if robust else [],
         tests=_by_tests(table, number),
         changes=long_name(str(part["level_factor"][most[0]].item())) if most else "",

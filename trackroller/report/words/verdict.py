@@ -221,7 +221,7 @@ class _Words:
         if any(math.isclose(c.low, one.low, rel_tol=SAME) and c.met == one.met for c in others):
             return None  # of several alike none is the next
         values = {"candidate": one, "name": self.name(one), "lives": self.span(one), "holds": one.met == one.conditions}
-        values["ranged"] = bool(found.target) and one.high > one.low
+        values |= {"target": bool(found.target), "ranged": one.high > one.low}
         return say("verdict", "next", **values)
 
     def out(self, misses: Misses | None) -> Sentence | None:

@@ -1,0 +1,107 @@
+"""Sentences that a reader took for false: what they count and name, against the raw rows."""
+
+import numpy as np
+import pandas as pd
+
+import trackroller as tr
+from trackroller.report.numbers import between, lasting, on_duty
+from trackroller.report.words.designs import best_table, unanswered
+from trackroller.report.words.optimum import optimum_sentences
+from trackroller.report.words.pareto import pareto_sentence
+from trackroller.report.words.targets import target
+from trackroller.report.words.verdict import verdict_sentences
+from trackroller.results.sensitivity import analyse
+
+LIFE = "pair_life_to_first_limit_hours"
+STEEL = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+BASE = {"axial_force": 8, "motor_force": 0, "guide_curve_radius": np.inf, "guide_overrollings_per_hour": 150, **STEEL}
+LOADS = {"radial_force": {"values": [-150, -70]}, "friction_coefficient": {"values": [0.1, 0.2]}}
+
+
+def run(factors, base=None, **keys):
+    study = {"name": "read", "base": BASE | (base or {}), "factors": factors}
+    return tr.run(study | {"contact_model": "sliding", "accuracy": "preview"} | keys, progress=False)
+
+
+def search(goals, **keys):
+    factors = {"axis_distance": {"uniform": [15, 28]}, "profile_ratio": {"uniform": [1.05, 1.3]}}
+    factors["roller_profile_radius"] = {"expression": "-profile_ratio * guide_profile_radius"}
+    return run(factors | LOADS, design="optimise", goals=goals, budget={"designs": 24}, **keys)
+
+
+def test_the_cases_of_a_saltelli_design_are_not_all_designs_of_their_own():
+    factors = {"roller_profile_radius": {"uniform": [-7.5, -6.3]}, "radial_force": {"uniform": [-150, -70]}}
+    results = run(factors, design="saltelli", samples=8)
+    said = unanswered(results.candidates()).text
+    rows = results.data["roller_profile_radius"].values
+    assert len(np.unique(rows)) == 16 < len(rows)  # mixtures repeat the designs of both samples
+    assert f"Of the {len(rows)} cases 16 are independent" in said
+    assert "roller profile radius as a list and radial force as a distribution with" in said
+
+
+def test_a_design_that_lasts_too_short_somewhere_is_not_told_to_last_there():
+    results = run({"roller_profile_radius": {"values": [-7.5, -6.3]}, "radial_force": LOADS["radial_force"]})
+    lives = results.data[LIFE].transpose("roller_profile_radius", ...).values
+    least = float(np.sqrt(lives[0].min() * lives[0].max()))  # the worse design meets it in one of two conditions
+    assert lives[1].min() > least
+    factors = {"roller_profile_radius": {"values": [-7.5, -6.3]}, "radial_force": LOADS["radial_force"]}
+    results = run(factors, analysis={"target": {"min": least}})
+    said = " ".join(one.text for one in verdict_sentences(results))
+    assert ", enough in 1 of 2 conditions." in said
+
+
+def test_designs_that_a_constraint_excludes_are_not_called_invalid():
+    results = search({LIFE: "max", "axis_distance": "min"}, constraints=["max_pressure < 600"])
+    pressure = results.data["max_pressure"].max("contact").values.reshape(-1, 4)
+    assert (results.data["regime"] == 0).all()
+    left = int((pressure >= 600).any(axis=1).sum())
+    said = pareto_sentence(results.pareto(), results).text
+    assert 0 < left < len(pressure) and f"Left out: {left} that are allowed in fewer conditions." in said
+
+
+def test_a_constraint_on_a_goal_is_a_requirement():
+    goals = {"max_pressure": "min", "axis_distance": "min"}
+    free = optimum_sentences(search(goals))[0].text
+    results = search(goals, constraints=["max_pressure < 600"])
+    said = optimum_sentences(results)[0].text
+    assert free.startswith("Give a requirement.") and said.startswith("Recommended: ")
+    pressure = results.data["max_pressure"].max("contact").values.reshape(-1, 4).max(axis=1)
+    size = results.data["axis_distance"].values.reshape(-1, 4)[:, 0]
+    cost = np.stack([pressure, size], axis=1)[pressure < 600]
+    beaten = [((cost <= own).all(axis=1) & (cost < own).any(axis=1)).any() for own in cost]
+    assert f"Of {len(cost) - sum(beaten)} Pareto-optimal designs it is nearest" in said
+
+
+def test_no_design_is_called_worse_than_one_whose_life_is_a_range():
+    """The longest life between the bounds of wear may have a lower bound below the sure life of another design."""
+    results = search({LIFE: "max"}, base={"permissible_wear_depth": 0.02})
+    low, high = (results.data[f"{LIFE}_{end}"].values.reshape(-1, 4).min(axis=1) for end in ("low", "high"))
+    said = optimum_sentences(results)[0].text
+    assert (high > 1.01 * low).all() and "as good" not in said
+
+
+def test_of_design_points_that_tie_none_is_named_first():
+    factors = {"roller_profile_radius": {"values": [-8, -6.7, -6.3]}, "radial_force": {"uniform": [-150, -70]}}
+    first = run(factors, design="inner_outer", samples=20)
+    rows = pd.DataFrame({name: first.column(name) for name in ("roller_profile_radius", LIFE)})
+    lives = rows.groupby("roller_profile_radius")[LIFE].agg(["min", "max"])
+    least = float(np.sqrt(lives["max"].iloc[0] * lives["min"].iloc[1]))
+    assert lives["max"].iloc[0] < least < lives["min"].iloc[1]  # two of three points always last long enough
+    results = run(factors, design="inner_outer", samples=20, analysis={"target": {"min": least}})
+    said = target(analyse(results), 0).text
+    assert ") at 2 of the 3 design points. The least, 0 %" in said and "no other" not in said
+
+
+def test_the_table_says_that_conditions_which_no_design_meets_are_left_out():
+    factors = {"contact_angle": {"values": [30, 42]}, "radial_force": {"values": [-30, -120]}}
+    for axial, lifts in ((25, True), (4, False)):
+        results = run(factors, base={"axial_force": axial})
+        regime = results.data["regime"].transpose("radial_force", ...).values
+        assert bool((regime[1] == 2).all() or (regime[0] == 2).all()) == lifts
+        assert ("Conditions that no candidate meets are left out." in best_table(results).note) == lifts
+
+
+def test_one_year_is_singular():
+    with on_duty({"hours_per_day": 8, "days_per_year": 220}):
+        assert lasting(1760.0, "h") == "1760 h (1 year)"
+        assert between(1760.0, 1761.0).endswith("(1 year)") and between(1760.0, 3520.0).endswith("(1 to 2 years)")
