@@ -1,9 +1,13 @@
 """Sentences that a reader took for false: what they count and name, against the raw rows."""
 
+import json
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 
 import trackroller as tr
+from trackroller.contact.profiles import canonical
 from trackroller.report.numbers import between, lasting, on_duty
 from trackroller.report.words.designs import best_table, unanswered
 from trackroller.report.words.optimum import optimum_sentences
@@ -11,6 +15,7 @@ from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.targets import target
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.sensitivity import analyse
+from trackroller.study.design.levels import short
 
 LIFE = "pair_life_to_first_limit_hours"
 STEEL = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
@@ -99,6 +104,23 @@ def test_the_table_says_that_conditions_which_no_design_meets_are_left_out():
         regime = results.data["regime"].transpose("radial_force", ...).values
         assert bool((regime[1] == 2).all() or (regime[0] == 2).all()) == lifts
         assert ("Conditions that no candidate meets are left out." in best_table(results).note) == lifts
+
+
+def test_a_measured_profile_has_the_name_of_its_file(tmp_path, monkeypatch):
+    """Also where only its points are stored; smoothing sets a second level apart, and nothing else changes."""
+    monkeypatch.chdir(tmp_path)
+    x = np.linspace(-4.0, 4.0, 81)
+    z = np.sqrt(6.8**2 - x**2) - 6.8
+    Path("worn.csv").write_text("\n".join(f"{a:.4f}; {b:.6f}" for a, b in zip(x, z, strict=True)), encoding="utf-8")
+    levels = [{"arc": -6.8}, {"file": "worn.csv"}, {"file": "worn.csv", "smooth": "auto"}]
+    results = run({"roller_profile": {"values": levels}, "radial_force": {"values": [-60, -120]}}, normal="halfspace")
+    names = [short("roller_profile", value) for value in results.data["roller_profile"].values]
+    assert names[:2] == ["arc −6.8 mm", "worn.csv, 81 points"] and names[2].startswith("worn.csv ")
+    assert len(set(names)) == 3
+    lives = results.data["roller_life_hours"].transpose("roller_profile", ...).values
+    np.testing.assert_allclose(lives[1], lives[0], rtol=0.05)
+    stored = canonical(json.loads(str(results.data["roller_profile"].values[1])))  # without the file
+    assert stored["file"] == "worn.csv" and len(stored["points"]) == 81
 
 
 def test_one_year_is_singular():

@@ -70,7 +70,7 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     Returns
     -------
     dict
-        The same description with `points` in place of `file`; {} for an empty mapping.
+        The same description with the `points` of `file` beside its name; {} for an empty mapping.
 
     Raises
     ------
@@ -82,7 +82,8 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     `arc: r` is a circle (> 0 convex, < 0 a groove, inf straight) [mm], and `parabola: r` its approximation in Hertz's
     theory. `arcs: [{radius: r, to: x}, ..., {radius: r}]` are tangent arcs from inside to outside, with x from the
     nominal contact. `points: [[x, z], ...]` are drawn or measured points [mm], and `file: name.csv` gives them as two
-    columns of a file. They are sorted by x, and points that stand twice count once.
+    columns of a file; beside points, `file` is only their name. They are sorted by x, and points that stand twice
+    count once.
 
     Points and files may also have `frame: section | contact` (default section) and `smooth`: the standard deviation of
     the measuring noise [mm], 'auto', or 0. Without it, the spline passes through every point, and points that scatter
@@ -101,7 +102,9 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     if not value:
         return {}
     check_names(f"{field} entry", value, KEYS)
-    forms = [key for key in FORMS if key in value]
+    # beside points that were read, `file` only names where they came from
+    named = "points" in value and isinstance(value.get("file"), str)
+    forms = [key for key in FORMS if key in value and not (named and key == "file")]
     if len(forms) != 1:
         remedy = "Keep the entry that describes the cross-section."
         raise InputError(field, sorted(map(str, value)), "exactly one of " + ", ".join(FORMS), remedy)
@@ -148,6 +151,8 @@ def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | 
         allowed = "points on both sides of the nominal contact x = 0"
         raise InputError(f"{field}.{form}", [low, high], allowed, remedy)
     out: dict[str, Any] = {"points": points.tolist(), "frame": frame}
+    if "file" in value:
+        out["file"] = str(value["file"])
     smooth = value.get("smooth", 0.0)
     if smooth != "auto":
         allowed = "the standard deviation of the noise >= 0 [mm], or 'auto'"

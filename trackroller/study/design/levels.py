@@ -89,8 +89,10 @@ def _profile(profile: Mapping[str, Any]) -> str:
         words = _arcs(profile["arcs"])
     elif form == "file":
         words = f"drawn {profile['file']}"
-    else:  # the mark distinguishes drawn shapes, and smoothed from unsmoothed ones
-        words = f"drawn {_mark(profile)}, {len(profile['points'])} points"
+    else:  # the mark distinguishes drawn shapes, and smoothed or worn ones from others
+        plain = "file" in profile and profile.get("frame") == "section" and not {"smooth", "worn"} & set(profile)
+        words = profile["file"] if plain else f"{profile.get('file', 'drawn')} {_mark(profile)}"
+        words += f", {len(profile['points'])} points"
     if "width" in profile:
         words += f", {_number(profile['width'])} mm wide"
     edge = profile.get("edge", {})
