@@ -81,8 +81,11 @@ def test_no_design_is_called_worse_than_one_whose_life_is_a_range():
     """The longest life between the bounds of wear may have a lower bound below the sure life of another design."""
     results = search({LIFE: "max"}, base={"permissible_wear_depth": 0.02})
     low, high = (results.data[f"{LIFE}_{end}"].values.reshape(-1, 4).min(axis=1) for end in ("low", "high"))
+    middle = results.data[LIFE].values.reshape(-1, 4).min(axis=1)
     said = optimum_sentences(results)[0].text
     assert (high > 1.01 * low).all() and "as good" not in said
+    told = pareto_sentence(results.pareto(), results).text
+    assert f"{lasting(middle.max(), 'h')}" in told and "the wear life at the mean of its bounds." in told
 
 
 def test_of_design_points_that_tie_none_is_named_first():

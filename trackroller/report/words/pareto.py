@@ -12,9 +12,11 @@ from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import Life, capital, lasting, listing, long_name, percent, quantity, with_unit
 from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
+from trackroller.report.words.designs import within_words
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import statistic
 
 
@@ -40,6 +42,8 @@ def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Senten
         others = [i for i in range(1, len(places)) if (table[places[i]] != table[places[0]]).any()]
         values["others"] = [listing(end) for end in dict.fromkeys(tuple(ends[i]) for i in others)]
         values["alike"] = len(np.unique(table[best], axis=0)) == 1
+    if results is not None and results.ranged and any(is_life(statistic(name)[1]) for name in goals):
+        values["judged"] = listing([text for text in (values["judged"], within_words(results)) if text])
     values["outside"] = int((~results.valid[rows]).sum()) if results is not None and kind == "design" else 0
     values["alone"] = "pair_life_hours" in goals and results is not None and not results.knows("guide_life_hours")
     return say("pareto", "pareto", several=len(goals) > 1, **values)
