@@ -9,6 +9,7 @@ import pandas as pd
 import trackroller as tr
 from trackroller.contact.profiles import canonical
 from trackroller.report.numbers import between, lasting, on_duty
+from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import best_table, unanswered
 from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.pareto import pareto_sentence
@@ -124,6 +125,15 @@ def test_a_measured_profile_has_the_name_of_its_file(tmp_path, monkeypatch):
     np.testing.assert_allclose(lives[1], lives[0], rtol=0.05)
     stored = canonical(json.loads(str(results.data["roller_profile"].values[1])))  # without the file
     assert stored["file"] == "worn.csv" and len(stored["points"]) == 81
+
+
+def test_the_page_names_what_was_not_checked_once():
+    """A table of options said that nothing was left out, beside a verdict that names limits without inputs."""
+    results = run(LOADS)
+    said = " ".join(one.text for one in verdict_sentences(results))
+    checked = results.data["life_hours_by_limit"].notnull().any(LOADS).sel(body="roller")
+    assert "Not checked:" in said and not bool(checked.sel(limit="wear"))
+    assert "Not checked" not in [row.words for row in contents(results)["options"]]
 
 
 def test_one_year_is_singular():

@@ -119,7 +119,8 @@ def contents(results: Results) -> dict[str, Any]:
     settings, attrs = results.study.as_dict(), dict(results.data.attrs)
     merged = {name: settings[name] for name in OPTIONS if name in settings} | attrs
     models = report_section(results)
-    options = [inputs.Row(capital(long_name(k)), text) for k in OPTIONS if (text := _option_text(merged.get(k, "")))]
+    told = [name for name in OPTIONS if name != "not_checked"]  # the verdict names all limits that were not checked
+    options = [inputs.Row(capital(long_name(k)), text) for k in told if (text := _option_text(merged.get(k, "")))]
     return {
         "name": settings["name"],
         "description": settings["description"] or attrs.get("comment", ""),
