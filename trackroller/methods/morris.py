@@ -107,10 +107,15 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
     SALib's `morris` gives the same numbers on complete data. It returns no index at all if one value is NaN; without
     incomplete trajectories, 5 % unusable rows would cost 43 % instead of 10 % of the effects of ten factors.
 
+    An interval of the resamples alone is too narrow: of twelve effects it holds the mean in 9 of 10 studies. Here it is
+    wider by Student's t, by 17 % with twelve effects.
+
     References
     ----------
     Morris (1991), Technometrics 33, 161-174; Campolongo et al. (2007), Environ. Model. Softw. 22, 1509-1518.
     """
+    from scipy.special import ndtri, stdtrit  # heavy, and a process that only plans needs no interval
+
     count, effect = unit.shape[1], elementary_effects(y, unit, listed)
     good = np.isfinite(effect)
     used = good.sum(axis=0)
@@ -126,7 +131,14 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
         spread = np.where(good, (effect - out["mu"]) ** 2, 0.0).sum(axis=0) / (used - 1)
     out["sigma"] = np.sqrt(np.where(used > 1, spread, np.nan))
     low, high = percentile_bounds(drawn)
-    return out | {"mu_star_low": low, "mu_star_high": high}
+    # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of Student's t
+    with np.errstate(invalid="ignore", divide="ignore"):
+        wider = stdtrit(used - 1.0, 0.975) / ndtri(0.975) * np.sqrt(used / (used - 1.0))
+    mean = out["mu_star"]
+    return out | {
+        "mu_star_low": np.maximum(0.0, mean - wider * (mean - low)),
+        "mu_star_high": mean + wider * (high - mean),
+    }
 
 
 def elementary_effects(y: np.ndarray, unit: np.ndarray, listed: np.ndarray) -> np.ndarray:
