@@ -131,9 +131,10 @@ def morris(y: np.ndarray, unit: np.ndarray, listed: np.ndarray, seed: int = 0, r
         spread = np.where(good, (effect - out["mu"]) ** 2, 0.0).sum(axis=0) / (used - 1)
     out["sigma"] = np.sqrt(np.where(used > 1, spread, np.nan))
     low, high = percentile_bounds(drawn)
-    # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of Student's t
-    with np.errstate(invalid="ignore", divide="ignore"):
-        wider = stdtrit(used - 1.0, 0.975) / ndtri(0.975) * np.sqrt(used / (used - 1.0))
+    # resamples of a dozen effects spread less than their mean does: as a normal quantile to that of Student's t;
+    # of two or three effects t is so wide that nothing would follow for the samples that are needed
+    least = np.maximum(used, 4)
+    wider = stdtrit(least - 1.0, 0.975) / ndtri(0.975) * np.sqrt(least / (least - 1.0))
     mean = out["mu_star"]
     return out | {
         "mu_star_low": np.maximum(0.0, mean - wider * (mean - low)),
