@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
+import pytest
 
 import trackroller as tr
 from trackroller.contact.profiles import canonical
@@ -124,7 +125,13 @@ def test_a_measured_profile_has_the_name_of_its_file(tmp_path, monkeypatch):
     lives = results.data["roller_life_hours"].transpose("roller_profile", ...).values
     np.testing.assert_allclose(lives[1], lives[0], rtol=0.05)
     stored = canonical(json.loads(str(results.data["roller_profile"].values[1])))  # without the file
-    assert stored["file"] == "worn.csv" and len(stored["points"]) == 81
+    assert stored["name"] == "worn.csv" and len(stored["points"]) == 81
+    named = canonical({"points": stored["points"], "name": "Rig 3, after 40 km"})
+    assert short("roller_profile", named) == "Rig 3, after 40 km, 81 points"
+    with pytest.raises(tr.InputError, match="exactly one of"):
+        canonical({"points": stored["points"], "file": "worn.csv"})
+    with pytest.raises(tr.InputError, match="at most 80"):
+        canonical({"points": stored["points"], "name": "a\nb"})
 
 
 def test_the_page_names_what_was_not_checked_once():

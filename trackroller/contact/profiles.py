@@ -31,7 +31,8 @@ from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.numerics.numbers import number_in, number_or_nan
 
 FORMS = ("arc", "parabola", "arcs", "points", "file")
-KEYS = (*FORMS, "frame", "smooth", "edge", "width", "worn")
+KEYS = (*FORMS, "name", "frame", "smooth", "edge", "width", "worn")
+LONGEST_NAME = 80  # characters
 WORN_KEYS = ("start", "step", "depth", "moved", "inclined")
 EDGE_KEYS = ("inner", "outer", "chamfer")
 FRAMES = ("section", "contact")
@@ -70,7 +71,7 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     Returns
     -------
     dict
-        The same description with the `points` of `file` beside its name; {} for an empty mapping.
+        The same description with `points` in place of `file`, and the name of the file; {} for an empty mapping.
 
     Raises
     ------
@@ -82,8 +83,8 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     `arc: r` is a circle (> 0 convex, < 0 a groove, inf straight) [mm], and `parabola: r` its approximation in Hertz's
     theory. `arcs: [{radius: r, to: x}, ..., {radius: r}]` are tangent arcs from inside to outside, with x from the
     nominal contact. `points: [[x, z], ...]` are drawn or measured points [mm], and `file: name.csv` gives them as two
-    columns of a file; beside points, `file` is only their name. They are sorted by x, and points that stand twice
-    count once.
+    columns of a file. They are sorted by x, and points that stand twice count once. `name` is what reports call the
+    shape, by default the name of the file.
 
     Points and files may also have `frame: section | contact` (default section) and `smooth`: the standard deviation of
     the measuring noise [mm], 'auto', or 0. Without it, the spline passes through every point, and points that scatter
@@ -102,15 +103,13 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     if not value:
         return {}
     check_names(f"{field} entry", value, KEYS)
-    # beside points that were read, `file` only names where they came from
-    named = "points" in value and isinstance(value.get("file"), str)
-    forms = [key for key in FORMS if key in value and not (named and key == "file")]
+    forms = [key for key in FORMS if key in value]
     if len(forms) != 1:
         remedy = "Keep the entry that describes the cross-section."
         raise InputError(field, sorted(map(str, value)), "exactly one of " + ", ".join(FORMS), remedy)
     out = _shape(forms[0], value, field, read)
     if "points" not in out:
-        for key in ("frame", "smooth"):
+        for key in ("name", "frame", "smooth"):
             if key in value:
                 raise InputError(f"{field}.{key}", value[key], "only with points or a file", "Leave it out.")
     if "edge" in value and "width" in value:
@@ -122,6 +121,13 @@ def canonical(value: Mapping[str, Any], field: str = "profile", read: PointReade
     if "worn" in value:
         out["worn"] = _worn(value["worn"], f"{field}.worn")
     return out
+
+
+def _name(value: Any, field: str) -> str:
+    if not isinstance(value, str) or not 0 < len(value.strip()) <= LONGEST_NAME or not value.isprintable():
+        allowed = f"a text of at most {LONGEST_NAME} printed characters"
+        raise InputError(field, value, allowed, "Write a short name, or leave it out.")
+    return value.strip()
 
 
 def _number(value: Any, field: str, positive: bool = False, finite: bool = True) -> float:
@@ -151,8 +157,9 @@ def _shape(form: str, value: Mapping[str, Any], field: str, read: PointReader | 
         allowed = "points on both sides of the nominal contact x = 0"
         raise InputError(f"{field}.{form}", [low, high], allowed, remedy)
     out: dict[str, Any] = {"points": points.tolist(), "frame": frame}
-    if "file" in value:
-        out["file"] = str(value["file"])
+    if form == "file" or "name" in value:  # where a file lies on this machine is not stored
+        file = Path(str(value.get("file", "")))
+        out["name"] = _name(value.get("name", file.name if file.is_absolute() else str(file)), f"{field}.name")
     smooth = value.get("smooth", 0.0)
     if smooth != "auto":
         allowed = "the standard deviation of the noise >= 0 [mm], or 'auto'"

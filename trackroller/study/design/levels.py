@@ -90,8 +90,8 @@ def _profile(profile: Mapping[str, Any]) -> str:
     elif form == "file":
         words = f"drawn {profile['file']}"
     else:  # the mark distinguishes drawn shapes, and smoothed or worn ones from others
-        plain = "file" in profile and profile.get("frame") == "section" and not {"smooth", "worn"} & set(profile)
-        words = profile["file"] if plain else f"{profile.get('file', 'drawn')} {_mark(profile)}"
+        plain = "name" in profile and profile.get("frame") == "section" and not {"smooth", "worn"} & set(profile)
+        words = profile["name"] if plain else f"{profile.get('name', 'drawn')} {_mark(profile)}"
         words += f", {len(profile['points'])} points"
     if "width" in profile:
         words += f", {_number(profile['width'])} mm wide"
