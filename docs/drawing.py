@@ -209,10 +209,12 @@ FIGURES = {"scene": scene, "patch": patch, "sn_curve": sn_curve}
 
 def draw(name: str, folder: Path = FOLDER) -> Path:
     """Write one of `FIGURES` as SVG with text as text, and return its path."""
-    plt.rcParams.update({"svg.fonttype": "none", "svg.hashsalt": name, "font.size": 10, "font.family": "sans-serif"})
-    figure = FIGURES[name]()
-    figure.savefig(folder / f"{name}.svg", metadata={"Date": None}, facecolor="white")
-    plt.close(figure)
+    with plt.rc_context():
+        plt.rcdefaults()
+        plt.rcParams |= {"svg.fonttype": "none", "svg.hashsalt": name, "font.size": 10, "font.family": "sans-serif"}
+        figure = FIGURES[name]()
+        figure.savefig(folder / f"{name}.svg", metadata={"Date": None}, facecolor="white")
+        plt.close(figure)
     return folder / f"{name}.svg"
 
 
