@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import itertools
 import json
-import threading
-import time
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -415,26 +413,3 @@ def test_numbers_are_rounded_once():
 def test_no_material_has_the_colour_of_a_contact_or_of_a_body():
     names = [*builtin_database().names(), *(f"steel {i}" for i in range(200))]
     assert len(set(style.PAIR)) == 2 and not set(style.PAIR) & set(style.colours(names, True))
-
-
-def test_threads_that_draw_at_once_leave_the_style_of_the_caller():
-    """The second one enters before the first one leaves: the style of the first may not stay."""
-    before, inside, leave = style.matplotlib.rcParams["mathtext.default"], threading.Event(), threading.Event()
-
-    def first():
-        with style.look():
-            inside.set()
-            leave.wait(10)
-
-    def second():
-        inside.wait(10)
-        leave.set()
-        with style.look():
-            time.sleep(0.05)
-
-    threads = [threading.Thread(target=one) for one in (first, second)]
-    for thread in threads:
-        thread.start()
-    for thread in threads:
-        thread.join()
-    assert style.matplotlib.rcParams["mathtext.default"] == before

@@ -9,11 +9,9 @@ import io
 import json
 import logging
 import math
-import threading
 import warnings
 import zlib
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import asdict, dataclass
 from functools import partial
 from pathlib import Path
@@ -54,14 +52,9 @@ class FigureInfo:
 Drawn = tuple[Figure, FigureInfo] | None  # what a figure's function returns; None without anything to show
 
 
-_styled = threading.RLock()  # all threads share the style: two that draw at once would restore that of each other
-
-
-@contextmanager
-def look() -> Iterator[None]:
-    """Set the common style for everything drawn inside; it is restored afterwards. One thread draws at a time."""
-    with _styled, matplotlib.rc_context(fname=Path(__file__).with_name("trackroller.mplstyle")):
-        yield
+def look() -> Any:
+    """Return a context that sets the common style for everything drawn inside; it is restored afterwards."""
+    return matplotlib.rc_context(fname=Path(__file__).with_name("trackroller.mplstyle"))
 
 
 def palette(count: int) -> list[str]:
