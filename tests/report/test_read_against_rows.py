@@ -112,7 +112,7 @@ def test_the_table_says_that_conditions_which_no_design_meets_are_left_out():
 
 
 def test_a_measured_profile_has_the_name_of_its_file(tmp_path, monkeypatch):
-    """Also where only its points are stored; smoothing sets a second level apart, and nothing else changes."""
+    """The name stays where only the points are stored, and a smoothed profile has another name than the raw one."""
     monkeypatch.chdir(tmp_path)
     x = np.linspace(-4.0, 4.0, 81)
     z = np.sqrt(6.8**2 - x**2) - 6.8

@@ -445,7 +445,7 @@ def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
     assert {"tornado-roller_life_hours", "bands-roller_life_hours"} <= set(drawn)
     told = dict(in_short(results_of(results, analyse(results)), []))["Why"]
     first = told[0].values["first"]
-    share = 4 / (4 + 0.09)  # both factors have the same range
+    share = 4 / (4 + 0.09)  # of effects 2 and 0.3 over equal ranges, by their squares
     assert first.factor == "axial_force" and first.low < share < first.high and "± " in told[0].text
     assert "shortens" in {one.values.get("verb") for one in told if one.kind == "classes"}
     assert "interactions-roller_life_hours" not in drawn  # the made-up life has none

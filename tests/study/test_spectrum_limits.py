@@ -64,7 +64,7 @@ def test_the_first_limit_is_the_one_that_comes_first():
     assert float(ds.pair_life_to_first_limit_shifts) == float(shifts.min())
     head, other = sentences(ds)[:2]
     hours = shifts.min("limit") * float(ds["duration"].sum())
-    assert (head.kind, head.values["body"]) == ("spectrum_pair", str(hours.body.values[int(hours.argmin())]))
+    assert (head.kind, head.values["body"]) == ("spectrum_pair", str(hours.body.values[int(hours.values.argmin())]))
     assert head.values["hours"].startswith(f"{rounded(float(ds.pair_life_to_first_limit_hours_low))}")
     assert other.kind == "spectrum_limit" and other.values["body"] != head.values["body"]
     assert [row[0].split()[0] for row in limit_table(ds).rows] == ["static", "rolling-contact", "wear"]

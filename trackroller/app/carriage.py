@@ -140,7 +140,7 @@ def _loads(ds: xr.Dataset) -> dict[str, Any]:
 
 
 def table_on_page(table: Table) -> dict[str, Any]:
-    """Return a table as values of JSON."""
+    """Return the parts of a table that the page shows, by name."""
     return {"title": table.title, "heads": table.heads, "rows": table.rows, "note": table.note}
 
 

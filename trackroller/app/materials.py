@@ -74,7 +74,7 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     if not source.strip():
         raise InputError("source", source, "where the values come from", "Name the data sheet or the test.")
     database, file = load_database(), find_user_file(None) or FILE
-    changed = {field: _typed(text) for field, text in values.items() if text.strip()}
+    changed = {field: typed(text) for field, text in values.items() if text.strip()}
     base = {} if name in database or like == name else {"like": database.material(like, "like").name}
     if not changed:
         raise InputError("material", name, "at least one changed value", "Type another number into one of the fields.")
@@ -82,7 +82,7 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     return {"materials": material_rows(load_database()), "file": str(file), "doubts": doubts({}, [made])}
 
 
-def _typed(text: str) -> float | str:
+def typed(text: str) -> float | str:
     """Return a typed number, with its decimal comma as a point; a text with a unit stays as it is."""
     plain = text.strip().replace("−", "-").replace(",", ".")
     try:

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from typing import Any
 
 import xarray as xr
 
 from trackroller.app.carriage import table_on_page
+from trackroller.app.materials import typed
 from trackroller.app.picture import Values, read
 from trackroller.errors import InputError
 from trackroller.report.numbers import lives_in_years
@@ -17,9 +17,7 @@ from trackroller.roller.record import given_inputs
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 from trackroller.study.spectrum.file import TRAVEL, Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
-from trackroller.yaml_file import parse_yaml, write_yaml
-
-COMMA = re.compile(r"(?<=\d),(?=\d)")
+from trackroller.yaml_file import write_yaml
 
 
 def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str, Any]:
@@ -44,18 +42,13 @@ def spectrum(values: Values, by: str, blocks: list[dict[str, str]]) -> dict[str,
     case, options, beside = read(values)
     base, taken = parts_for_spectrum(given_inputs(case) | options)
     made = [
-        {"name": block.get("name") or f"load {i}", by: _typed(block.get("amount", ""), by)}
-        | {name: _typed(block.get(name, ""), name) for name in LOADS}
+        {"name": block.get("name") or f"load {i}", by: typed(block.get("amount", ""))}
+        | {name: typed(block.get(name, "")) for name in LOADS}
         for i, block in enumerate(blocks, 1)
     ]
     duty = {"duty": beside["duty"]} if "duty" in beside else {}
     file = {"name": "loads-of-the-roller", "base": base, **duty, "blocks": made, **taken}
     return _answer(solve_spectrum(Spectrum.from_dict(file))) | {"text": write_yaml(file)}
-
-
-def _typed(text: str, field: str) -> Any:
-    """Return a typed number, with its unit as text; an empty field is refused by the spectrum."""
-    return parse_yaml(COMMA.sub(".", text.strip()), field) if text.strip() else None
 
 
 @lives_in_years

@@ -86,7 +86,6 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
     costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
     violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
     short = shortfall(results, any(judged_by(goal)[0] == "b10" for goal in goals))
-    short = np.zeros(len(table)) if short is None else short
     return Judged(genes, table, costs, violation.astype(float), short, _reasons(results, known.ravel()))
 
 
@@ -114,7 +113,7 @@ def required(results: Results) -> bool:
     return bool(set(results.config.analysis.target) - chances)
 
 
-def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray | None:
+def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray:
     """Return how far each design of a search is from the target of the study, shape (designs,).
 
     Parameters
@@ -125,13 +124,13 @@ def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray | None:
     Returns
     -------
     0 where the design meets the target; 1 where a range or an error leaves that open, 2 where it misses the target,
-    plus a part below 1 by the share of the conditions that may miss it, then by the life. None without a target,
+    plus a part below 1 by the share of the conditions that may miss it, then by the life. 0 for all without a target,
     without lives and stresses, and where the probability of the target is a goal itself.
     """
     goal = results.life or STRESS
-    if not required(results) or goal[0] not in results.table:
-        return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    if not required(results) or goal[0] not in results.table:
+        return np.zeros(shape[0])
     cases = Cases(Candidates.grouped(results, goal))
     least, *hits = cases.on_target(exact=False)
     sure, may = (own.astype(float).reshape(shape) for own in hits)

@@ -117,7 +117,7 @@ def solved_results(ledger: Ledger) -> Results:
 
 
 def _materials_file(path: Path) -> Path:
-    """Return where the folder of a study, or of its `study.nc`, keeps its materials and the fits beside them."""
+    """Return the materials file in the folder of a study; `path` is that folder, or `study.nc` in it."""
     return StudyFolder(path if path.is_dir() else path.parent).inputs / MATERIALS
 
 

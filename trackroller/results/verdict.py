@@ -214,6 +214,11 @@ class Verdict:
     within_error: int = -1
 
     @property
+    def ranked(self) -> Verdict:
+        """Return the verdict that ranks the candidates: that over the rest where a value is asked for, else itself."""
+        return self if self.rest is None else self.rest
+
+    @property
     def best(self) -> tuple[Candidate, ...]:
         """Return the candidates that the verdict names."""
         return self.candidates[: self.named]
@@ -309,7 +314,7 @@ def _unconstrained(cases: Cases, found: Verdict) -> Candidate | None:
     if cases.results.allowed is None or not (cases.reason == "misses a constraint").any():
         return None
     first = _first(replace(cases, constrained=False))
-    same = {one.number for one in (found if found.rest is None else found.rest).best}
+    same = {one.number for one in found.ranked.best}
     return None if first is None or first.number in same else first
 
 

@@ -8,19 +8,20 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from trackroller.damage import asked
+from trackroller.damage import asked, fields_of, judged
 from trackroller.damage.limit import SN_SCATTER, Limit, SolvedRollers, missing
 from trackroller.materials.material import UNNAMED
 from trackroller.materials.properties import Value
 from trackroller.parameters import BODIES, MAPPING_FIELDS, PARAMETERS
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import NOTES
+from trackroller.roller.record import is_default
 from trackroller.roller.stages.outcome import solved_of, to_compute
 
 if TYPE_CHECKING:
@@ -218,3 +219,23 @@ def _remedy_of_value(name: str, material: str) -> str:
         f"Enter it in config/materials.yaml under materials.{material}, or in the case: "
         f"{{like: {material}, {name}: NUMBER}}."
     )
+
+
+def given_in_vain(values: Mapping[str, Any], idle: Iterable[str]) -> dict[str, list[str]]:
+    """Return the values that were given for limits which were not checked, and for nothing else.
+
+    Parameters
+    ----------
+    values : mapping
+        Values of a case by name.
+    idle : iterable of str
+        Names of the limits that were not checked.
+
+    Returns
+    -------
+    dict of str to list of str
+        The limits that would use a value, by its name. Defaults are left out, and `travel`, which any study may have.
+    """
+    users = {name: [limit.name for limit in judged() if name in fields_of(limit)] for name in values}
+    unused = {name: own for name, own in users.items() if own and {*own} <= {*idle} and name != "travel"}
+    return {name: own for name, own in unused.items() if not is_default(name, values[name])}

@@ -37,7 +37,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     reach the target? None for fewer than two candidates.
     """
     found = results.verdict
-    ranked = found if found is None or found.rest is None else found.rest
+    ranked = None if found is None else found.ranked
     if ranked is None or len(ranked.candidates) < 2:
         return None
     rising, unit = ranked.goal_rises, ranked.goal[2]

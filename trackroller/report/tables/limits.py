@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.damage import LIMITS, fields_of, heat, judged
+from trackroller.damage import LIMITS, heat, judged
 from trackroller.damage.limit import OF_GUIDE, SN_SCATTER, Limit
 from trackroller.damage.verdict import ENDS, STATES
 from trackroller.fit.stored import fits_of_case
@@ -21,8 +21,8 @@ from trackroller.report.tables.lives import overrollings
 from trackroller.report.words.by_tests import worst
 from trackroller.results.lives import past_data
 from trackroller.roller import temperature
-from trackroller.roller.limit_notes import Placeholder, lacks_of, notes_of, placeholders_of
-from trackroller.roller.record import CASE, inputs_of, is_default
+from trackroller.roller.limit_notes import Placeholder, given_in_vain, lacks_of, notes_of, placeholders_of
+from trackroller.roller.record import CASE, inputs_of
 from trackroller.roller.regime_limits import Limits
 
 OVERLOADED = "tensile strength"  # in the reason why a body has no fatigue life
@@ -399,10 +399,8 @@ def _given_in_vain(ds: xr.Dataset, idle: list[str]) -> list[str]:
     if CASE not in ds.attrs or "case" in ds.dims or not idle:
         return []
     unused: dict[str, list[str]] = {}
-    for name, value in inputs_of(ds).items():
-        users = [limit.name for limit in judged() if name in fields_of(limit)]
-        if users and name != "travel" and not is_default(name, value) and {*users} <= {*idle}:
-            unused.setdefault(listing(users), []).append(name)
+    for name, users in given_in_vain(inputs_of(ds), idle).items():
+        unused.setdefault(listing(users), []).append(name)
     return [
         f"Given, but not used: {listing(names)}, because {limits} {'are' if ' ' in limits else 'is'} not checked."
         for limits, names in unused.items()

@@ -88,7 +88,7 @@ def accuracy(results: Results) -> list[Sentence]:
 def life_error(results: Results) -> Sentence | None:
     """State the error by the solution of the life that the verdict names first, where it exceeds `LARGE_ERROR`."""
     found = results.verdict
-    ranked = found if found is None or found.rest is None else found.rest
+    ranked = None if found is None else found.ranked
     if ranked is None or not ranked.best or not ranked.goal_rises or ranked.best[0].error <= LARGE_ERROR:
         return None
     return say("accuracy", "life", error=ranked.best[0].error, many=len(ranked.candidates) > 1)

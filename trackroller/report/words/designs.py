@@ -245,7 +245,7 @@ def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate
     found = candidates.results.verdict
     if found is None or found.goal != candidates.goal or found.choices != candidates.choices:
         return []
-    known = {one.number: one for one in (found if found.rest is None else found.rest).candidates}
+    known = {one.number: one for one in found.ranked.candidates}
     return [known.get(int(str(row.name))) for row in best]
 
 

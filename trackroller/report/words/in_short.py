@@ -20,7 +20,7 @@ from trackroller.results.results import Results
 Line = tuple[str, list[Sentence]]
 
 
-SETTLED = ("lasts", "none", "a_or_b")  # verdicts on a target that the interval of the sample bears out
+SETTLED = ("lasts", "none", "a_or_b")  # kinds of verdict for which the samples are enough
 
 
 def in_short(results: Results, models: list[str]) -> list[Line]:

@@ -12,7 +12,7 @@ from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import bearing_words, given_in_vain, targets_in_words, unchecked_words
+from trackroller.report.words.verdict import bearing_words, targets_in_words, unchecked_words, vain_in_base
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.judging import (
@@ -195,7 +195,7 @@ def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
     if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
         return None
     left_out = not_checked(results)
-    names, vain = unchecked_words(results, left_out), given_in_vain(results, left_out)
+    names, vain = unchecked_words(results, left_out), vain_in_base(results, left_out)
     return say("verdict", "not_checked", names=names, vain=vain) if names else None
 
 

@@ -39,14 +39,14 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
         return by_fatigue
     lives = {body: float(ds["life_to_first_limit_hours_low"].sel(body=body)) for body in BODIES}
     sooner, later = sorted(BODIES, key=lambda body: (np.isnan(lives[body]), lives[body]))
-    head = _first_limit(ds, sooner, later if np.isnan(lives[later]) else "none")
+    head = _first_limit(ds, sooner, of_pair=True, unknown=later if np.isnan(lives[later]) else "")
     if head.kind != "spectrum_pair":  # why no life is known or left stands in the sentences on fatigue
         return [*by_fatigue, *(_first_limit(ds, body) for body in BODIES)]
     return [head, _first_limit(ds, later), *by_fatigue]
 
 
-def _first_limit(ds: xr.Dataset, body: str, unknown: str = "") -> Sentence:
-    """Return the first limit of a body; `unknown` makes it that of the pair, and names the body of unknown hours."""
+def _first_limit(ds: xr.Dataset, body: str, of_pair: bool = False, unknown: str = "") -> Sentence:
+    """Return the first limit of a body, as that of the pair if it is; the hours of the body `unknown` are not known."""
     own, names = ds.sel(body=body), str(ds["limiting_mechanism"].attrs["flag_meanings"]).split()
     name, shifts = names[int(own["limiting_mechanism"])], float(own["life_to_first_limit_shifts"])
     if name not in LIMITS:
@@ -61,7 +61,7 @@ def _first_limit(ds: xr.Dataset, body: str, unknown: str = "") -> Sentence:
     damage = own["damage_by_limit"].values
     worst = int(np.nanargmax(damage))
     values |= {"block": str(ds["block"].values[worst]), "share": float(damage[worst] / damage.sum())}
-    if unknown:
+    if of_pair:
         beyond = name == "fatigue" and _beyond(ds, body, shifts)
         return say("spectrum", "spectrum_pair", **values, beyond=beyond, unknown=unknown)
     return say("spectrum", "spectrum_limit", **values)

@@ -8,7 +8,7 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from trackroller.damage import LIMITS, fields_of, judged
+from trackroller.damage import LIMITS
 from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
@@ -42,8 +42,8 @@ from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.limit_notes import guessed_lines, placeholders_of
-from trackroller.roller.record import is_default, names_not_given
+from trackroller.roller.limit_notes import given_in_vain, guessed_lines, placeholders_of
+from trackroller.roller.record import names_not_given
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
@@ -313,7 +313,7 @@ class _Words:
 
     def tested(self) -> Sentence | None:
         """Say which tests leave the life of the first candidates open, and whether it is an extrapolation of them."""
-        found = self.found if self.found.rest is None else self.found.rest
+        found = self.found.ranked
         own = self.results.by_tests
         shown = [*found.best[:MOST], *([] if found.next is None else [found.next])]
         named = list(dict.fromkeys(name for one in shown for name in one.tested))
@@ -425,7 +425,7 @@ class _Words:
     def models(self) -> Sentence | None:
         """Say whether the other contact models of a study name the same candidate."""
         found, others = self.found, self.found.by_model
-        named = (found if found.rest is None else found.rest).best
+        named = found.ranked.best
         if not others or len(self.candidates.size) < 2 or len(named) != 1 or found.kind == "cannot_tell":
             return None
         agree = [model for model, one in others.items() if one.choices == named[0].choices]
@@ -442,7 +442,7 @@ class _Words:
 
     def guessed(self) -> Sentence | None:
         """Say that fatigue ends the first candidate by an S-N line that rests on guesses."""
-        found = self.found if self.found.rest is None else self.found.rest
+        found = self.found.ranked
         if not found.best or found.why == "model" or "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
             return None
         material = str(self.results.material(found.best[0].body)[found.best[0].case])
@@ -450,12 +450,12 @@ class _Words:
 
     def bearings(self) -> Sentence | None:
         """Say that half of the bearings reach a life that the bearing ends, while makers state that of nine of ten."""
-        found = self.found if self.found.rest is None else self.found.rest
+        found = self.found.ranked
         return bearing_words(self.results, [name for one in found.best[:MOST] for name in (one.ends, one.ends_high)])
 
     def scatter(self) -> Sentence | None:
         """Say that a life of nine of ten conditions by fatigue leaves out the scatter of the material."""
-        found, results = self.found if self.found.rest is None else self.found.rest, self.results
+        found, results = self.found.ranked, self.results
         if not (found.sampled and found.best and results.config.analysis.material_scatter is False):
             return None
         if "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
@@ -467,7 +467,7 @@ class _Words:
 
     def worn(self) -> Sentence | None:
         """Say of a first candidate that wear ends: its coefficient is a placeholder, and its groove is worn through."""
-        found = self.found if self.found.rest is None else self.found.rest
+        found = self.found.ranked
         if not found.best or "wear" not in (found.best[0].ends, found.best[0].ends_high):
             return None
         one, results = found.best[0], self.results
@@ -484,16 +484,14 @@ class _Words:
         """Name what was not checked."""
         names = unchecked_words(self.results, self.found.not_checked)
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
-        vain = given_in_vain(self.results, self.found.not_checked)
+        vain = vain_in_base(self.results, self.found.not_checked)
         return say("verdict", "not_checked", names=names, vain=vain) if names else None
 
 
-def given_in_vain(results: Results, not_checked: Iterable[str]) -> list[str]:
+def vain_in_base(results: Results, not_checked: Iterable[str]) -> list[str]:
     """Return the values under `base` that a study gives for limits which were not checked, and for nothing else."""
-    idle, unknown = set(not_checked), set(names_not_given(results.data.attrs))
-    users = {name: {one.name for one in judged() if name in fields_of(one)} for name in results.config.base}
-    of_limits = [name for name, own in users.items() if own and own <= idle and name not in unknown | {"travel"}]
-    return [name for name in of_limits if not is_default(name, results.config.base[name])]
+    unknown = names_not_given(results.data.attrs)
+    return [name for name in given_in_vain(results.config.base, not_checked) if name not in unknown]
 
 
 def bearing_words(results: Results, limits: Iterable[str]) -> Sentence | None:

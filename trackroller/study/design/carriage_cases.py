@@ -34,7 +34,7 @@ if TYPE_CHECKING:
 
 ROW, ROLLER, LOAD_CASE, SHARE, HOURS = "design_row", "carriage_roller", "load_case", "share", "hours_per_km"
 REASONS = "carriage_reasons"  # attribute: JSON, why the rollers do not hold the carriage, by the number of its row
-STIFF = (*GEOMETRY, *MATERIAL_FIELDS)  # parameters of a roller that decide the stiffness of its contacts
+STIFF = (*GEOMETRY, *MATERIAL_FIELDS)  # on these parameters the stiffness of the contacts depends
 DIGITS = 8  # of a force: the last digits depend on the processor, and a case is known by its numbers
 
 

@@ -188,7 +188,7 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
         if config.method.weighted and not config.method.whole:
             return
         remedy = "Remove the key: the verdict has the range by the tests in any design."
-        allowed = "a random sample, such as design: sobol, or inner_outer"
+        allowed = "design: inner_outer, or a random sample such as design: sobol"
         raise InputError("analysis.material_scatter", wanted, allowed, remedy)
     if not config.method.points:
         remedy = "Remove the key: only inner_outer has a B10 life."

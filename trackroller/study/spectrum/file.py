@@ -205,7 +205,10 @@ def load_spectrum(path: Path | str) -> Spectrum:
 
 
 def _blocks(given: Any, base: Any) -> tuple[tuple[Block, ...], bool]:
-    """Return the checked blocks and whether they state shares; raise all their errors and those of `base` together."""
+    """Return the checked blocks, and whether these state shares of the time.
+
+    Raises the errors of all blocks and of `base` together.
+    """
     wrong = Collector()
     path = find_beside(given, "blocks") if isinstance(given, str) else None
     table = None if path is None else read_table(path, "blocks", "block", wrong, optional=OPTIONAL)
