@@ -158,3 +158,14 @@ def _file(folder, keys):
     path = folder / "study.yaml"
     path.write_text(yaml.safe_dump(keys), encoding="utf-8")
     return path
+
+
+def test_a_share_of_time_that_changes_no_case_is_told(tmp_path):
+    """A column of numbers that no case and no expression uses is named, with what would add up the damage."""
+    rows = "block,share,lever,radial_force\nlight,0.7,2,-60\nheavy,0.3,2,-110\n"
+    (tmp_path / "cases.csv").write_text(rows)
+    text = "name: shares\nbase: {motor_force: 0}\ndesign: table\ntable: cases.csv\ncontact_model: sliding\n"
+    text += 'factors: {axial_force: {expression: "5 * lever"}}\naccuracy: preview\n'
+    (tmp_path / "shares.yaml").write_text(text)
+    note = rows_table(tr.run(tmp_path / "shares.yaml", progress=False)).note
+    assert "Share changes no case" in note and "spectrum" in note and "ever" not in note

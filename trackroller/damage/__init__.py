@@ -100,14 +100,14 @@ def groups_of(field: str, names: Collection[str]) -> tuple[str, ...]:
 def check_used(
     given: Mapping[str, Any], outputs: Collection[str], not_checked: Collection[str], where: str = ""
 ) -> None:
-    """Refuse a field of a case that only limits use which the outputs do not ask for.
+    """Refuse a field of a case that only limits use which the outputs do not ask for, and a duty without lives.
 
     A field of a limit that `not_checked` leaves out is left out on purpose. `travel` also changes the profiles.
 
     Parameters
     ----------
     given : mapping
-        Fields that were given with a value other than the default.
+        Fields that were given with a value other than the default; and the `duty`, if there is one.
     outputs, not_checked : collection of str
         Values of these options.
     where : str
@@ -119,6 +119,9 @@ def check_used(
         For the first such field.
     """
     asked_for = asked(outputs, not_checked)
+    if given.get("duty") and not asked_for:
+        wrong = "is used by no output: it turns lives into years"
+        raise InputError("duty", given["duty"], "", "Add limits to outputs, or remove duty.", wrong)
     for name in (name for name in given if name != "travel"):
         users = [limit for limit in judged() if name in fields_of(limit)]
         if users and not any(limit in asked_for or limit.name in not_checked for limit in users):

@@ -129,5 +129,6 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
         from trackroller.damage import check_used  # heavy: scipy
 
         given = {name: getattr(case, name) for name in FIELDS if name not in case.not_given}
-        check_used(other_than_default(given), options["outputs"], options.get("not_checked", ()))
+        given = other_than_default(given) | beside
+        check_used(given, options["outputs"], options.get("not_checked", ()))
     return case, options, beside

@@ -235,3 +235,11 @@ def test_merged_study_reads_back_as_itself():
         study = tr.load_study(path)
         again = parse_study(parse_mapping(study.merged(), "study"))
         assert again.merged() == study.merged()
+
+
+def test_a_duty_that_no_output_uses_is_refused():
+    """A duty turns lives into years, and a study of forces has no lives."""
+    study = {"name": "d", "factors": {"radial_force": {"values": [-60, -90]}}, "duty": {"hours_per_day": 8}}
+    with pytest.raises(InputError, match=r"duty.*turns lives into years.*Add limits"):
+        parse_study(study | {"outputs": ["forces"]})
+    assert parse_study(study | {"outputs": ["forces", "life"]}).config.duty["hours_per_day"] == 8

@@ -8,9 +8,10 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from pandas.api.types import is_numeric_dtype
 
 from trackroller.damage import LIMITS
-from trackroller.parameters import BODIES, FIRST_TO_FAIL
+from trackroller.parameters import BODIES, FIRST_TO_FAIL, expressions
 from trackroller.report.numbers import (
     BEYOND,
     Life,
@@ -36,6 +37,7 @@ from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
 from trackroller.roller.limit_notes import placeholders_of
+from trackroller.study.design.entries import FACTOR_NAMES
 
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
@@ -169,7 +171,14 @@ def rows_table(results: Results) -> Table | None:
         row[capital(goal[1])] = plain_reason(cases.reason[at]) or ends_text(*ends, goal[2])
         row["Ends it"] = "–" if cases.reason[at] else f"{ended_by(str(names[at]))}, {BODIES[int(guide[at])]}"
         rows.append(row)
-    return Table.of("rows", "Life of each row of the table", rows)
+    return Table.of("rows", "Life of each row of the table", rows, phrase("designs", "rows", idle=_idle(results)))
+
+
+def _idle(results: Results) -> list[str]:
+    """Return the columns of numbers of a table that change no case, such as shares of the time."""
+    own = [name for name in results.factors if name not in FACTOR_NAMES and is_numeric_dtype(results.table[name])]
+    texts = [factor["expression"] for factor in results.config.factors.values() if "expression" in factor]
+    return [heading(name) for name in own if not any(name in expressions.names(text) for text in texts)]
 
 
 def plain_reason(reason: str) -> str:

@@ -60,6 +60,7 @@ def _check_options(study: Study) -> None:
     given = {name: value for name, value in config.base.items() if name in FIELDS and name not in study.not_given}
     for where, values in (("base.", given), ("factors.", study.factors)):
         check_used(other_than_default(values), config.outputs, config.not_checked, where)
+    check_used({"duty": config.duty}, config.outputs, config.not_checked)
     for model in levels("contact_model"):
         check_accuracy(study.config.accuracy, model, study.config.outputs)
 
