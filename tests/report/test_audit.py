@@ -184,7 +184,8 @@ class Audit:
         found, frame = self.solved.verdict, self.frame
         text = " ".join(sentence.text for sentence in self.short["Verdict"] if sentence.kind != "target")
         assert len(text.split()) <= 120, text
-        assert "guide" in found.not_checked or self.life == "pair"
+        given = "guide_overrollings_per_hour" in self.told["base"]
+        assert ("guide" in found.not_checked) == (not given)
         exceeded, uncertain = self.limits()
         if "analysis" not in self.told:
             check_verdict(
@@ -201,7 +202,8 @@ class Audit:
             assert not every or named <= every
             for one in found.candidates:
                 words = ", ".join(level(*pair) for pair in self.in_words(one.choices))
-                assert one.met == met[words].sum() and (one.status == "met") == met[words].all()
+                safe = one.low >= least * (1 + one.error)  # otherwise the error of the solution leaves the target open
+                assert one.met == met[words].sum() and (one.status == "met") == (met[words].all() and safe)
         hit = frame["valid"] & (frame["pair"] >= least)
         for table in self.page["tables"]["decide"]:
             if table.name == "targets" and self.told.get("design") != "inner_outer":

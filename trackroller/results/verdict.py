@@ -718,7 +718,8 @@ def not_checked(results: Results, lives: bool = True) -> tuple[str, ...]:
     """
     first = results.life == FIRST_LIMIT
     known = {"static", "fatigue"} if lives and not first else {"static"}
-    hours = results.knows("guide_life_hours")
+    given = results.data.get("guide_overrollings_per_hour")
+    hours = results.knows("guide_life_hours") or (given is not None and bool(given.notnull().any()))
     some: list[str] = []
     if "limit" in results.data.dims:
         names = results.data["limit"].values.tolist()
