@@ -375,6 +375,30 @@ def test_a_recommended_design_names_the_constraints_that_it_keeps():
 
     values = {"least": 0.0, "design": "outer radius 14 mm", "goals": ["outer radius 14 mm"], "edges": [], "front": 1}
     values |= {"short": 0.0, "target": "", "limits": [], "meeting": 1, "designs": 4, "conditions": 1, "ranged": False}
+    values |= {"others": 0, "life": ""}
     kept = say("optimum", "recommended", alike=True, constraints=["pair_life_hours >= 10000"], **values).text
     assert "Its goal: outer radius 14 mm; it keeps `pair_life_hours >= 10000`." in kept
     assert "keeps" not in say("optimum", "recommended", alike=True, constraints=[], **values).text
+
+
+def test_the_smallest_design_that_meets_the_target_is_sought():
+    """A size as the goal and a life as the target: of all designs that meet it the smallest one is recommended.
+
+    The life grows with the outer radius, so that a search without the target ends at the smallest size of the range.
+    """
+    base = {"motor_force": 0, "axial_force": 5, "guide_overrollings_per_hour": 150, "guide_curve_radius": "inf"}
+    base |= dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+    factors = {"axis_distance": {"uniform": [12, 40]}, "radial_force": {"values": [-200, -320]}}
+    keys = {"goals": {"axis_distance": "min"}, "base": base, "factors": factors}
+    keys |= {"outputs": [*STUDY["outputs"], "limits"], "budget": {"designs": 24, "population": 8}}
+    free = tr.run(changed(**keys), progress=False)
+    least = float(np.median(free.column("pair_life_to_first_limit_hours").reshape(-1, 2).min(axis=1)))
+    results = tr.run(changed(**keys, analysis={"target": {"min": least}}), progress=False)
+    sizes = results.design.columns["axis_distance"][::2].astype(float)
+    lives = results.column("pair_life_to_first_limit_hours").reshape(-1, 2).min(axis=1)
+    chosen = optimum_of(results)["recommended"]
+    assert sizes[optimum_of(free)["recommended"]] < sizes[chosen]
+    surely = lives >= least * 1.5  # well beyond the error of the solution
+    assert lives[chosen] >= least and sizes[chosen] <= sizes[surely].min()
+    said = optimum_sentences(results)[0].text
+    assert said.startswith("Recommended: axis distance ") and f"lasts {quantity(lives[chosen], 'h')}" in said

@@ -8,7 +8,7 @@ from trackroller.errors import InputError
 from trackroller.report.numbers import quantity
 from trackroller.report.pages.study import contents
 from trackroller.report.words.pareto import pareto_sentence
-from trackroller.results.pareto import pareto, pareto_mask, study_pareto
+from trackroller.results.pareto import holes_of, pareto, pareto_mask, study_pareto
 from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
@@ -179,3 +179,18 @@ def test_wrong_statistics_are_refused(design, name, says):
     data["factors"] = LHS["factors"] | {"velocity": {"values": [1.0, 2.0]}}
     with pytest.raises(InputError, match=says):
         parse_study(data)
+
+
+def test_holes_of_a_set_are_named():
+    """Lives along the set in even steps but for one of a factor of 30: only this step is a hole."""
+    ds = trade(lambda a, b: 10.0 ** (3 * (a - 1) + 1.5 * (a > 1.5)), lambda a, b: 10 * a)
+    front = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
+    lives = np.sort(ds["roller_life_hours"].values)
+    step = int(np.argmax(np.diff(np.log(lives))))
+    assert holes_of(front) == ("roller_life_hours", [(lives[step], lives[step + 1])])
+    said = pareto_sentence(front)
+    low, high = (quantity(life, "h") for life in lives[step : step + 2])
+    assert f"None of them lies between {low} and {high}" in said.text
+    ds = trade(lambda a, b: 100 * a, lambda a, b: 10 * a)
+    even = pareto(results_of(ds), {"roller_life_hours": "max", "friction_power": "min"})
+    assert holes_of(even)[1] == []

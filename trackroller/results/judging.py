@@ -48,6 +48,14 @@ class Judged:
     short: np.ndarray
     reasons: Mapping[str, int] = field(default_factory=dict)
 
+    @property
+    def missed(self) -> np.ndarray:
+        """What a design misses, shape (n,): conditions in which it is not valid, and the target; 0 if it misses none.
+
+        A design that misses less is better, whatever its goals.
+        """
+        return np.asarray(self.violation + self.short)
+
     def take(self, rows: np.ndarray) -> Judged:
         """Return some of the designs."""
         return replace(self, **{name: getattr(self, name)[rows] for name in _BY_DESIGN})
@@ -178,11 +186,11 @@ def _reasons(results: Results, known: np.ndarray) -> dict[str, int]:
 def recommended(best: Judged) -> int:
     """Return the design of a front that is nearest to the best of all goals, each normalised over the front.
 
-    With a target of the study only the designs that are nearest to it count. Lives count by their logarithm, because
-    they span decades. Of equal designs, the first goal decides.
+    Only the designs that miss least count. Lives count by their logarithm, because they span decades. Of equal designs,
+    the first goal decides.
     """
     shares = _normalised(best.costs)
-    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.short))[0])
+    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0])
 
 
 def _normalised(costs: np.ndarray) -> np.ndarray:

@@ -124,7 +124,7 @@ def search_designs(study: Study, results: Path | str = "results", **how: Any) ->
         if cheaper(study) is study:
             decided = known
         else:
-            best = survivors(known.costs, known.violation, DECIDED * study.config.budget.generation)
+            best = survivors(known.costs, known.missed, DECIDED * study.config.budget.generation)
             decided = search.judged(study, known.genes[best])
             tell(f"decided among {len(best)} designs with {study.config.contact_model}")
         return _reported(search, decided, facts | {"reasons": known.reasons}, tell)
@@ -143,7 +143,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
                 break
         new = search.judged(study, drawn)
         known = new if known is None else known + new
-        first = nondominated_ranks(known.costs, known.violation) == 0
+        first = nondominated_ranks(known.costs, known.missed) == 0
         number += 1
         valid = int((known.violation == 0).sum())
         tell(f"generation {number}: {len(known.genes)} designs, {valid} valid in all conditions, {first.sum()} best")
@@ -151,7 +151,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
             why = f"the budget of {budget.designs} design{'s' * (budget.designs != 1)} is spent"
             break
         many = min(budget.generation, budget.designs - len(known.genes))
-        drawn = next_generation(genes, known.genes, known.costs, known.violation, many, (study.config.seed, number))
+        drawn = next_generation(genes, known.genes, known.costs, known.missed, many, (study.config.seed, number))
     assert known is not None
     facts = {"model": study.config.contact_model, "designs": len(known.genes), "generations": number, "stopped": why}
     return known, facts | {"valid": int((known.violation == 0).sum())}
@@ -166,7 +166,7 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     study, choices = search.study, _choices(search.study)
     usable = decided.violation.min() < 1  # a design that is never valid is no optimum
     designs = _polished(search, decided, choices) if usable else decided
-    front = np.flatnonzero(nondominated_ranks(designs.costs, designs.violation) == 0)
+    front = np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0)
     best = designs.take(front)
     chosen = recommended(best)
     shown = np.union1d(spread(best.costs, REPORTED), [chosen]) if usable else np.empty(0, int)
@@ -188,8 +188,9 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
         for i, row in enumerate(shown)
     ]
     neighbours = [
-        {"choice": name, "step": step, "values": values.tolist(), "violation": float(violation)}
-        for (name, step, _), values, violation in zip(around, moved.values, moved.violation, strict=True)
+        {"choice": name, "step": step, "values": moved.values[i].tolist()}
+        | {"violation": float(moved.violation[i]), "short": float(moved.short[i])}
+        for i, (name, step, _) in enumerate(around)
     ]
     result = facts | {
         "beside": beside if usable else "",
@@ -208,7 +209,7 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
 def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> Judged:
     """Add neighbours of the recommended design, in falling steps from the best one found so far."""
     for step in POLISH_STEPS:
-        front = decided.take(np.flatnonzero(nondominated_ranks(decided.costs, decided.violation) == 0))
+        front = decided.take(np.flatnonzero(nondominated_ranks(decided.costs, decided.missed) == 0))
         middle = front.genes[recommended(front)]
         known = {row.tobytes() for row in decided.genes}
         tried = []

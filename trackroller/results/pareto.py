@@ -22,6 +22,8 @@ from trackroller.study.file.goals import names_in, statistic
 from trackroller.study.file.search import judged_by
 from trackroller.study.outputs import regimes
 
+HOLE = 0.15  # of the range of a Pareto set: a step between its designs that is wider may leave a hole
+
 
 def given_pareto(results: Results) -> xr.Dataset | None:
     """Return the Pareto set for the goals that a study or a search gives; None without goals of its own."""
@@ -319,16 +321,21 @@ def _beyond(results: Results, cases: Mapping[str, np.ndarray]) -> dict[str, tupl
 def pareto_of_search(results: Results) -> xr.Dataset:
     """Return the Pareto set of the gathered designs of a search, see `pareto`.
 
-    The dimension `row` numbers the designs. Only the designs that are valid in the most conditions are compared.
+    The dimension `row` numbers the designs. Only the designs are compared that are valid in the most conditions, and
+    that meet the target of the study if any of them does.
     """
     judged, goals, design = judge(results), goals_of_search(results), results.design
     least = judged.violation.min()
-    kept = np.flatnonzero((judged.violation == least) & (least < 1))
+    missed = judged.missed if (judged.missed == 0).any() else judged.violation
+    kept = np.flatnonzero((missed == least) & (least < 1))
     first = kept * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
     left = len(judged.violation) - len(kept)
-    excluded = f"{left} that are allowed in {'fewer conditions' if least < 1 else 'no condition'}" if left else ""
+    why = f"are allowed in {'fewer conditions' if least < 1 else 'no condition'}"
+    if (missed > judged.violation).any():
+        why = "are not allowed, or do not surely meet the target, in some condition"
+    excluded = f"{left} that {why}" if left else ""
     attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
     lives = [name for name in goals if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"]
@@ -339,6 +346,24 @@ def pareto_of_search(results: Results) -> xr.Dataset:
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:
     """List the goals of a Pareto set: (name, 'min' or 'max')."""
     return [tuple(item.split(" ")) for item in front.attrs["objectives"].split(", ")]
+
+
+def holes_of(front: xr.Dataset) -> tuple[str, list[tuple[float, float]]]:
+    """Return a goal of a Pareto set and the widest steps between its designs that leave a hole, at most two.
+
+    The goal is the first life, otherwise the first goal. A step is a hole if it takes `HOLE` of the range of the set,
+    and twice an even step; lives that span a decade count by their logarithm.
+    """
+    names = [name for name, _ in goals_of(front)]
+    goal = next((name for name in names if is_life(statistic(name)[1])), names[0])
+    values = front[goal].values[front["optimal"].values == 1].astype(float)
+    values = np.unique(values[np.isfinite(values)])
+    if len(values) < 4:
+        return goal, []
+    places = np.log(values) if values[0] > 0 and values[-1] > 10 * values[0] else values
+    steps = np.diff(places) / (places[-1] - places[0])
+    wide = [i for i in np.argsort(-steps)[:2] if steps[i] > max(HOLE, 2 / len(steps))]
+    return goal, [(float(values[i]), float(values[i + 1])) for i in sorted(wide)]
 
 
 def end_places(front: xr.Dataset) -> list[int]:

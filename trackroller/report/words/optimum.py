@@ -11,6 +11,7 @@ from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name, percent, quantity, setting, with_unit
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
+from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import bearing_words, targets_in_words, unchecked_words, vain_in_base
 from trackroller.results.candidates import Candidates
@@ -25,7 +26,7 @@ from trackroller.results.judging import (
     recommended,
     required,
 )
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.pareto import pareto_of_search
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import not_checked
@@ -128,30 +129,47 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
     if several and not values["least"] and not (required(results) or bounded):  # the goals alone do not choose
         ends = [goal_texts(results, search, one) for one in _ends(search)]
-        return say("optimum", "requirement", ends=ends, **values)
+        return say("optimum", "requirement", ends=ends, holes=holes_words(pareto_of_search(results)), **values)
     # a range may reach below the certain life of another design
     both = (ends_of_goal(results, goal) for goal in search["goals"])
     values["ranged"] = any(e is not None and bool((e[1] > e[0] * (1 + SAME))[best["design"]]) for e in both)
     judged = judge(results)
-    front = nondominated_ranks(judged.costs, judged.violation) == 0
+    front = nondominated_ranks(judged.costs, judged.missed) == 0
     values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}
     values["short"] = float(judged.short[best["design"]])
+    values["others"] = int((judged.short == 0).sum()) if values["short"] else 0
     values |= {"meeting": int((front & (judged.short == 0)).sum()), "designs": len(front)}
+    values["life"] = _life(results, search, best)
     values |= {"conditions": results.design.meta["inner_samples"], "limits": _limits(results, search, best)}
     return say("optimum", "recommended", **values)
 
 
 def _first_life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> tuple[Cases, int] | None:
-    """Return the cases of a search, and the case on which the first life among its goals rests; None without one."""
+    """Return the cases of a search, and the case on which the life of a design rests; None without one.
+
+    It is the case of the life that is a goal, otherwise the one with the shortest life.
+    """
+    if results.life is None:
+        return None
+    many, column = results.design.meta["inner_samples"], results.life[0]
+    own = slice(best["design"] * many, (best["design"] + 1) * many)
+    lives = np.where(results.valid, results.column(column), np.inf)[own]
     for goal, value in zip(search["goals"], best["values"], strict=True):
         kind, output = judged_by(goal)
-        if output == FIRST_LIMIT[0] and kind in ("worst", "b10") and value > 0:
-            many = results.design.meta["inner_samples"]
-            own = slice(best["design"] * many, (best["design"] + 1) * many)
-            lives = np.where(results.valid, results.column(output), np.inf)[own]
-            case = own.start + int(np.argmin(np.abs(lives - value)))
-            return Cases(Candidates.grouped(results, FIRST_LIMIT)), case
-    return None
+        if output == column and kind in ("worst", "b10") and value > 0:
+            lives = np.abs(lives - value)
+    case = own.start + int(np.argmin(lives))
+    return (Cases(Candidates.grouped(results, results.life)), case) if np.isfinite(lives).any() else None
+
+
+def _life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> str:
+    """Write the shortest life of a design in hours; '' where a life is a goal, which is told, or there is none."""
+    found, goal = _first_life(results, search, best), results.life
+    if found is None or goal is None or goal[2] != "h" or any(is_life(judged_by(one)[1]) for one in search["goals"]):
+        return ""
+    cases, case = found
+    beyond = BEYOND * bool((cases.beyond | cases.beyond_at_high)[case])
+    return ends_text(float(cases.ends[0][case]), float(cases.ends[1][case]), beyond, "h")
 
 
 def _limits(results: Results, search: dict[str, Any], best: dict[str, Any]) -> list[str]:
@@ -232,12 +250,15 @@ def _changes(before: list[float], after: list[float]) -> list[float]:
 def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
     """Say what a small change of each real choice costs."""
     words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
+    short = float(judge(results).short[best["design"]])
     for near in search["neighbours"]:
         name, step = near["choice"], float(near["step"])
         moved = f"{'+' if step > 0 else ''}{quantity(step, getattr(parameter_of(name), 'unit', '1'))}"
         invalid = near["violation"] if near["violation"] > best["violation"][0] else 0.0
-        changes = zip(words, _changes(best["values"], near["values"]), strict=True)
-        neighbours.append((long_name(name), moved, invalid, [pair for pair in changes if abs(pair[1]) > SMALL]))
+        missed = required(results) and short == 0 < near.get("short", 0.0)
+        changes = zip(search["goals"], words, _changes(best["values"], near["values"]), strict=True)
+        changed = [(text, change) for goal, text, change in changes if goal != name and abs(change) > SMALL]
+        neighbours.append((long_name(name), moved, invalid, missed, changed))
     return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
 
 

@@ -14,7 +14,7 @@ from trackroller.report.tables.table import Table, factor_cell
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.designs import within_words
 from trackroller.report.words.sentence import Sentence, phrase, say
-from trackroller.results.pareto import end_places, goals_of
+from trackroller.results.pareto import end_places, goals_of, holes_of
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import statistic
@@ -41,12 +41,20 @@ def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Senten
         values["first"] = [f"{value} {word}" for word, value in zip(words, ends[0], strict=True)]
         others = [i for i in range(1, len(places)) if (table[places[i]] != table[places[0]]).any()]
         values["others"] = [listing(end) for end in dict.fromkeys(tuple(ends[i]) for i in others)]
+        values["holes"] = holes_words(front)
         values["alike"] = len(np.unique(table[best], axis=0)) == 1
     if results is not None and results.ranged and any(is_life(statistic(name)[1]) for name in goals):
         values["judged"] = listing([text for text in (values["judged"], within_words(results)) if text])
     values["outside"] = int((~results.valid[rows]).sum()) if results is not None and kind == "design" else 0
     values["alone"] = "pair_life_hours" in goals and results is not None and not results.knows("guide_life_hours")
     return say("pareto", "pareto", several=len(goals) > 1, **values)
+
+
+def holes_words(front: xr.Dataset) -> list[str]:
+    """Write between which values of a goal a Pareto set has no design."""
+    goal, holes = holes_of(front)
+    texts = [" and ".join(_goal_value(front, goal, value) for value in ends) for ends in holes]
+    return [f"between {text}" + f" of the {goal_words(front, goal)}" * (text is texts[-1]) for text in texts]
 
 
 def goal_words(front: xr.Dataset, name: str) -> str:
