@@ -227,7 +227,7 @@ class Audit:
         names = [self.in_words({name: row[name] for name in self.choices}) for row in kept]
         ranked = [rows_of_words[", ".join(level(*pair) for pair in own)] for own in names]
         for row in tables["candidates"].rows:
-            if row[0] == "Valid in":
+            if row[0] == "Holds in":
                 assert list(row[1:]) == [f"{rows['valid'].sum()} of {len(rows)}" for rows in ranked]
             if row[0].startswith(f"Life of the {self.life}") and ", worst condition" in row[0]:
                 for cell, rows in zip(row[1:], ranked, strict=True):

@@ -128,7 +128,7 @@ def test_best_designs_and_pareto_set_are_those_of_one_model(own):
     lives = expected[np.isfinite(expected)]
     told = [best[f"Life of the roller, {row} [h]"][0] for row in ("worst condition", "median")]
     assert told == pytest.approx([lives.min(), np.median(lives)])
-    assert best["Valid in"] == [f"{lives.size} of 4"]
+    assert best["Holds in"] == [f"{lives.size} of 4"]
     assert front.attrs["model"] == "kalker" and front.sizes["row"] == 1 and "contact_model" not in front
     assert front["roller_life_hours"].item() == pytest.approx(lives.min())
 

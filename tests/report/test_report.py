@@ -168,7 +168,7 @@ def test_best_designs_are_sorted_by_the_conditions_they_hold_and_their_worst_lif
     for row, column in (("worst condition", "min"), ("median", "median")):
         assert best[f"Life of the roller, {row} [h]"] == pytest.approx(expected[column].tolist())
     told = [f"{n} of {size}" for n, size in zip(expected["count"], expected["size"], strict=True)]
-    assert best["Valid in"] == told
+    assert best["Holds in"] == told
     assert best["Roller profile radius [mm]"] == expected.index.get_level_values(0).tolist()
 
 

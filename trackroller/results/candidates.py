@@ -197,9 +197,20 @@ class Candidates:
 
     @property
     def usable(self) -> np.ndarray:
-        """Return the cases whose life or stress counts, shape (n,): valid, compared, and with a value."""
-        rows: np.ndarray = self.results.valid & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
+        """Return the cases whose life or stress counts, shape (n,): they hold, are compared, and have a value."""
+        rows: np.ndarray = self.results.held & (self.place >= 0) & ~np.isnan(self.results.column(self.goal[0]))
         return rows
+
+    @cached_property
+    def reached(self) -> np.ndarray:
+        """Return the cases of the conditions in which a design holds, shape (n,); all if designs share no conditions.
+
+        So do all of drawn conditions, and of a study in which no design holds anywhere.
+        """
+        if self.drawn or not self.matched or not self.usable.any():
+            return np.ones(len(self.place), dtype=bool)
+        use = codes(self.results.table, self.conditions)
+        return np.isin(use, use[self.usable])
 
     @cached_property
     def valid_in(self) -> np.ndarray:
@@ -259,7 +270,7 @@ class Candidates:
             ("slip_margin", slip_margin(results), "full_slip"),
             ("lift_off_margin", lift_off_margin(results), "lift_off"),
         ):
-            case = self._least(margin, results.rolling | (results.regime == REGIMES.index(lost)))
+            case = self._least(margin, self.reached & (results.rolling | (results.regime == REGIMES.index(lost))))
             table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
         key = sign * table["worst"]
@@ -275,13 +286,18 @@ class Candidates:
         rows: np.ndarray = self.place == design
         return rows
 
-    def targets_met(self) -> np.ndarray | None:
-        """Return the number of cases of each design that are valid and meet every target of the study, (designs,).
+    def targets_met(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """Return how many cases of each design meet every target of the study, and of how many, shape (designs,) each.
 
-        None without the key `analysis.target`.
+        Rows of a table that only some designs were tried under count, too. None without the key `analysis.target`.
         """
-        targets = self.results.config.analysis.target
-        return self._count(self.usable & np.all([*map(self.results.meets, targets)], axis=0)) if targets else None
+        results, own = self.results, self.design >= 0
+        if not (targets := results.config.analysis.target):
+            return None
+        rows = own & results.held & ~np.isnan(results.column(self.goal[0]))
+        rows &= np.all([*map(results.meets, targets)], axis=0)
+        met, of = (np.bincount(self.design[these], minlength=len(self.size)) for these in (rows, own))
+        return met, of
 
     def worst_cases(self, values: np.ndarray, way: str) -> np.ndarray:
         """Return the case of each design with the worst value among its valid cases, -1 without one.

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.by_tests import POSITIONS, ByTests, probability_of
@@ -21,8 +20,6 @@ from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
 from trackroller.study.outputs import flat
 
-# limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
-BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
 OnTarget = tuple[np.ndarray, np.ndarray]  # cases that surely meet the target, and cases that may meet it, shape (n,)
 NOT_JUDGED = ("life not known", "steep friction", "conformal", "outside the half-space", "not converged")
 
@@ -93,7 +90,7 @@ class Cases:
             missed = ~results.allowed
         masks = [
             ("life not known", np.isnan(life)),
-            *((f"limit {name}", rows) for name, rows in self._limits("exceeded").items()),
+            *((f"limit {name}", rows) for name, rows in self.results.limits_in("exceeded").items()),
             ("yields", results.flagged("yield")),
             ("breaks", results.flagged("static")),
             ("steep friction", results.flagged("steep_friction")),
@@ -225,21 +222,10 @@ class Cases:
         """Return the cases whose range rests on placeholders, (n,)."""
         return np.asarray(self._column("_high") > self._column("_low") * (1.0 + 1e-9))
 
-    def _limits(self, state: str) -> dict[str, np.ndarray]:
-        """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,) by limit."""
-        data = self.results.data
-        if "limit_state" not in data:
-            return {}
-        words = str(data["limit_state"].attrs["flag_meanings"]).split()
-        values = flat(data, "limit_state", self.results.dims)  # (n, limit, body)
-        hit = (values == words.index(state)).any(axis=2)
-        names = data["limit"].values.tolist()
-        return {name: hit[:, i] for i, name in enumerate(names) if name not in BESIDE}
-
     @cached_property
     def open_limits(self) -> dict[str, np.ndarray]:
         """Return the cases in which a limit is exceeded at one end of the range of a placeholder only."""
-        return {name: rows & (self.reason == "") for name, rows in self._limits("open").items()}
+        return {name: rows & (self.reason == "") for name, rows in self.results.limits_in("open").items()}
 
     @cached_property
     def error(self) -> np.ndarray:

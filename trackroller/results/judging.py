@@ -101,7 +101,7 @@ def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
     """Return the goals of each design, (designs, goals), and where all goals of a case are known, (designs, cases)."""
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
-    valid, goals = results.valid.reshape(shape), goals_of_search(results)
+    valid, goals = results.held.reshape(shape), goals_of_search(results)
     values, known = [], valid.copy()
     for goal in goals:
         kind, output = judged_by(goal)
@@ -156,7 +156,7 @@ def _met(results: Results, output: str) -> np.ndarray:
     """Return which cases are in a regime, or are valid and meet a target of the study, shape (n,)."""
     if output in REGIMES:
         return np.asarray(results.regime == REGIMES.index(output))
-    return np.asarray(results.valid & results.meets(output))
+    return np.asarray(results.held & results.meets(output))
 
 
 def _over_conditions(raw: np.ndarray, good: np.ndarray, kind: str, way: str) -> np.ndarray:
@@ -179,7 +179,8 @@ def _reasons(results: Results, known: np.ndarray) -> dict[str, int]:
     counts |= {flag: int((results.rolling & results.flagged(flag)).sum()) for flag in results.flags if flag in OUTSIDE}
     if results.allowed is not None:
         counts["constraints"] = int((results.inside & ~results.allowed).sum())
-    counts["no value of a goal"] = int((results.valid & ~known).sum())
+    counts |= {name: int((results.valid & rows).sum()) for name, rows in results.limits_in("exceeded").items()}
+    counts["no value of a goal"] = int((results.held & ~known).sum())
     return {word: n for word, n in counts.items() if n}
 
 
@@ -250,7 +251,7 @@ def ends_of_goal(results: Results, goal: str) -> tuple[np.ndarray, np.ndarray] |
     if not is_life(output) or kind == "probability" or f"{output}_low" not in results.data:
         return None
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    raw, valid = results.quantity(output)[0].astype(float), results.valid.reshape(shape)
+    raw, valid = results.quantity(output)[0].astype(float), results.held.reshape(shape)
     ends = []
     for end in ("_low", "_high"):
         own = flat(results.data, f"{output}{end}", results.dims).astype(float)
@@ -266,5 +267,5 @@ def beyond_data(results: Results, goal: str) -> np.ndarray:
     if not is_life(output) or kind == "probability":
         return np.zeros(shape[0], dtype=bool)
     lives = results.quantity(output)[0].astype(float).reshape(shape)
-    counted = results.valid.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
+    counted = results.held.reshape(shape) & ((kind == "mean") | (lives <= goal_column(results, goal)[0][:, None]))
     return np.asarray((counted & results.beyond_data(output).reshape(shape)).any(axis=1))

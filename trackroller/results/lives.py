@@ -5,7 +5,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES
+
+# limits that stand beside the verdict: second models of an end that another limit has, and those without a verdict
+BESIDE = tuple(name for name, limit in LIMITS.items() if limit.beside or limit.verdict is None)
 
 LIVES = (
     ("pair_life_hours", "life of the pair", "h"),

@@ -21,7 +21,7 @@ from trackroller.parameters import BODIES, EXACTNESS, FIRST_TO_FAIL, PARAMETERS,
 from trackroller.results import groups
 from trackroller.results.columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
-from trackroller.results.lives import FIRST_LIMIT, LIVES, OF_PAIR, body_lives, past_data
+from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives, past_data
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -29,7 +29,7 @@ from trackroller.study.design.roles import roles_of
 from trackroller.study.file.config import StudyFile
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.study import Study
-from trackroller.study.outputs import Output, case_dims, of_fatigue, of_first_limit
+from trackroller.study.outputs import Output, case_dims, flat, of_fatigue, of_first_limit
 
 if TYPE_CHECKING:
     from trackroller.results.by_tests import ByTests
@@ -511,6 +511,22 @@ class Results:
         """Return the cases inside the model that meet the constraints of the study, shape (n,)."""
         return np.asarray(self.inside & self.counted)
 
+    def limits_in(self, state: str) -> dict[str, np.ndarray]:
+        """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,) by limit.
+
+        Limits that are second models of an end which another limit has are left out.
+        """
+        if "limit_state" not in self.data:
+            return {}
+        words = str(self.data["limit_state"].attrs["flag_meanings"]).split()
+        hit = (flat(self.data, "limit_state", self.dims) == words.index(state)).any(axis=2)  # of (n, limit, body)
+        return {name: hit[:, i] for i, name in enumerate(self.data["limit"].values.tolist()) if name not in BESIDE}
+
+    @cached_property
+    def held(self) -> np.ndarray:
+        """Return the valid cases that exceed no limit on values that were given, shape (n,)."""
+        return np.asarray(self.valid & ~np.any([~self.valid, *self.limits_in("exceeded").values()], axis=0))
+
     def meets(self, target: str) -> np.ndarray:
         """Return the cases that meet a target of the study, shape (n,), whether they are valid or not.
 
@@ -593,10 +609,13 @@ class Results:
         return np.where(self.by_tests.named[body] != "", self.by_tests.beyond(body), past)
 
     def with_breaks(self, column: Output) -> np.ndarray:
-        """Return the values of an output, shape (n,); a fatigue life of a body above its tensile strength counts as 0.
+        """Return the values of an output, shape (n,), with 0 for a life that does not hold.
 
-        The results state no life there. A statistic over the cases must not leave out those that fail at once.
+        A fatigue life of a body above its tensile strength, of which the results state no life, and the life of a case
+        that exceeds a limit. A statistic over the cases must not leave out those that fail at once.
         """
+        if of_first_limit(column.name):
+            return np.where(self.valid & ~self.held, 0.0, column.values)
         if not of_fatigue(column.name):
             return column.values
         body = body_of(column.name) if self.by_body else ""

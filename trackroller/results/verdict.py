@@ -21,8 +21,8 @@ from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES, MATERIAL_FIELDS
 from trackroller.results.candidates import STRESS, TIED, Candidates, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
-from trackroller.results.intervals import BESIDE, Cases, OnTarget
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.results.intervals import Cases, OnTarget
+from trackroller.results.lives import BESIDE, FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
 from trackroller.results.results import Results
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
@@ -491,6 +491,8 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     candidates, target = cases.candidates, cases.results.config.analysis.target
     kept = wanted & ~reach
     kept = kept if kept.any() else wanted
+    if target and cases.sampled:  # nine of ten of all conditions
+        kept = wanted
     scores = _scores(cases, kept)
     required, sure, may = cases.on_target()
     counted, good = (wanted, cases.on_target(scattered=False)[1]) if target else (kept, cases.ends[0] > 0)
@@ -504,7 +506,7 @@ def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     kind, first, why = _by_target(scores, order, status) if target else _by_rank(scores, order)
     if kind == "measure" and target:  # unless no value is missing, but a finer solution or conditions are
         decided = [_status(cases, rows[first[0]], sure, may, of_all) != "open" for of_all in (True, False)]
-        if shared[first[0]] == "met":
+        if _of_all_rows(cases, first[0], "met", sure, may) == "open":
             kind, why = "cannot_tell", "untried"
         elif any(decided):
             kind, why = "cannot_tell", "accuracy" if decided[0] else "sample"

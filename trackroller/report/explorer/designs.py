@@ -73,7 +73,7 @@ def _designs(candidates: Candidates, worst: str) -> dict[str, Any]:
         rows.append([*(cell(factor_cell(n, row[n])) for n in candidates.choices), *further])
     first = [] if alone(candidates) else ["Fails first"]
     note += f" {capital(GUIDE_UNKNOWN).replace('`', '')}." if alone(candidates) else ""
-    heads = [*map(heading, candidates.choices), *nine, worst, "Valid in", *first, *heads]
+    heads = [*map(heading, candidates.choices), *nine, worst, "Holds in", *first, *heads]
     return {
         "factors": candidates.choices,
         "heads": heads,

@@ -13,6 +13,7 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import count, level_text, listing, long_name, number, plain, setting, share
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import bodies_of, of_body
+from trackroller.report.words.designs import limit_title
 from trackroller.report.words.levels import at_least, at_most
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.findings import Finding
@@ -30,6 +31,8 @@ def valid_cases(results: Results) -> Sentence:
     reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(results) if hit.any()]
     values: dict[str, Any] = {"total": len(results.table), "lost": {words: n for words, n in lost.items() if n}}
     values |= {name: int(getattr(results, name).sum()) for name in ("rolling", "inside", "valid")}
+    exceeded = {name: int((results.valid & rows).sum()) for name, rows in results.limits_in("exceeded").items()}
+    values["exceeded"] = {limit_title(name): n for name, n in exceeded.items() if n}
     if results.allowed is not None:
         values["constraints"] = [f"`{limit}`" for limit in results.config.constraints]
     values |= {

@@ -128,11 +128,11 @@ def best_table(results: Results) -> Table | None:
             rows.append([words, *(m if np.isfinite(row[name]) else "–" for m, row in zip(margins, best, strict=True))])
     several, met = bool(candidates.conditions), candidates.targets_met()
     if several:
-        rows.append(["Valid in", *(part_of(row["valid"], row["cases"]) for row in best)])
+        rows.append(["Holds in", *(part_of(row["valid"], row["cases"]) for row in best)])
     if met is not None:
         places = candidates.table.index[: len(best)]
         ranged = results.ranged and bool(results.judged_targets)
-        cells = [part_of(met[i], candidates.size[i]) for i in places]
+        cells = [part_of(met[0][i], met[1][i]) for i in places]
         # what meets the target at the high end only, or within its error, is neither met nor missed
         known = _of_verdict(candidates, best) or [None] * len(best)
         cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
@@ -246,7 +246,8 @@ def _end_cell(candidates: Candidates, one: Candidate | None) -> str:
         return f"{ends_words(one)}, {one.body}"
     names = [name for name in candidates.conditions if name not in UNSURE]
     where = ", ".join(setting(name, candidates.results.table[name].iloc[one.case]) for name in names)
-    return f"{one.ends} at {where}" if where else one.ends
+    text = plain_reason(one.ends)
+    return f"{text} at {where}" if where else text
 
 
 def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate | None]:

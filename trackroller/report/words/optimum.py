@@ -153,7 +153,7 @@ def _first_life(results: Results, search: dict[str, Any], best: dict[str, Any]) 
         return None
     many, column = results.design.meta["inner_samples"], results.life[0]
     own = slice(best["design"] * many, (best["design"] + 1) * many)
-    lives = np.where(results.valid, results.column(column), np.inf)[own]
+    lives = np.where(results.held, results.column(column), np.inf)[own]
     for goal, value in zip(search["goals"], best["values"], strict=True):
         kind, output = judged_by(goal)
         if output == column and kind in ("worst", "b10") and value > 0:

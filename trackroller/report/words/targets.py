@@ -152,7 +152,7 @@ def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
     targets = range(table.sizes["target"])
     sure = "share of the cases" if _whole(table) else "95 % interval"
     heads = [f"{capital(target_words(table, t))} ({sure})" for t in targets]
-    said = ["A case that is not valid, or has no value, misses every target."]
+    said = ["A case that does not hold, or has no value, misses every target."]
     if results.ranged and results.judged_targets:
         said.append("A life that is a range counts by its low end.")
     if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
@@ -192,14 +192,16 @@ def _designs_that_meet(table: xr.Dataset, results: Results) -> list[str]:
     met = candidates.targets_met()
     if met is None:
         return []
-    every, chosen = met == candidates.size, [np.ones(len(met), dtype=bool)]
+    found = results.verdict  # what a range, an error or an untried row leaves open is not met
+    every, chosen = met[0] == met[1], [np.ones(len(met[0]), dtype=bool)]
+    every[[one.number for one in found.candidates if one.status != "met"] if found is not None else []] = False
     choices = candidates.table.sort_index()
     for i in range(table.sizes.get("target_level", 0)):
         name, text = str(table["level_factor"][i].item()), str(table["level_text"][i].item())
         own = choices[name] if name in choices else None
         low, high = float(table["level_low"][i]), float(table["level_high"][i])
         at = (
-            np.zeros(len(met), dtype=bool)
+            np.zeros(len(every), dtype=bool)
             if own is None
             else [in_words(name, v) == text for v in own]
             if text
