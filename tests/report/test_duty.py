@@ -59,7 +59,7 @@ def test_solve_and_plan_take_the_duty(tmp_path):
     life = next(line for line in told.splitlines() if "roller, median life" in line)
     hours = float(life.split("known):")[-1].split(" h (")[0].replace(",", "").split()[-1])
     assert float(life.split(" h (")[1].split(" years")[0]) == pytest.approx(hours / 1760, rel=0.02)
-    study = tr.load_study({"name": "d", "duty": DUTY, "outputs": ["forces"]})
+    study = tr.load_study({"name": "d", "duty": DUTY, "outputs": ["forces", "life"]})
     assert tr.load_study(study.as_dict()).config.duty == {"hours_per_day": 8.0, "days_per_year": 220.0}
 
 
@@ -163,7 +163,7 @@ def test_the_duty_travels_with_each_command_that_repeats_a_case():
     assert "duty" not in Repeat({"axial_force": 3.0}, {}, {}).command()
     study = {
         "name": "d", "base": {"motor_force": 0}, "factors": {"axial_force": {"values": [0, 9]}}, "duty": duty,
-        "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces"],
+        "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces", "life"],
     }  # fmt: skip
     assert json.loads(dict(solve_inputs(tr.run(study, progress=False), {})[0])["duty"]) == duty
     told: dict = {}

@@ -28,6 +28,8 @@ def test_a_design_that_lifts_off_or_slips_has_no_margin():
     table = best_table(results)
     head = [row[0] for row in table.rows]
     regime = results.data["regime"].stack(row=list(factors)[1:])
+    regime = regime[:, (regime == 0).any("contact_angle").values]  # conditions in which a design holds
+    assert regime.sizes["row"] < 8
     shown = dict(zip(table.rows[0][1:], zip(*(row[1:] for row in table.rows), strict=True), strict=True))
     assert len(shown) > 1
     for angle, cells in shown.items():

@@ -149,8 +149,7 @@ def best_table(results: Results) -> Table | None:
     }
     facts["mixed"] = bool(candidates.conditions) and bool(mixed(results).any())
     facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
-    found = results.verdict
-    facts["hopeless"] = bool(found is not None and found.out_of_reach is not None and not candidates.drawn)
+    facts["hopeless"] = not candidates.reached.all()
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
