@@ -14,7 +14,7 @@ from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import capital, count, head_unit, listing, long_name, plain, quantity
 from trackroller.report.words.designs import design_words, ends_words
-from trackroller.report.words.levels import coloured, short_levels
+from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading
 from trackroller.results.candidates import Candidates
 from trackroller.results.pareto import goals_of
@@ -45,7 +45,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     if len(listed) < 2:
         return None
     candidates = Candidates.grouped(results, ranked.goal)
-    names = short_levels([capital(design_words(candidates, one.choices)) for one in listed])
+    names = [capital(design_words(candidates, one.choices)) for one in listed]
     figure, (axes,) = style.panels(f"{capital(ranked.goal[1])} of each candidate", 26 + 6.4 * len(listed))
     place = np.arange(len(listed))[::-1]
     ends = np.array([[one.low, one.high, one.median, one.best] for one in listed])
