@@ -247,6 +247,7 @@ class _Words:
         values |= {"not_given": _not_given(fails)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
         values |= {"scattered": self.scattered, "alone": one.conditions == 1}
+        values["ranged"] = bool(found.target) and one.high > one.low * (1 + SAME)
         return say("verdict", "nearest", **values, sampled=found.sampled)
 
     def nowhere(self) -> Sentence:
