@@ -167,5 +167,7 @@ def test_a_share_of_time_that_changes_no_case_is_told(tmp_path):
     text = "name: shares\nbase: {motor_force: 0}\ndesign: table\ntable: cases.csv\ncontact_model: sliding\n"
     text += 'factors: {axial_force: {expression: "5 * lever"}}\naccuracy: preview\n'
     (tmp_path / "shares.yaml").write_text(text)
-    note = rows_table(tr.run(tmp_path / "shares.yaml", progress=False)).note
+    results = tr.run(tmp_path / "shares.yaml", progress=False)
+    note = rows_table(results).note
+    assert verdict_sentences(results)[-1].values["vain"] == ["share"]
     assert "share changes no case" in note.lower() and "spectrum" in note and "ever" not in note

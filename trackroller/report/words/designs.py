@@ -170,14 +170,18 @@ def rows_table(results: Results) -> Table | None:
         row[capital(goal[1])] = plain_reason(cases.reason[at]) or ends_text(*ends, goal[2])
         row["Ends it"] = "–" if cases.reason[at] else f"{ended_by(str(names[at]))}, {BODIES[int(guide[at])]}"
         rows.append(row)
-    return Table.of("rows", "Life of each row of the table", rows, phrase("designs", "rows", idle=_idle(results)))
+    return Table.of(
+        "rows", "Life of each row of the table", rows, phrase("designs", "rows", idle=[*map(heading, idle(results))])
+    )
 
 
-def _idle(results: Results) -> list[str]:
+def idle(results: Results) -> list[str]:
     """Return the columns of numbers of a table that change no case, such as shares of the time."""
+    if not results.config.method.observed:
+        return []
     own = [name for name in results.factors if name not in FACTOR_NAMES and is_numeric_dtype(results.table[name])]
     texts = [factor["expression"] for factor in results.config.factors.values() if "expression" in factor]
-    return [heading(name) for name in own if not any(name in expressions.names(text) for text in texts)]
+    return [name for name in own if not any(name in expressions.names(text) for text in texts)]
 
 
 def plain_reason(reason: str) -> str:

@@ -29,6 +29,7 @@ from trackroller.report.words.designs import (
     ended_by,
     ends_text,
     ends_words,
+    idle,
     lasting_one,
     span_words,
     unanswered,
@@ -44,6 +45,7 @@ from trackroller.results.verdict import Candidate, Misses, Turn, Verdict
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.limit_notes import given_in_vain, guessed_lines, placeholders_of
 from trackroller.roller.record import names_not_given
+from trackroller.study.spectrum.file import TRAVEL
 
 MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
@@ -486,6 +488,7 @@ class _Words:
         names = unchecked_words(self.results, self.found.not_checked)
         names += [f"{ended_by(n)} of {self.name(one)}" for one in self.found.best[:1] for n in one.unchecked]
         vain = vain_in_base(self.results, self.found.not_checked)
+        vain += [name for name in idle(self.results) if name.lower() in TRAVEL]  # blocks are judged one by one
         return say("verdict", "not_checked", names=names, vain=vain) if names else None
 
 
