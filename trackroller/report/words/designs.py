@@ -11,7 +11,7 @@ import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
 from trackroller.damage import LIMITS
-from trackroller.parameters import BODIES, FIRST_TO_FAIL, expressions
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
     Life,
@@ -37,7 +37,6 @@ from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
 from trackroller.roller.limit_notes import placeholders_of
-from trackroller.study.design.entries import FACTOR_NAMES
 
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
@@ -100,7 +99,8 @@ def size_words(results: Results) -> str:
 
 def unanswered(candidates: Candidates) -> Sentence:
     """Say why a study cannot compare designs, and which design of experiments can."""
-    roles = candidates.results.roles
+    labels = candidates.results.labels  # which no distribution can draw
+    roles = {name: role for name, role in candidates.results.roles.items() if name not in labels}
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
@@ -121,6 +121,9 @@ def best_table(results: Results) -> Table | None:
         return None
     best = [row for _, row in candidates.table.head(BEST).iterrows() if row["valid"]]
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in candidates.choices]
+    numbers = [n for n in results.labels if n not in results.roles] if candidates.size.max() == 1 else []  # of drawings
+    own = {n: results.table[n].iloc[[int(row["worst_case"]) for row in best]] for n in numbers}
+    rows = [[heading(n), *(factor_cell(n, value) for value in values)] for n, values in own.items()] + rows
     rows += _judged(candidates, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
@@ -176,9 +179,7 @@ def rows_table(results: Results) -> Table | None:
 
 def _idle(results: Results) -> list[str]:
     """Return the columns of numbers of a table that change no case, such as shares of the time."""
-    own = [name for name in results.factors if name not in FACTOR_NAMES and is_numeric_dtype(results.table[name])]
-    texts = [factor["expression"] for factor in results.config.factors.values() if "expression" in factor]
-    return [heading(name) for name in own if not any(name in expressions.names(text) for text in texts)]
+    return [heading(name) for name in results.labels if is_numeric_dtype(results.table[name])]
 
 
 def plain_reason(reason: str) -> str:
