@@ -174,7 +174,7 @@ class Results:
         Returns
         -------
         Candidates or None
-            See `trackroller.results.candidates.Candidates`; None without a valid case that has a life or a stress.
+            See `trackroller.results.candidates.Candidates.of`; None without a valid case that can be judged.
         """
         from trackroller.results.candidates import Candidates
 
@@ -193,7 +193,7 @@ class Results:
         Returns
         -------
         Verdict or None
-            See `trackroller.results.verdict.Verdict`; None for a search and without a life or a stress.
+            See `trackroller.results.verdict.Verdict`; None for a search, and without lives, stresses and targets.
         """
         from trackroller.results.verdict import verdict_of
 
@@ -242,12 +242,16 @@ class Results:
         Raises
         ------
         InputError
-            If no design repeats, as in most random samples, so that designs cannot be compared.
+            If no design repeats, as in most random samples, so that designs cannot be compared; or if the study has no
+            lives, and no stresses of one material that rank its designs.
         """
         candidates = self.candidates()
         if candidates is not None and not candidates.comparable:
             remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
             raise InputError("design", self.design.method.name, "designs that share their conditions", remedy)
+        if candidates is not None and not candidates.ranks:
+            remedy = "Add life to outputs, and run the study again."
+            raise InputError("outputs", list(self.config.outputs), "lives, or stresses of one material", remedy)
         return pd.DataFrame() if candidates is None else candidates.table.head(count).copy()
 
     def to_table(self) -> pd.DataFrame:
