@@ -4,6 +4,7 @@ import numpy as np
 import pandas as pd
 
 import trackroller as tr
+from trackroller.report.words.designs import best_table
 from trackroller.report.words.verdict import verdict_sentences
 
 BLOCKS = pd.DataFrame(
@@ -33,3 +34,51 @@ def test_proposals_under_the_same_blocks_are_compared(tmp_path):
     assert (found.kind, found.best[0].choices["proposal"]) == ("build", first)
     assert found.best[0].low == worst.max() and found.best[0].conditions == len(BLOCKS)
     assert "block curve" in verdict_sentences(results)[1].text
+
+
+def table_study(folder, rows, **changes):
+    """Return the solved study of a table of one material."""
+    rows.to_csv(folder / "rows.csv", index=False)
+    base = {"motor_force": 0, "friction_coefficient": 0.15, "guide_overrollings_per_hour": 150, "axial_force": 5}
+    base |= dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+    study = {"name": "rows", "base": base, "design": "table", "table": str(folder / "rows.csv")}
+    return tr.run(study | {"contact_model": "sliding", "accuracy": "preview"} | changes, progress=False)
+
+
+def test_numbers_of_drawings_at_one_load_are_neither_choices_nor_conditions(tmp_path):
+    """The best drawing is the best of those tried, and the table of candidates names it."""
+    drawings = PROPOSALS.rename(columns={"proposal": "drawing"})
+    results = table_study(tmp_path, drawings)
+    lives = results.data.pair_life_to_first_limit_hours.values.ravel()
+    found, first = results.verdict, int(np.argmax(lives))
+    assert set(results.roles) == {"roller_profile_radius", "contact_angle"}
+    assert (found.kind, found.best[0].low, found.tried) == ("build", lives.max(), 3)
+    order = drawings["drawing"].to_numpy()[np.argsort(-lives)].tolist()
+    assert best_table(results).rows[0] == ["Drawing", *order] and order[0] == drawings["drawing"][first]
+    assert "best of 3 tried" in verdict_sentences(results)[0].text
+
+
+def test_a_number_of_each_row_changes_no_verdict(tmp_path):
+    rows = PROPOSALS.drop(columns="proposal").merge(BLOCKS, how="cross")
+    plain = table_study(tmp_path, rows).verdict
+    for number in (np.arange(len(rows)), [f"L{i}" for i in range(len(rows))]):
+        found = table_study(tmp_path, rows.assign(id=number)).verdict
+        assert (found.kind, found.best[0].choices, found.best[0].low) == (
+            "build",
+            plain.best[0].choices,
+            plain.best[0].low,
+        )
+
+
+def test_blocks_of_one_design_keep_their_names_and_may_repeat_their_loads(tmp_path):
+    rows = pd.concat([BLOCKS, BLOCKS.iloc[:1].assign(block="empty again")])
+    found = table_study(tmp_path, rows).verdict
+    assert found.kind == "lasts" and found.best[0].conditions == 4
+
+
+def test_no_distribution_of_labels_is_advised(tmp_path):
+    rows = PROPOSALS.assign(radial_force=[-60, -80, -95])
+    results = table_study(tmp_path, rows, roles={"proposal": "condition"})
+    said = verdict_sentences(results)[1]
+    assert (said.kind, said.values["conditions"]) == ("unanswered", ["radial force"])
+    assert "radial force as a distribution with" in said.text

@@ -20,10 +20,12 @@ from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.levels import OF_MATERIALS
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
 SHARED = 2  # conditions that all designs of a table must have, so that they are compared over these alone
 STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")  # compared in a study without lives
+UNRANKED = ("converged", "conditions met", "")  # without lives and stresses: 1 in each solved case, so that all tie
 TIED = 1e-9  # relative difference of lives that count as equal
 
 
@@ -99,6 +101,13 @@ def _shared(place: np.ndarray, use: np.ndarray) -> np.ndarray:
     return kept if len(shared) >= SHARED and each_once else np.zeros(len(use), dtype=bool)
 
 
+def goal_without_lives(results: Results) -> tuple[str, str, str] | None:
+    """Return what compares designs without lives: a stress, else whether they meet the target; None without both."""
+    if STRESS[0] in results.table:
+        return STRESS
+    return UNRANKED if results.config.analysis.target else None
+
+
 @dataclass(frozen=True)
 class Candidates:
     """The designs of a study.
@@ -107,7 +116,8 @@ class Candidates:
     ----------
     results : the solved study
     choices, conditions : names of the factors by role
-    goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller
+    goal : column, words and unit of the life that is compared; of a study without lives the peak stress of the roller,
+        and `UNRANKED` without this stress
     place : number of the design of each case, shape (n,); -1 for cases of a less exact contact model, and for those
         that are no draws of their own
     matched : whether each design has the same conditions, each once
@@ -126,15 +136,15 @@ class Candidates:
 
     @classmethod
     def of(cls, results: Results, free: tuple[str, ...] = ()) -> Candidates | None:
-        """Return the designs of a study, None without a valid case that has a life or a stress.
+        """Return the designs of a study; None without a valid case that has a life or a stress, unless it has a target.
 
         Parameters
         ----------
         results : the solved study
         free : conditions that count as choices here, because a goal names them
         """
-        goal = results.life or STRESS
-        if not (results.valid & ~np.isnan(results.column(goal[0]))).any():
+        goal = results.life or goal_without_lives(results)
+        if goal is None or not (results.valid & ~np.isnan(results.column(goal[0]))).any():
             return None
         return cls.grouped(results, goal, free)
 
@@ -194,6 +204,12 @@ class Candidates:
     def rising(self) -> bool:
         """Return whether more of the goal is better."""
         return is_life(self.goal[0])
+
+    @property
+    def ranks(self) -> bool:
+        """Return whether the goal ranks the designs: a life does, and a stress does among designs of one material."""
+        one = not any(self.members[name].nunique() > 1 for name in OF_MATERIALS if name in self.choices)
+        return self.rising or (self.goal == STRESS and one)
 
     @property
     def usable(self) -> np.ndarray:

@@ -147,7 +147,8 @@ class Cases:
         """Return both ends of the goal of each case, with the lives by fatigue moved at each end."""
         low, high = (self._column(end, shift) for shift, end in shifted)
         if not self.candidates.rising:
-            low, high = 1.0 / low, 1.0 / high
+            with np.errstate(divide="ignore"):
+                low, high = 1.0 / low, 1.0 / high
         met = self.reason == ""
         return np.where(met, low, 0.0), np.where(met, high, np.where(self.judged, 0.0, np.inf))
 
@@ -324,16 +325,22 @@ class Cases:
         low, high = both[0] / error, both[1] * error
         required, others = np.nan, np.ones(len(low), dtype=bool)
         for name, ends in results.config.analysis.target.items():
-            if name in OF_PAIR and self.candidates.goal[2] == "h" and set(ends) == {"min"}:
-                required = float(np.fmax(required, ends["min"]))
-            else:
+            if name in self.other_targets:
                 others &= results.meets(name)
+            else:
+                required = float(np.fmax(required, ends["min"]))
         least = 0.0 if np.isnan(required) else required
         uncertain = np.any([np.zeros(len(low), dtype=bool), *self.open_limits.values()], axis=0)
         judged = self.judged
         sure = judged & (self.reason == "") & (low >= least) & others & ~uncertain
         may = np.where(judged, (self.reason == "") & (high >= least) & others, True)
         return required, sure, np.asarray(may)
+
+    @cached_property
+    def other_targets(self) -> tuple[str, ...]:
+        """Return the targets of the study that the life which is compared does not judge, such as those on a force."""
+        hours, targets = self.candidates.goal[2] == "h", self.results.config.analysis.target
+        return tuple(n for n, ends in targets.items() if not (hours and n in OF_PAIR and set(ends) == {"min"}))
 
     def conditions_in(self, rows: np.ndarray) -> np.ndarray:
         """Return the number of conditions of each candidate that have one of these cases, shape (candidates,)."""

@@ -174,7 +174,7 @@ class Results:
         Returns
         -------
         Candidates or None
-            See `trackroller.results.candidates.Candidates`; None without a valid case that has a life or a stress.
+            See `trackroller.results.candidates.Candidates.of`; None without a valid case that can be judged.
         """
         from trackroller.results.candidates import Candidates
 
@@ -193,7 +193,7 @@ class Results:
         Returns
         -------
         Verdict or None
-            See `trackroller.results.verdict.Verdict`; None for a search and without a life or a stress.
+            See `trackroller.results.verdict.Verdict`; None for a search, and without lives, stresses and targets.
         """
         from trackroller.results.verdict import verdict_of
 
@@ -242,12 +242,16 @@ class Results:
         Raises
         ------
         InputError
-            If no design repeats, as in most random samples, so that designs cannot be compared.
+            If no design repeats, as in most random samples, so that designs cannot be compared; or if the study has no
+            lives, and no stresses of one material that rank its designs.
         """
         candidates = self.candidates()
         if candidates is not None and not candidates.comparable:
             remedy = "Give the choices as lists and the conditions as distributions with design: inner_outer."
             raise InputError("design", self.design.method.name, "designs that share their conditions", remedy)
+        if candidates is not None and not candidates.ranks:
+            remedy = "Add life to outputs, and run the study again."
+            raise InputError("outputs", list(self.config.outputs), "lives, or stresses of one material", remedy)
         return pd.DataFrame() if candidates is None else candidates.table.head(count).copy()
 
     def to_table(self) -> pd.DataFrame:
@@ -303,15 +307,25 @@ class Results:
 
     @cached_property
     def roles(self) -> dict[str, str]:
-        """Return the role of each factor that varies: `choice` of the designer, or `condition` of the use."""
-        given, method, factors = self.config.roles, self.config.method, self.study.parsed
-        roles = roles_of(self.factors, factors, given, method.name)
-        if not method.observed:
-            return roles
-        used = {n for own in factors.values() if own.text for n in expressions.names(own.text, "factors")}
-        labels = [n for n in roles if n not in ROLE_OF and n not in used and n not in given]
+        """Return the role of each factor that varies: `choice` of the designer, or `condition` of the use.
+
+        A label of its own for each row of several designs, such as the number of a drawing, has no role.
+        """
+        given = self.config.roles
+        roles = roles_of(self.factors, self.study.parsed, given, self.config.method.name)
+        labels = [n for n in self.labels if n not in given]
         known = {role: [n for n in roles if n not in labels and roles[n] == role] for role in ("choice", "condition")}
-        return roles | {n: "condition" for n in labels if _names_a_condition(self.table, n, known)}
+        of_label = {n: _role_of_label(self.table, n, known) for n in labels}
+        return {n: role for n in roles if (role := of_label.get(n, roles[n]))}
+
+    @cached_property
+    def labels(self) -> tuple[str, ...]:
+        """Return the columns of a table that change no case: they are no parameter, and no expression uses them."""
+        if not self.config.method.observed:
+            return ()
+        texts = [own.text for own in self.study.parsed.values() if own.text]
+        used = {name for text in texts for name in expressions.names(text, "factors")}
+        return tuple(n for n in self.factors if n not in ROLE_OF and n not in OPTION_FACTORS and n not in used)
 
     @cached_property
     def grid(self) -> bool:
@@ -630,16 +644,23 @@ class Results:
         return all(c in self.table and np.isfinite(self.table[c]).any() for c in columns)
 
 
-def _names_a_condition(table: pd.DataFrame, label: str, known: Mapping[str, list[str]]) -> bool:
-    """Return whether a column of a table that is no parameter names conditions, such as the block of a measured load.
+def _role_of_label(table: pd.DataFrame, label: str, known: Mapping[str, list[str]]) -> str:
+    """Return the role of a column of a table that changes no case; '' for the number of each row of several designs.
 
-    It does if each row has a label of its own, or if rows of the same conditions share their label and rows of the same
-    design do not. `known` has the names of the other columns by their role.
+    It names conditions, such as the block of a measured load, if all rows are of one design, or if rows of the same
+    conditions share their label and rows of the same design do not. Otherwise it names designs.
+
+    Parameters
+    ----------
+    table : one row a case
+    label : name of the column
+    known : names of the other columns by their role
     """
+    places = {role: codes(table, names) for role, names in known.items()}
     if table[label].nunique() == len(table):
-        return True
-    decides = {role: table.groupby(codes(table, names))[label].nunique().max() == 1 for role, names in known.items()}
-    return bool(decides["condition"] and not decides["choice"])
+        return "condition" if not places["choice"].any() else ""
+    decides = {role: table.groupby(place)[label].nunique().max() == 1 for role, place in places.items()}
+    return "condition" if decides["condition"] and not decides["choice"] else "choice"
 
 
 def _usual_goals(ds: xr.Dataset) -> dict[str, str]:

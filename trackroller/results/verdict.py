@@ -18,8 +18,8 @@ import pandas as pd
 
 from trackroller.damage import LIMITS
 from trackroller.methods.b10 import b10, quantile
-from trackroller.parameters import BODIES, MATERIAL_FIELDS
-from trackroller.results.candidates import STRESS, TIED, Candidates, slip_margin
+from trackroller.parameters import BODIES
+from trackroller.results.candidates import STRESS, TIED, Candidates, goal_without_lives, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import Cases, OnTarget
 from trackroller.results.lives import BESIDE, FIRST_LIMIT
@@ -28,9 +28,9 @@ from trackroller.results.results import Results
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.roller.output_names import is_life
 from trackroller.roller.record import names_not_given
+from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
-OF_MATERIALS = ("material_pair", *MATERIAL_FIELDS)
 CAUSES = {"lifts off": "axial_force", "skids": "motor_force"}  # input that brings a condition out of reach
 LOADS = ("radial_force", "axial_force", "motor_force")  # on which each life rests
 MANY = 0.5  # share of conditions out of reach by an input that was not given, from which on the input is asked for
@@ -176,7 +176,8 @@ class Verdict:
     named : number of the first candidates that the verdict names: one, or all that the study cannot tell apart
     why : `tie`, `error` or `range` of candidates that it cannot tell apart; of `cannot_tell`: `conditions`, `model`,
         `accuracy` where the error of the solution holds the target, or `sample` where the interval of the sampled
-        conditions does, or `untried` where it meets the target under the conditions that a table tries it under
+        conditions does, `untried` where it meets the target under the conditions that a table tries it under, or
+        `materials` where stresses of different materials would have to rank them
     next : the next best candidate, None without one
     out_of_reach : conditions that no candidate meets, None without one
     fails : where the first candidate misses the target, or its conditions; None if it does not
@@ -190,6 +191,7 @@ class Verdict:
     by_model : candidate that each other contact model of the study would name
     longest : row with the longest life, where no row meets the target and designs do not repeat; otherwise -1
     within_error : row of the first candidate whose error leaves the target open, otherwise -1
+    not_given : inputs that were not given, and with whose values a candidate lifts off or skids somewhere
     """
 
     kind: str
@@ -212,6 +214,7 @@ class Verdict:
     by_model: Mapping[str, Candidate] = field(default_factory=dict)
     longest: int = -1
     within_error: int = -1
+    not_given: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def ranked(self) -> Verdict:
@@ -241,7 +244,7 @@ class Verdict:
 
 
 def verdict_of(results: Results) -> Verdict | None:
-    """Return the verdict of a study; None for a search, and for a study without lives and stresses.
+    """Return the verdict of a study; None for a search, and for a study without lives, stresses and targets.
 
     Parameters
     ----------
@@ -262,8 +265,9 @@ def verdict_of(results: Results) -> Verdict | None:
     the same materials are compared at equal positions of it.
     """
     lives = (FIRST_LIMIT, *results.fatigue_lives)
-    goal = results.life or next((life for life in lives if life[0] in results.table), STRESS)
-    if results.config.method.proposes or goal[0] not in results.table or not len(results.table):
+    known = (life for life in lives if life[0] in results.table)
+    goal = results.life or next(known, None) or goal_without_lives(results)
+    if results.config.method.proposes or goal is None or not len(results.table):
         return None
     candidates = Candidates.grouped(results, goal)
     cases = Cases(candidates)
@@ -284,7 +288,8 @@ def verdict_of(results: Results) -> Verdict | None:
         left = cases.own & ~reach
         rest = _decided(cases, left if left.any() else cases.own, reach)
         out = _misses(cases, reach, cases.own, cases.reason)
-        others = replace(rest, out_of_reach=None) if left.any() else None
+        beside = {name: value for name, value in rest.not_given.items() if name not in [turn.what for turn in turns]}
+        others = replace(rest, out_of_reach=None, not_given=beside) if left.any() else None
         return replace(rest, kind="give", turns=turns, rest=others, out_of_reach=out)
     found = _decided(cases, cases.own, reach)
     if traded is not None and found.kind in ("build", "a_or_b", "measure"):
@@ -343,6 +348,7 @@ class Scores:
     draws : logarithms of B10 of resampled conditions, shape (m, resamples); no columns without a sample
     materials : names of the materials, shape (m,)
     case : row of the worst condition, shape (m,); -1 without one
+    stress : whether stresses are compared, which rank candidates of the same materials only
     """
 
     low: np.ndarray
@@ -353,6 +359,7 @@ class Scores:
     draws: np.ndarray
     materials: np.ndarray
     case: np.ndarray
+    stress: bool
 
     def beaten_by(self, i: int, others: np.ndarray, exact: bool = False) -> np.ndarray:
         """Return which of the other candidates beat a candidate, shape (k,); `exact` leaves the errors out."""
@@ -420,7 +427,7 @@ def _scores(cases: Cases, kept: np.ndarray) -> Scores:
     pairs = table[named].astype(str).agg(" / ".join, axis=1).to_numpy(dtype=str) if named else np.full(many, "")
     lowest, highest = ends[0].min(axis=1), ends[1].max(axis=1)
     places = np.concatenate([*ends] if len(positions) == 1 else [end for at in positions for end in at], axis=1)
-    return Scores(lowest, highest, places, judged, error, draws, pairs, case)
+    return Scores(lowest, highest, places, judged, error, draws, pairs, case, candidates.goal == STRESS)
 
 
 def _resampled(cases: Cases, kept: np.ndarray) -> np.ndarray:
@@ -577,6 +584,8 @@ Found = tuple[str, list[int], str]  # kind, numbers of the named candidates, and
 def _by_target(scores: Scores, order: np.ndarray, status: np.ndarray) -> Found:
     """Return the verdict with a target: the best that meet it, else what is open, else none."""
     met = order[status[order] == "met"]
+    if scores.stress and len(firsts := _first_of_materials(scores, met)) > 1:
+        return "cannot_tell", firsts, "materials"
     if len(met):
         rivals = [i for i in met[1:] if scores.low[met[0]] <= scores.low[i] * (1 + TIED + _error(scores, met[0], i))]
         return _together(scores, [int(met[0]), *map(int, rivals)], len(scores.low) == 1)
@@ -585,6 +594,12 @@ def _by_target(scores: Scores, order: np.ndarray, status: np.ndarray) -> Found:
     if len(judged):
         return "measure", [int(judged[0])], "range"
     return ("cannot_tell", [], "model") if len(maybe) else ("none", [], "")
+
+
+def _first_of_materials(scores: Scores, among: np.ndarray) -> list[int]:
+    """Return the first of some candidates of each pair of materials, as numbers."""
+    places = np.unique(scores.materials[among], return_index=True)[1]
+    return [int(i) for i in among[np.sort(places)]]
 
 
 def _error(scores: Scores, i: int, j: int) -> float:
@@ -607,6 +622,8 @@ def _by_rank(scores: Scores, order: np.ndarray) -> Found:
     if not len(pool):
         unknown = (~scores.judged & (scores.high > 0)).any()
         return ("cannot_tell", [], "model") if unknown else ("none", [], "")
+    if scores.stress and len(firsts := _first_of_materials(scores, pool)) > 1:
+        return "cannot_tell", firsts, "materials"
     best = scores.unbeaten(pool)
     certain = scores.unbeaten(pool, exact=True)
     places = scores.places[certain]
@@ -702,6 +719,7 @@ def _shared(cases: Cases) -> dict[str, Any]:
         "tried": 0 if cases.conditions else len(candidates.size),
         "sampled": cases.sampled,
         "not_checked": not_checked(cases.results, candidates.rising),
+        "not_given": {n: float(cases.results.base[n]) for n, rows in _by_not_given(cases).items() if rows.any()},
     }
 
 
@@ -719,7 +737,8 @@ def not_checked(results: Results, lives: bool = True) -> tuple[str, ...]:
     `fatigue of the guide` names a body whose material does not.
     """
     first = results.life == FIRST_LIMIT
-    known = {"static", "fatigue"} if lives and not first else {"static"}
+    known = {"static"} if lives or results.has(STRESS[0]) else set()
+    known |= {"fatigue"} if lives and not first else set()
     given = results.data.get("guide_overrollings_per_hour")
     hours = results.knows("guide_life_hours") or (given is not None and bool(given.notnull().any()))
     some: list[str] = []
@@ -740,6 +759,8 @@ def _misses(cases: Cases, bad: np.ndarray, among: np.ndarray, reason: np.ndarray
     """Describe cases that are not met among others, by their conditions."""
     candidates, names, use = cases.candidates, cases.conditions, cases.use
     table = candidates.results.table
+    for name in reversed(cases.other_targets):  # the first one is named
+        reason = np.where((cases.reason == "") & ~candidates.results.meets(name), f"target {name}", reason)
     counts = Counter(str(word) for word in reason[bad])
     causes = [name for cause, name in CAUSES.items() if cause in counts and _unnamed(candidates.results, name)]
     found = Misses(
@@ -770,22 +791,33 @@ def _unnamed(results: Results, name: str) -> bool:
     return name in names_not_given(results.data.attrs) and name not in results.factors
 
 
+def _by_not_given(cases: Cases) -> dict[str, np.ndarray]:
+    """Return the cases that lift off or skid by each input that was not given, shape (n,) by its name.
+
+    A case whose drive exceeds what friction transmits skids under any axial force, so that this force is no remedy
+    there.
+    """
+    skids = slip_margin(cases.results) < 0
+    return {
+        name: cases.own & (cases.reason == cause) & ~(skids & (name != "motor_force"))
+        for cause, name in CAUSES.items()
+        if _unnamed(cases.results, name)
+    }
+
+
 def _given(cases: Cases, reach: np.ndarray) -> tuple[Turn, ...]:
     """Return the inputs that were not given and that bring conditions out of reach of every candidate.
 
     With a target each such condition counts, because no candidate can meet it. Without one the verdict turns on the
-    input if it takes at least half of the conditions. A case whose drive exceeds what friction transmits skids under
-    any axial force, so that this force is no remedy there.
+    input if it takes at least half of the conditions.
     """
     results = cases.results
     turns = []
-    skids = slip_margin(results) < 0
-    for cause, name in CAUSES.items():
-        by_it = cases.own & (cases.reason == cause) & ~(skids & (name != "motor_force"))
+    for name, by_it in _by_not_given(cases).items():
         hopeless = by_it & reach
         wanted = bool(results.config.analysis.target) and hopeless.any()
         share = hopeless.sum() if cases.candidates.matched and cases.conditions else by_it.sum()
-        if _unnamed(results, name) and (wanted or share >= MANY * cases.own.sum()):
+        if wanted or share >= MANY * cases.own.sum():
             turns.append(Turn(name, low=float(results.base[name]), high=float(results.base[name]), units="N"))
     return tuple(turns)
 

@@ -29,12 +29,12 @@ def design_columns(results: Results) -> tuple[list[Column], dict[str, Any]]:
     -------
     columns : `design` (number in the ranking, the best first), `design_worst` (worst life over the valid conditions of
         the design), and `condition` (number of the combination of conditions, the hardest first) if the designs share
-        their conditions
+        their conditions; none if the goal does not rank the designs
     lists : under `design` and `condition` the `factors`, the `heads` and the `rows` of a list, `of`, the number of all
         its entries, and a `note` for the reader; empty if no design repeats
     """
     candidates = results.candidates()
-    if candidates is None or len(candidates.size) < 2 or candidates.size.max() < 2:
+    if candidates is None or len(candidates.size) < 2 or candidates.size.max() < 2 or not candidates.ranks:
         return [], {}
     own = candidates.place >= 0
     number = np.argsort(candidates.table.index.to_numpy())[candidates.place]

@@ -16,7 +16,7 @@ from trackroller.report.numbers import capital, count, head_unit, listing, long_
 from trackroller.report.words.designs import design_words, ends_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading
-from trackroller.results.candidates import Candidates
+from trackroller.results.candidates import UNRANKED, Candidates
 from trackroller.results.pareto import goals_of
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
@@ -38,7 +38,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     """
     found = results.verdict
     ranked = None if found is None else found.ranked
-    if ranked is None or len(ranked.candidates) < 2:
+    if ranked is None or len(ranked.candidates) < 2 or ranked.goal == UNRANKED:
         return None
     rising, unit = ranked.goal_rises, ranked.goal[2]
     listed = [one for one in ranked.candidates if np.isfinite(one.low) and one.low > 0 and one.judged][:MOST]

@@ -21,6 +21,7 @@ from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.results import OUTSIDE, Results
 from trackroller.roller.record import names_not_given
 
+OF_LIVES = ("deep_life",)  # validity flags that say how far a life holds
 EVENTS = {"full_slip": "Full slip", "lift_off": "Lift-off", "failed": "Failure"}
 
 
@@ -112,9 +113,13 @@ def regime_table(results: Results) -> Table | None:
 
 
 def validity_table(results: Results) -> Table | None:
-    """Count the rolling cases that carry each validity flag, by body where it is known."""
+    """Count the rolling cases that carry each validity flag, by body where it is known.
+
+    A flag of lives is left out of a study without lives.
+    """
     rows, rolling = [], int(results.rolling.sum())
-    for flag, body in [(name, body) for name in results.flags for body in bodies_of(name, results.by_body)]:
+    flags = [name for name in results.flags if results.life is not None or name not in OF_LIVES]
+    for flag, body in [(name, body) for name in flags for body in bodies_of(name, results.by_body)]:
         cases = int((results.flagged(flag, body) & results.rolling).sum())
         if cases:
             row = {"Flag": plain(flag), "Body": body or "either", "Meaning": VALIDITY[flag].criterion}

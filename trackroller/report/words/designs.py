@@ -11,7 +11,7 @@ import pandas as pd
 from pandas.api.types import is_numeric_dtype
 
 from trackroller.damage import LIMITS
-from trackroller.parameters import BODIES, FIRST_TO_FAIL, expressions
+from trackroller.parameters import BODIES, FIRST_TO_FAIL
 from trackroller.report.numbers import (
     BEYOND,
     Life,
@@ -27,17 +27,18 @@ from trackroller.report.numbers import (
     quantity,
     rounded,
     setting,
+    with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
-from trackroller.results.candidates import FEWEST, Candidates, mixed
+from trackroller.results.candidates import FEWEST, UNRANKED, Candidates, mixed
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Candidate
 from trackroller.roller.limit_notes import placeholders_of
-from trackroller.study.design.entries import FACTOR_NAMES
+from trackroller.roller.output_names import is_life
 
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
@@ -100,7 +101,8 @@ def size_words(results: Results) -> str:
 
 def unanswered(candidates: Candidates) -> Sentence:
     """Say why a study cannot compare designs, and which design of experiments can."""
-    roles = candidates.results.roles
+    labels = candidates.results.labels  # which no distribution can draw
+    roles = {name: role for name, role in candidates.results.roles.items() if name not in labels}
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
@@ -121,7 +123,11 @@ def best_table(results: Results) -> Table | None:
         return None
     best = [row for _, row in candidates.table.head(BEST).iterrows() if row["valid"]]
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, row[n]) for row in best)] for n in candidates.choices]
-    rows += _judged(candidates, best)
+    numbers = [n for n in results.labels if n not in results.roles] if candidates.size.max() == 1 else []  # of drawings
+    own = {n: results.table[n].iloc[[int(row["worst_case"]) for row in best]] for n in numbers}
+    rows = [[heading(n), *(factor_cell(n, value) for value in values)] for n, values in own.items()] + rows
+    rows += _judged(candidates, best) if candidates.goal != UNRANKED else []
+    rows += _on_targets(candidates, best)
     for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
             margins = [("none" if row[name] <= 0 else percent(row[name])) for row in best]
@@ -139,7 +145,7 @@ def best_table(results: Results) -> Table | None:
         rows.append([f"Meets the targets{' for certain' * ranged} in", *cells])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Candidate {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
-    title = "Candidates" if candidates.choices else "Life of the design"
+    title = "Candidates" if candidates.choices or candidates.goal == UNRANKED else "Life of the design"
     model = results.held_level("contact_model") if "contact_model" in results.factors else ""
     facts = {"several": several, "drawn": candidates.drawn, "rising": candidates.rising, "goal": candidates.goal[1]}
     facts |= {
@@ -147,12 +153,28 @@ def best_table(results: Results) -> Table | None:
         "shown": {row[0] for row in rows},
         "many": len(best),
     }
+    facts["materials"] = not candidates.ranks and candidates.goal != UNRANKED
     facts["mixed"] = bool(candidates.conditions) and bool(mixed(results).any())
     facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
     facts["hopeless"] = not candidates.reached.all()
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)
+
+
+def _on_targets(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
+    """Return a row for each target that is no life: its worst value over the conditions that a design holds."""
+    results, rows = candidates.results, []
+    for name, ends in results.config.analysis.target.items():
+        if is_life(name) or name == candidates.goal[0]:  # which have rows already
+            continue
+        values, unit, words = results.quantity(name)
+        for end, way, place in (("min", "max", "smallest"), ("max", "min", "largest")):
+            if end in ends:
+                case = candidates.worst_cases(values.astype(float), way)[[int(str(row.name)) for row in best]]
+                head = with_unit(f"{capital(words)}{f', {place}' * bool(candidates.conditions)}", unit)
+                rows.append([head, *(float(value) for value in np.where(case < 0, np.nan, values[case]))])
+    return rows
 
 
 def rows_table(results: Results) -> Table | None:
@@ -168,20 +190,17 @@ def rows_table(results: Results) -> Table | None:
         row: dict[str, Any] = {heading(name): factor_cell(name, case[name]) for name in results.factors}
         ends = (float(low[at]), float(high[at]), BEYOND * bool(fatigue[at]))
         row[capital(goal[1])] = plain_reason(cases.reason[at]) or ends_text(*ends, goal[2])
-        row["Ends it"] = "–" if cases.reason[at] else f"{ended_by(str(names[at]))}, {BODIES[int(guide[at])]}"
+        row["Ends it"] = (
+            "–" if cases.reason[at] else f"{either(names[at], cases.high_end[at])}, {BODIES[int(guide[at])]}"
+        )
         rows.append(row)
-    return Table.of(
-        "rows", "Life of each row of the table", rows, phrase("designs", "rows", idle=[*map(heading, idle(results))])
-    )
+    note = phrase("designs", "rows", idle=[*map(heading, idle(results))])
+    return Table.of("rows", "Life of each row of the table", rows, note)
 
 
 def idle(results: Results) -> list[str]:
     """Return the columns of numbers of a table that change no case, such as shares of the time."""
-    if not results.config.method.observed:
-        return []
-    own = [name for name in results.factors if name not in FACTOR_NAMES and is_numeric_dtype(results.table[name])]
-    texts = [factor["expression"] for factor in results.config.factors.values() if "expression" in factor]
-    return [name for name in own if not any(name in expressions.names(text) for text in texts)]
+    return [name for name in results.labels if is_numeric_dtype(results.table[name])]
 
 
 def plain_reason(reason: str) -> str:
@@ -222,9 +241,8 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     places = {"worst": at_worst if rising else "largest", "median": "median"}
     places = places if candidates.conditions else {"worst": ""}
     known = _of_verdict(candidates, best) if rising else []
-    spans = _spans(candidates, known)
-    if spans:  # the ends of the range say more than a value within it
-        rows.append([f"{capital(candidates.goal[1])}, {at_worst}", *spans])
+    if worst := _worst_row(candidates, known, at_worst if candidates.conditions else ""):
+        rows.append(worst)
         places.pop("worst")
     if candidates.results.ranged:
         places = {key: f"{place}, within the ranges" if place else place for key, place in places.items()}
@@ -232,12 +250,11 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
-        worst = ["–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"])) for row in best]
-        if spans:
-            worst = [
-                text if one is None else worst_words(candidates, one) for text, one in zip(worst, known, strict=True)
-            ]
-        rows.append(["Worst condition", *worst])
+        named = ["–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"])) for row in best]
+        if worst:
+            pairs = zip(named, known, strict=True)
+            named = [text if one is None or text == "–" else worst_words(candidates, one) for text, one in pairs]
+        rows.append(["Worst condition", *named])
     return rows
 
 
@@ -249,8 +266,7 @@ def _end_cell(candidates: Candidates, one: Candidate | None) -> str:
         return f"{ends_words(one)}, {one.body}"
     names = [name for name in candidates.conditions if name not in UNSURE]
     where = ", ".join(setting(name, candidates.results.table[name].iloc[one.case]) for name in names)
-    text = plain_reason(one.ends)
-    return f"{text} at {where}" if where else text
+    return plain_reason(one.ends) + f" at {where}" * bool(where)
 
 
 def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate | None]:
@@ -262,11 +278,17 @@ def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate
     return [known.get(int(str(row.name))) for row in best]
 
 
-def _spans(candidates: Candidates, known: list[Candidate | None]) -> list[str]:
-    """Write both ends of the life of each design at its worst condition; nothing where none rests on a placeholder."""
-    if candidates.drawn or not any(one is not None and one.high > one.low * (1 + SAME) for one in known):
+def _worst_row(candidates: Candidates, known: list[Candidate | None], place: str) -> list[Any]:
+    """Return the row on the life of each design at its worst condition, empty for drawn conditions.
+
+    It is that of the verdict: 0 h where a design does not hold a condition, and both ends of a range if one is a range.
+    """
+    head, unit = f"{capital(candidates.goal[1])}{', ' * bool(place)}{place}", candidates.goal[2]
+    if candidates.drawn or not known:
         return []
-    return ["–" if one is None else span_words(one, candidates.goal[2]) for one in known]
+    if any(one is not None and one.high > one.low * (1 + SAME) for one in known):
+        return [head, *("–" if one is None else span_words(one, unit) for one in known)]
+    return [with_unit(head, unit), *(math.nan if one is None else Life(one.low, one.beyond) for one in known)]
 
 
 def span_words(one: Candidate, unit: str) -> str:
@@ -289,8 +311,12 @@ def ends_text(low: float, high: float, beyond: str, unit: str) -> str:
 
 def ends_words(one: Candidate) -> str:
     """Return the words of what ends a candidate: of two limits if the range of its placeholders decides which."""
-    words = list(dict.fromkeys(ended_by(name) for name in (one.ends, one.ends_high) if name))
-    return " or ".join(words)
+    return either(one.ends, one.ends_high)
+
+
+def either(at_low: str, at_high: str) -> str:
+    """Return the words of what ends a life at the low and at the high end of its range, once if it is the same."""
+    return " or ".join(dict.fromkeys(ended_by(name) for name in (at_low, at_high) if name))
 
 
 def ended_by(name: str) -> str:

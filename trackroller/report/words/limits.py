@@ -34,7 +34,7 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
 def guesses(results: Results) -> Sentence | None:
     """Name the limits that rest on placeholders of materials, with the materials; None if no limit does."""
     placed: dict[str, dict[str, None]] = {}
-    if lines := guessed_lines(results.data):
+    if results.life is not None and (lines := guessed_lines(results.data)):
         placed[limit_title("fatigue")] = dict.fromkeys(lines)
     for one in placeholders_of(results.data):
         placed.setdefault(limit_title(one.limit), {})[one.material] = None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -37,7 +37,7 @@ from trackroller.report.words.designs import (
 )
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
-from trackroller.results.candidates import Candidates
+from trackroller.results.candidates import UNRANKED, Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
@@ -119,11 +119,16 @@ class _Words:
     def name(self, one: Candidate) -> str:
         return design_words(self.candidates, one.choices) or "the roller"
 
+    @property
+    def compared(self) -> bool:
+        """Return whether the study has a life or a stress that the candidates are compared by."""
+        return self.found.goal != UNRANKED
+
     def span(self, one: Candidate) -> str:
-        """Write both ends of a candidate's life, or its stress."""
+        """Write both ends of a candidate's life, or its stress; '' without both."""
         unit = self.found.goal[2]
         if not self.found.goal_rises:
-            return quantity(one.low, unit)
+            return quantity(one.low, unit) if self.compared else ""
         return span_words(one, unit)
 
     @property
@@ -144,7 +149,7 @@ class _Words:
             name = ", ".join(setting(n, v) for n, v in shared.items())
             return say("verdict", "any", name=name, free=[long_name(n) for n in free], many=len(named))
         values |= {"unlimited": bool(found.best) and math.isinf(found.best[0].low), "sampled": found.sampled}
-        values["scattered"] = self.scattered
+        values |= {"scattered": self.scattered, "compared": self.compared}
         return say("verdict", found.kind, **values, what=what, lives=lives, who=who, rises=found.goal_rises)
 
     def without_effect(self) -> list[str]:
@@ -162,6 +167,7 @@ class _Words:
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
             known = {"sample": self.by_sample, "accuracy": self.by_error, "untried": self.where_tried}
+            known |= {"materials": self.by_materials}
             return [known.get(found.why, self.by_model)()]
         if found.kind == "none":
             return [self.nearest() if found.candidates else self.nowhere()]
@@ -172,6 +178,8 @@ class _Words:
     def ends(self, one: Candidate) -> Sentence:
         """Say how long a candidate lasts, where, what ends it, and the target."""
         found = self.found
+        said = {} if found.out_of_reach is None else found.out_of_reach.not_given
+        not_given = {name: value for name, value in found.not_given.items() if name not in said}
         return say(
             "verdict",
             "ends",
@@ -195,6 +203,8 @@ class _Words:
             unlimited=math.isinf(one.low),
             scattered=self.scattered,
             shared=bool(self.candidates.untried.any()),
+            compared=self.compared,
+            not_given=_values(not_given),
         )
 
     def body(self, one: Candidate) -> str:
@@ -226,27 +236,42 @@ class _Words:
         values |= {"target": bool(found.target), "ranged": one.high > one.low}
         return say("verdict", "next", **values)
 
+    def causes(self, misses: Misses) -> list[str]:
+        """Write why conditions are not met, the most frequent reason first; what ends a life too early is no reason."""
+        words = []
+        for word in (word for word in misses.reasons if word and word not in LIMITS):
+            kind, _, name = word.partition(" ")
+            if kind == "limit":
+                words.append(f"exceeds the limit of {ended_by(name)}")
+            elif kind == "target":
+                several = len(self.found.target) > 1
+                words.append("misses the target" + f" of its {self.results.quantity(name)[2]}" * several)
+            else:
+                words.append(REASONS.get(word, word))
+        return words
+
     def out(self, misses: Misses | None) -> Sentence | None:
         """Name the conditions that no candidate meets, and why."""
         if misses is None or not misses.count:
             return None
-        given = _not_given(misses) if self.found.kind != "give" else []
-        values = {"where": _levels(misses), "why": _reasons(misses), "alone": len(self.candidates.size) == 1}
+        given = _values(misses.not_given) if self.found.kind != "give" else []
+        values = {"where": _levels(misses), "why": self.causes(misses), "alone": len(self.candidates.size) == 1}
         return say("verdict", "out", misses=misses, **values, not_given=given)
 
     def nearest(self) -> Sentence:
         """Say that no candidate is enough, which one is nearest, and where it fails."""
         found, one = self.found, self.found.candidates[0]
         fails = found.fails or Misses(0, 0, {})
+        alike = 0 if self.compared else sum(other.met == one.met for other in found.candidates[1:])
         values = {
             "candidate": one,
-            "name": self.name(one) if len(found.candidates) > 1 else "",
+            "name": (self.name(one) + f" (and {alike} more)" * bool(alike)) if len(found.candidates) > 1 else "",
             "target": self.target(),
         }
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = (self.untried_life(one, alone=False) or self.span(one)) if one.low > 0 else ""
-        values |= {"where": _levels(fails), "why": _reasons(fails), "limits": limits, "life": life}
-        values |= {"not_given": _not_given(fails)}
+        values |= {"where": _levels(fails), "why": self.causes(fails), "limits": limits, "life": life}
+        values |= {"not_given": _values(fails.not_given)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
         values |= {"scattered": self.scattered, "alone": one.conditions == 1}
         values["ranged"] = bool(found.target) and one.high > one.low * (1 + SAME)
@@ -259,8 +284,8 @@ class _Words:
             lives = quantity(float(self.results.column(found.goal[0])[found.longest]), found.goal[2])
             name = design_words(self.candidates, self.results.table.iloc[found.longest])
         fails = found.fails or Misses(0, 0, {})
-        values = {"target": self.target(), "why": _reasons(fails), "lives": lives, "name": name}
-        values |= {"not_given": _not_given(fails)}
+        values = {"target": self.target(), "why": self.causes(fails), "lives": lives, "name": name}
+        values |= {"not_given": _values(fails.not_given)}
         return say("verdict", "nowhere", cases=fails.of, **values)
 
     def by_error(self) -> Sentence:
@@ -283,6 +308,14 @@ class _Words:
         name, lives = ("", "") if best is None else (self.name(best), self.span(best))
         values = {"many": len(judged), "target": self.target(), "holds": best is not None and best.low > 0}
         return say("verdict", "model", name=name, lives=lives, rises=found.goal_rises, **values)
+
+    def by_materials(self) -> Sentence:
+        """Say that stresses do not rank candidates of different materials, and name the first of each material."""
+        found = self.found
+        shown = [(self.name(one), self.span(one)) for one in found.best[:MOST]]
+        values = {"shown": shown, "left": len(found.best) - len(shown), "goal": found.goal[1]}
+        holds = len([one for one in found.candidates if one.status == "met"])
+        return say("verdict", "materials", **values, target=self.target(), holds=holds)
 
     def where_tried(self) -> Sentence:
         """Say that a candidate meets the target under the conditions of a table that it was tried under."""
@@ -391,7 +424,7 @@ class _Words:
         unit = found.goal[2]
         shown = []
         for one in others[:MOST]:
-            holds = "" if math.isnan(one.holds) else quantity(one.holds, unit)
+            holds = "" if math.isnan(one.holds) or not self.compared else quantity(one.holds, unit)
             shown.append((self.name(one), REASONS.get(one.ends, one.ends), holds))
         return say("verdict", "not_judged", shown=shown, left=len(others) - len(shown), rises=found.goal_rises)
 
@@ -543,9 +576,9 @@ def _what(turn: Turn) -> str:
     return f"the {plain(turn.what)} of {turn.of}" + f" on {'itself' if turn.on == turn.of else turn.on}" * bool(turn.on)
 
 
-def _not_given(misses: Misses) -> list[str]:
-    """Write the values of the paper's example among what keeps conditions from being met: 'axial force 30 N'."""
-    return [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in misses.not_given.items()]
+def _values(not_given: Mapping[str, float]) -> list[str]:
+    """Write values of the paper's example that stand for values which were not given: 'axial force 30 N'."""
+    return [f"{long_name(n)} {level_text(n, v, words=False)}" for n, v in not_given.items()]
 
 
 def _levels(misses: Misses) -> str:
@@ -556,14 +589,3 @@ def _levels(misses: Misses) -> str:
         spoken = setting(name, levels[0]) == texts[0]
         parts.append(shortened(texts) if spoken else f"{long_name(name)} {shortened(texts)}")
     return ", ".join(parts)
-
-
-def _reasons(misses: Misses) -> list[str]:
-    """Write why conditions are not met, the most frequent reason first; what ends a life too early is no reason."""
-    words = [word for word in misses.reasons if word and word not in LIMITS]
-    return [
-        f"exceeds the limit of {ended_by(word.removeprefix('limit '))}"
-        if word.startswith("limit ")
-        else REASONS.get(word, word)
-        for word in words
-    ]
