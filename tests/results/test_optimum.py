@@ -18,7 +18,7 @@ from trackroller.methods.optimise import (
 from trackroller.report.numbers import quantity, rounded
 from trackroller.report.pages.best import best_of, write_best
 from trackroller.report.words.optimum import optimum_sentences
-from trackroller.results.judging import beyond_data, judge, optimum_of
+from trackroller.results.judging import beyond_data, judge, optimum_of, shortfall
 from trackroller.results.optimum import cheaper, search_designs
 from trackroller.results.pareto import pareto_mask
 from trackroller.study.file.load import load_study
@@ -402,3 +402,19 @@ def test_the_smallest_design_that_meets_the_target_is_sought():
     assert lives[chosen] >= least and sizes[chosen] <= sizes[surely].min()
     said = optimum_sentences(results)[0].text
     assert said.startswith("Recommended: axis distance ") and f"lasts {quantity(lives[chosen], 'h')}" in said
+
+
+def test_a_target_on_a_force_decides_a_search_without_lives_and_stresses():
+    """The goal asks for little force in contact 1, the target for enough of it in both conditions."""
+    base = {"guide_curve_radius": "inf", "axial_force": 30, "motor_force": 0, "radial_force": -80}
+    keys = {"base": base, "outputs": ["forces", "contact"], "goals": {"normal_force_1": "min"}}
+    forces = {}
+    for least in (None, 8.0):
+        more = {} if least is None else {"analysis": {"target": {"normal_force_1": {"min": least}}}}
+        results = tr.run(changed(**keys, **more), progress=False)
+        rows = results.table.assign(force=np.where(results.regime == 0, results.quantity("normal_force_1")[0], -np.inf))
+        worst = rows["force"].to_numpy(dtype=float).reshape(-1, 2).min(axis=1)
+        if least is not None:
+            assert ((shortfall(results) == 0) == (worst >= least)).all() and 0 < (worst >= least).sum() < len(worst)
+        forces[least] = worst[optimum_of(results)["recommended"]]
+    assert forces[None] < 8.0 <= forces[8.0]

@@ -13,7 +13,7 @@ from trackroller.methods.b10 import b10
 from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.results.candidates import STRESS, Candidates
+from trackroller.results.candidates import Candidates, goal_without_lives
 from trackroller.results.constraints import Column
 from trackroller.results.intervals import Cases
 from trackroller.results.results import OUTSIDE, Results
@@ -133,11 +133,11 @@ def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray:
     -------
     0 where the design meets the target; 1 where a range or an error leaves that open, 2 where it misses the target,
     plus a part below 1 by the share of the conditions that may miss it, then by the life. 0 for all without a target,
-    without lives and stresses, and where the probability of the target is a goal itself.
+    and where the probability of the target is a goal itself.
     """
-    goal = results.life or STRESS
+    goal = results.life or goal_without_lives(results)
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    if not required(results) or goal[0] not in results.table:
+    if not required(results) or goal is None:
         return np.zeros(shape[0])
     cases = Cases(Candidates.grouped(results, goal))
     least, *hits = cases.on_target(exact=False)
