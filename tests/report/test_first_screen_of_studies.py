@@ -6,7 +6,7 @@ from collections import Counter
 import numpy as np
 
 import trackroller as tr
-from trackroller.report.numbers import rounded
+from trackroller.report.numbers import quantity, rounded
 from trackroller.report.words.designs import unanswered
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.verdict import verdict_sentences
@@ -109,3 +109,28 @@ def test_effects_that_differ_by_a_third_are_not_told_to_be_nearly_the_same():
         assert (words in said.values["straight"]) == (share <= 0.1)
         assert (words in said.values["spread"]) == (0.1 < share <= 0.5)
         assert share <= 0.1 or f"{100 * share:.0f} %" in said.text
+
+
+def test_a_wear_coefficient_that_decides_is_named_with_the_target_as_given():
+    """Solved again with a coefficient on either side of the value that the verdict names."""
+    base = {"axis_distance": 30, "guide_profile_radius": 10, "contact_angle": 42, "velocity": 100, "axial_force": 6}
+    base |= {"permissible_wear_depth": 0.15, "guide_material": "C45", "roller_material": "C45-induction-hardened"}
+    base |= {"friction_coefficient": 0.12, "roller_profile_radius": -10.5}
+    factors = {"radial_force": {"values": [-160, -80]}}
+    results = run(factors, base, analysis={"target": {"min": 1333}})
+    said = " ".join(one.text for one in verdict_sentences(results))
+    assert (
+        results.verdict.kind == "measure" and "target 1333 h" in said and "No expected value is surely enough" in said
+    )
+    turn = results.verdict.turns[0]
+    assert f"above {quantity(turn.until, turn.units)} it lasts too short" in said
+    worst = BASE | base | {"radial_force": -160}
+    for coefficient, end, reached in (
+        (0.99 * turn.until, "high", True),
+        (1.01 * turn.until, "high", False),
+        (turn.low, "low", False),
+    ):
+        given = {"like": "C45-induction-hardened", "wear_coefficient": coefficient}
+        case = tr.Case(**(worst | {"roller_material": given}))
+        ds = tr.solve(case, ("life", "limits"), contact_model="sliding", accuracy="preview")
+        assert (float(ds[f"{LIFE}_{end}"]) >= 1333.0) == reached

@@ -13,6 +13,7 @@ from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
     BEYOND,
+    as_given,
     lasting,
     level_text,
     long_name,
@@ -361,14 +362,16 @@ class _Words:
 
     def turn(self, turn: Turn) -> Sentence | None:
         """Say at which value the decision turns."""
-        if not (math.isfinite(turn.value) or math.isfinite(turn.until)):
+        wear = turn.what == "wear_coefficient"
+        bounds = wear and bool(self.found.target) and math.isfinite(turn.low)  # of the wear life, which may decide, too
+        if not (math.isfinite(turn.value) or math.isfinite(turn.until) or bounds):
             return None
         named = {one.number: self.name(one) for one in self.found.best}
         others = [name for number, name in named.items() if number != turn.candidate]
         values = {"turn": turn, "name": named.get(turn.candidate, ""), "others": others, "target": self.target()}
         texts = {key: quantity(getattr(turn, key), turn.units) for key in ("value", "until", "high")}
         texts["low"] = rounded(turn.low)
-        return say("verdict", "turn", **values, texts=texts, wear=turn.what == "wear_coefficient")
+        return say("verdict", "turn", **values, texts=texts, wear=wear)
 
     def given(self) -> Sentence:
         """Say which value was used instead of the one that was not given, or the ends of several goals."""
@@ -547,9 +550,9 @@ def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
         if name in OF_PAIR and set(ends) == {"min"} and unit_of_goal == "h":
             lives.append(ends["min"])
         else:
-            parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
+            parts = [f"at {'least' if end == 'min' else 'most'} {as_given(v, unit)}" for end, v in ends.items()]
             texts.append(f"{words} {' and '.join(parts)}")
-    return ", ".join([*([quantity(max(lives), "h")] if lives else []), *texts])
+    return ", ".join([*([as_given(max(lives), "h")] if lives else []), *texts])
 
 
 def _what(turn: Turn) -> str:
