@@ -431,3 +431,28 @@ def test_the_sheet_prints_in_letters_of_7_points_and_fits_a_phone(written):
     assert page.run("document.documentElement.scrollWidth") <= 400
     page.close()
     browser.close()
+
+
+def test_a_sheet_outside_the_half_space_says_so_first():
+    """The half-space ends at 0.3 of the smallest radius, here the 6 mm of the guide."""
+    case = tr.Case(
+        axis_distance=20,
+        roller_profile_radius=-6.6,
+        contact_angle=35,
+        radial_force=-300,
+        axial_force=70,
+        motor_force=-5,
+        friction_coefficient=0.15,
+        guide_overrollings_per_hour=100,
+        roller_material="POM-C",
+        guide_material="C45",
+    )
+    ds = tr.solve(case, (*COMPLETE, "limits"), contact_model="sliding", accuracy="preview")
+    assert float(ds["semi_axis_lateral"].max()) > 0.3 * 6.0
+    hours = float(ds["life_to_first_limit_hours"].min())
+    verdict = collect(ds).verdict
+    assert verdict.startswith("Outside the half-space: not judged. If the model holds all the same, ")
+    assert float(re.search(r"after ([\d.]+) h", verdict)[1]) == pytest.approx(hours, rel=5e-3)
+    assert "Rolls" not in verdict
+    closer = tr.solve(dataclasses.replace(case, roller_material="C45"), (*COMPLETE, "limits"), contact_model="sliding")
+    assert collect(closer).verdict.startswith("Rolls. ")

@@ -233,7 +233,10 @@ def test_which_factors_act_alike_everywhere_is_told_by_sigma():
         strong = mu >= 0.1 * np.nanmax(mu)
         if said is not None:
             assert set(said.values["bent"]) == set(names[strong & (sigma > 0.5 * mu)])
-            assert set(said.values["straight"]) == set(names[strong & (sigma <= 0.5 * mu)])
+            assert set(said.values["straight"]) == set(names[strong & (sigma <= 0.1 * mu)])
+            between = strong & (0.1 * mu < sigma) & (sigma <= 0.5 * mu)
+            assert set(said.values["spread"]) == set(names[between])
+            assert all(f"{100 * s / m:.0f} %" in said.text for s, m in zip(sigma[between], mu[between], strict=True))
 
 
 def test_every_sentence_on_a_pareto_set_is_true():

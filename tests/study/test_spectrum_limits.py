@@ -74,11 +74,61 @@ def test_a_limit_without_a_life_is_exceeded_at_once_by_the_worst_block():
     jerk = LOADED | {"name": "jerk", "distance": 1, "radial_force": -9e4}
     ds = solved(EMPTY, jerk, limits=("static",))
     assert (ds.life_to_first_limit_shifts == 0).all() and (ds.utilisation > 1).all()
-    assert sentences(ds)[2].text.startswith("The roller exceeds static failure")
+    assert [said.kind for said in sentences(ds)[:3]] == ["spectrum_outside", "spectrum_unknown", "spectrum_unknown"]
+    assert sentences(ds)[3].text.startswith("The roller exceeds static failure")
     assert (ds.limit_state == STATES.index("exceeded")).all()
     still = solved(EMPTY, jerk | {"distance": 0, "guide_overrollings": 0}, limits=("static",))
     assert (still.utilisation < 1).all() and np.isnan(still.life_to_first_limit_shifts).all()  # no limit has a life
     assert (still.limit_state == STATES.index("kept")).all()
+
+
+def palletiser():
+    """Solve three blocks, of which the last one exceeds the shakedown limit of the guide."""
+    base = {"friction_coefficient": 0.18, "motor_force": 0, "axis_distance": 26, "guide_profile_radius": 7}
+    base |= {"roller_profile_radius": -7.5, "contact_angle": 40, "guide_curve_radius": np.inf, "velocity": 50}
+    base |= {"guide_overrollings_per_hour": 200, "permissible_wear_depth": 0.1}
+    base |= {"roller_material": "42CrMo4+QT-40", "guide_material": "C45"}
+    blocks = [
+        {"name": "loaded", "share": 0.45, "radial_force": -420, "axial_force": 40},
+        {"name": "return", "share": 0.5, "radial_force": -120, "axial_force": 5, "velocity": 90},
+        {"name": "bump", "share": 0.05, "radial_force": -900, "axial_force": 90, "velocity": 10},
+    ]
+    given = {"blocks": blocks, "base": base, "limits": "all", "contact_model": "sliding", "accuracy": "preview"}
+    return solve_spectrum(Spectrum.from_dict(given))
+
+
+def test_the_first_sentences_name_ranges_and_limits_that_a_block_exceeds():
+    ds = palletiser()
+    head, states, other = sentences(ds)[:3]
+    low, high = (ds[f"life_hours_by_limit{end}"] for end in ("_low", "_high"))
+    lowest, highest = (float(of.sel(limit=["fatigue", "wear"]).min()) for of in (low, high))
+    assert head.text.startswith(f"The pair lasts {rounded(lowest)} to {rounded(highest)} h, ")
+    assert float(low.sel(limit="wear", body="roller")) == lowest and float(high.sel(limit="wear").min()) > highest
+    assert float(high.sel(limit="fatigue", body="guide")) == highest
+    assert "by values that nobody has measured, until wear (permissible depth) ends the roller or rolling" in head.text
+    used = float(ds["utilisation"].sel(limit="shakedown", body="guide"))
+    assert used > 1.0 > float(ds["utilisation"].sel(limit="shakedown", body="roller"))
+    assert states.text == f"Exceeded: elastic shakedown of the guide, {rounded(100 * used)} % in 'bump'."
+    assert other.kind == "spectrum_limit" and "measured" not in other.text and "beyond" not in other.text
+
+
+def test_a_block_outside_the_half_space_is_named_before_any_life():
+    blocks = [LOADED | {"radial_force": -300, "axial_force": 70}, EMPTY | {"axial_force": 0}]
+    base = BASE | {"roller_material": "POM-C", "guide_material": "C45", "roller_profile_radius": -6.6}
+    ds = solved(*blocks, base=base, limits=("fatigue",))
+    wide = ds["validity"].values & 1  # the first flag: half_space
+    assert wide.tolist() == [1, 0]
+    assert sentences(ds)[0].text.startswith("Outside the half-space in 'loaded': not judged.")
+    assert sentences(solved(LOADED, EMPTY))[0].kind == "spectrum_pair"
+
+
+def test_the_life_of_the_other_body_says_that_it_lies_beyond_the_data():
+    ds = solved(LOADED | {"radial_force": -30}, EMPTY | {"radial_force": -10}, limits=("fatigue",))
+    turns = {
+        b: float(ds["life_shifts"].sel(body=b).min() * ds["overrollings"].sel(body=b).sum()) for b in ds.body.values
+    }
+    assert min(turns.values()) > 5e6  # the last cycles of the S-N data
+    assert all("(beyond the S-N data)" in sentence.text for sentence in sentences(ds)[:2])
 
 
 def test_names_of_limits_are_checked():

@@ -252,10 +252,15 @@ def with_unit(text: str, units: str) -> str:
     return f"{text} [{head_unit(units)}]"
 
 
-def quantity(value: float, units: str) -> str:
+def quantity(value: float, units: str, figures: int = 3) -> str:
     """Write a number with its unit, for running text; pure numbers stand alone."""
     unit = hour_unit(value) if units == "h" else unit_text(units)
-    return f"{rounded(value)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
+    return f"{rounded(value, figures)} {unit if unit != '–' else ''}".strip().replace(" °", "°")
+
+
+def as_given(value: float, units: str) -> str:
+    """Write a value that a user requires, with its unit: as it was given, up to six figures."""
+    return quantity(value, units, 6)
 
 
 def plain(name: str) -> str:

@@ -45,6 +45,7 @@ APART = 2.0  # ratio of the effects within two levels of a category, from which 
 EVEN = 0.1  # difference of the shares of cases that constraints leave, up to which they cut evenly
 ALIKE = 1e-6  # relative difference of two indices that count as equal
 ROUNDING = 1e-9  # of the margin to slip
+STRAIGHT, BENT = 0.1, 0.5  # standard deviation over mean of elementary effects, up to which they are alike or scatter
 NEGLIGIBLE = 0.02  # share of the variance below which a factor does not matter
 
 
@@ -296,14 +297,20 @@ def interaction_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
 
 
 def screening_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
-    """Return the factors whose elementary effects differ from place to place, and those with the same everywhere."""
+    """Sort the strong factors by how far their elementary effects differ from place to place.
+
+    `straight` are those of nearly the same effect everywhere, `spread` those whose effects scatter by a share of their
+    mean, and `bent` those whose effects scatter by more than half of it.
+    """
     part, ranks = sens.sel(output=output), order(sens, output)
     if "sigma" not in part or not ranks:
         return None
     sigma = dict(zip(part["factor"].values, part["sigma"].values, strict=True))
-    strong = [r for r in ranks if r.value >= 0.1 * ranks[0].value]
-    bent = [r.name for r in strong if sigma[r.factor] > 0.5 * r.value]
-    return {"output": output, "bent": bent, "straight": [r.name for r in strong if r.name not in bent]}
+    shares = {r.name: float(sigma[r.factor] / r.value) for r in ranks if r.value >= 0.1 * ranks[0].value > 0}
+    bent = [name for name, share in shares.items() if share > BENT]
+    straight = [name for name, share in shares.items() if share <= STRAIGHT]
+    spread = {name: share for name, share in shares.items() if STRAIGHT < share <= BENT}
+    return {"output": output, "bent": bent, "straight": straight, "spread": spread} if shares else None
 
 
 OF_ANALYSIS = {  # the statements on an output of an analysis, in their order

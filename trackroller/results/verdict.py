@@ -24,7 +24,7 @@ from trackroller.results.first_limits import COEFFICIENT, reached_by_body
 from trackroller.results.intervals import Cases, OnTarget
 from trackroller.results.lives import BESIDE, FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
-from trackroller.results.results import Results
+from trackroller.results.results import SAME_ENDS, Results
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.roller.output_names import is_life
 from trackroller.roller.record import names_not_given
@@ -860,7 +860,7 @@ def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
     one = max(found.best, key=lambda c: c.high / c.low if c.low > 0 else np.inf)  # the widest range
     other = next((c for c in found.best if c.number != one.number), None)
     least = found.required if np.isfinite(found.required) else other.high if other else np.nan
-    until = other.low if other is not None and not np.isfinite(found.required) else np.nan
+    until = least if np.isfinite(found.required) else other.low if other else np.nan
     turns = [_of_limit(cases, one, limit) for limit in one.open_limits]
     turns += [Turn("tests", name, candidate=one.number) for name in one.tested]
     if one.ends == "wear" or not turns:
@@ -881,6 +881,8 @@ def _bodies(cases: Cases, one: Candidate) -> tuple[str, str]:
 def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
     """Return the wear coefficient below which a candidate reaches `least`, and above which it stays below `until`.
 
+    Both are one value for a required life, unless the life lies between bounds for one coefficient.
+
     The low end of its life belongs to the high end of the coefficient. The high end belongs to the low end of the
     coefficient, or where places of the placeholder are rows of their own, to that of the worst row.
     """
@@ -896,7 +898,9 @@ def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
     longest = float(reached_by_body(cases.results, "_high")[one.case][place])  # another limit may end it before
     there = high if cases.spans else low
     value, beyond = high * one.low / least, there * longest / until if until > 0 else np.nan
+    alike = until == least and beyond <= value * (1.0 + SAME_ENDS)
     value, beyond = (x if low < x < high else np.nan for x in (value, beyond))
+    beyond = np.nan if alike else beyond
     return Turn("wear_coefficient", of, on, value, beyond, low, high, units, one.number)
 
 

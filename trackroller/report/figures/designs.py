@@ -12,7 +12,7 @@ import xarray as xr
 from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import capital, count, head_unit, listing, long_name, plain, quantity
+from trackroller.report.numbers import as_given, capital, count, head_unit, listing, long_name, plain
 from trackroller.report.words.designs import design_words, ends_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading
@@ -53,7 +53,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
     _bars(axes, place, ends, spread, sure)
     required = ranked.required
     if np.isfinite(required):
-        axes.axvline(required, color=style.PAIR[1], linewidth=1.1, label=f"target {quantity(required, unit)}")
+        axes.axvline(required, color=style.PAIR[1], linewidth=1.1, label=f"target {as_given(required, unit)}")
     known = ends[np.isfinite(ends) & (ends > 0)]
     low, high = (float(end(np.append(known, required) if np.isfinite(required) else known)) for end in (np.min, np.max))
     if rising and high > 20 * low:

@@ -37,7 +37,7 @@ from trackroller.report.tables.limits import (
 )
 from trackroller.report.tables.lives import life_rows
 from trackroller.report.terminal import print_table, print_text
-from trackroller.report.words.accuracy import flags_of
+from trackroller.report.words.accuracy import flags_of, not_judged
 from trackroller.report.words.assumptions import (
     assumptions,
     friction_sentence,
@@ -271,6 +271,7 @@ def _verdict(
         overloaded=[f"at the {body} {why}" for body, why in lifeless.items() if OVERLOADED in why],
         **texts,
         ends=ends,
+        outside=not_judged(ds),
         unchecked=unchecked(ds),
         lives=list(map(_hours, of_roller[:2])) if known and not ends else [],
         contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known and first != "guide" else None,

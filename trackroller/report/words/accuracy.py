@@ -95,6 +95,23 @@ def life_error(results: Results) -> Sentence | None:
 
 
 _ROLLING = REGIMES.index("rolling")
+OUTSIDE = {  # flags of cases that the model does not judge, as the head of a verdict
+    "half_space": "outside the half-space",
+    "conformal": "patch at the edge of the groove",
+    "steep_friction": "friction that falls too steeply",
+}
+
+
+def not_judged(ds: xr.Dataset) -> list[str]:
+    """Return why the model does not judge a solved case, in a few words each; nothing if it does.
+
+    A roller that skids or lifts off, or a case without a solution, is judged: it is not met.
+    """
+    if int(ds["regime"]) != _ROLLING:
+        return []
+    flags = int(ds["validity"]) if "validity" in ds else 0
+    reasons = [words for name, words in OUTSIDE.items() if flags & validity_bit(name)]
+    return reasons + ["not converged"] * ("converged" in ds and int(ds["converged"]) != 1)
 
 
 def bodies_of(flag: str, by_body: bool) -> tuple[str, ...]:

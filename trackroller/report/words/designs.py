@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -32,6 +33,7 @@ from trackroller.report.numbers import (
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, UNRANKED, Candidates, mixed
+from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
@@ -107,10 +109,18 @@ def unanswered(candidates: Candidates) -> Sentence:
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
-    values["weighted"] = candidates.weighted or values["least"] < FEWEST
+    values |= {"weighted": candidates.weighted} | _sharing(candidates)
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     values |= {"cases": len(candidates.results.table), "independent": int((~mixed(candidates.results)).sum())}
     return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
+
+
+def _sharing(candidates: Candidates) -> dict[str, int]:
+    """Return how many designs at most have the same conditions, and how many conditions these are."""
+    use, place = codes(candidates.results.table, candidates.conditions), candidates.place
+    own = [frozenset(use[place == i].tolist()) for i in range(len(candidates.size))]
+    same, alike = max(Counter(own).items(), key=lambda found: (found[1], len(found[0])))
+    return {"alike": alike, "common": len(same)}
 
 
 def best_table(results: Results) -> Table | None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 import xarray as xr
 
@@ -9,9 +11,11 @@ from trackroller.report.numbers import capital, count, level_text, percent, plus
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.columns import codes
 from trackroller.results.findings import NEGLIGIBLE, Finding
 from trackroller.results.labels import INDEX_WORDS, RELIABLE, factor_name
 from trackroller.results.ranking import SIGNED, estimate, headline, method_of, order
+from trackroller.results.results import Results
 
 HALF = "± is half the 95 % interval"
 
@@ -45,8 +49,22 @@ def caveat(sens: xr.Dataset, output: str) -> str:
     return " ".join(said)
 
 
-def index_words(sens: xr.Dataset, finding: Finding) -> Sentence:
-    """Name the factors that decide an output, by one index with its interval."""
+def idle_factors(results: Results, finding: Finding) -> list[str]:
+    """Return the small factors of a grid whose levels all give the same output, whatever the other factors are."""
+    output, idle = finding.values["output"], []
+    if not results.grid or output not in results.table:
+        return []
+    values = results.column(output)
+    for name in (r.factor for r in finding.values["small"]):
+        own = codes(results.table, (n for n in results.factors if n != name))
+        first = values[np.unique(own, return_index=True)[1]][own]
+        if np.array_equal(values, first, equal_nan=True):
+            idle.append(name)
+    return idle
+
+
+def index_words(sens: xr.Dataset, finding: Finding, idle: Sequence[str] = ()) -> Sentence:
+    """Name the factors that decide an output, by one index with its interval, and those that do not change it."""
     values, output = finding.values, finding.values["output"]
     ranks, sized, index = values["ranks"], values["sized"], values["index"]
     together = [ranks[0].name, *(r.name for r in values["ties"])]
@@ -56,7 +74,8 @@ def index_words(sens: xr.Dataset, finding: Finding) -> Sentence:
     sizes = [f"{r.name} by {plus_minus(r.value, r.low, r.high)}{unit}" for r in large]
     words = {"what": of_output(sens, output), "first": ranks[0], "together": together, "unit": unit}
     words |= {
-        "small": [r.name for r in values["small"]],
+        "idle": [r.name for r in values["small"] if r.factor in idle],
+        "small": [r.name for r in values["small"] if r.factor not in idle],
         "words": INDEX_WORDS[index],
         "further": sizes if sized else shares,
     }

@@ -9,6 +9,7 @@ from trackroller.damage.sn_curve import DEVIATES_10_TO_90
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.report.numbers import (
     Life,
+    as_given,
     capital,
     chance,
     head_unit,
@@ -41,10 +42,10 @@ def target_words(table: xr.Dataset, target: int) -> str:
     name, unit = str(part["target_name"].item()), str(part["target_units"].item())
     low, high = float(part["target_min"]), float(part["target_max"])
     if np.isfinite(low) and np.isfinite(high):
-        return f"{name} from {quantity(low, unit)} to {quantity(high, unit)}"
+        return f"{name} from {as_given(low, unit)} to {as_given(high, unit)}"
     if np.isfinite(low):
-        return f"{name} of at least {quantity(low, unit)}"
-    return f"{name} of at most {quantity(high, unit)}" if np.isfinite(high) else name
+        return f"{name} of at least {as_given(low, unit)}"
+    return f"{name} of at most {as_given(high, unit)}" if np.isfinite(high) else name
 
 
 def _whole(table: xr.Dataset) -> str:

@@ -12,6 +12,8 @@ from trackroller.damage import LIMITS
 from trackroller.damage.bearing import FIELD, WEIBULL, life_at
 from trackroller.parameters import BODIES, PARAMETERS
 from trackroller.report.numbers import (
+    BEYOND,
+    as_given,
     lasting,
     level_text,
     long_name,
@@ -37,7 +39,7 @@ from trackroller.report.words.designs import (
 )
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
-from trackroller.results.candidates import UNRANKED, Candidates
+from trackroller.results.candidates import UNRANKED, Candidates, of_one_model
 from trackroller.results.intervals import Cases
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
@@ -55,6 +57,7 @@ LEAST_NEEDED = (
     "next",
     "not_judged",
     "turn",
+    "lives",
     "guessed",
     "out",
 )  # kinds of sentences that also stand below, the first one least
@@ -162,7 +165,7 @@ class _Words:
         """Say why: lives, what ends them, what turns the decision, and the conditions that are left out."""
         found = self.found
         if found.kind == "cannot_tell" and found.why == "conditions":
-            return [unanswered(self.candidates)]
+            return [self.lives_of_cases(), unanswered(self.candidates)]
         if found.kind == "give":
             return [self.given(), self.out(found.out_of_reach), *self.rest()]
         if found.kind == "cannot_tell":
@@ -174,6 +177,28 @@ class _Words:
         if found.kind == "measure":
             return [self.range_of(), *map(self.turn, found.turns), self.out(found.out_of_reach)]
         return [self.ends(found.best[0]), self.following(), self.out(found.out_of_reach)]
+
+    def lives_of_cases(self) -> Sentence | None:
+        """State the lives of all cases, and what ends them if it is always the same; with a target that all meet it."""
+        cases, own = Cases(self.candidates), of_one_model(self.results, np.ones(len(self.results.table), dtype=bool))
+        rows = own & (cases.reason == "")
+        if self.found.target:
+            every = cases.on_target(exact=False)[1][own].all()
+            return say("verdict", "all_meet", cases=int(own.sum()), target=self.target()) if every else None
+        if not self.found.goal_rises or not rows.any():
+            return None
+        low, high = (end[rows] for end in cases.ends)
+        ends = {
+            (str(n), bool(g))
+            for end in ("_low", "_high")
+            for n, g in zip(*(v[rows] for v in cases.at_end(end)), strict=True)
+        }
+        limit, guide = ends.pop() if len(ends) == 1 else ("", False)
+        values = {"limit": ended_by(limit), "body": BODIES[guide], "cases": int(rows.sum()), "of": int(own.sum())}
+        values["beyond"] = BEYOND * bool((cases.beyond | cases.beyond_at_high)[rows].any())
+        values["ranged"] = bool((high > low * (1 + SAME)).any())
+        values["lives"] = ends_text(float(low.min()), float(high.max()), "", self.found.goal[2])
+        return say("verdict", "lives", **values, who=lasting_one(self.candidates))
 
     def ends(self, one: Candidate) -> Sentence:
         """Say how long a candidate lasts, where, what ends it, and the target."""
@@ -373,14 +398,16 @@ class _Words:
 
     def turn(self, turn: Turn) -> Sentence | None:
         """Say at which value the decision turns."""
-        if not (math.isfinite(turn.value) or math.isfinite(turn.until)):
+        wear = turn.what == "wear_coefficient"
+        bounds = wear and bool(self.found.target) and math.isfinite(turn.low)  # of the wear life, which may decide, too
+        if not (math.isfinite(turn.value) or math.isfinite(turn.until) or bounds):
             return None
         named = {one.number: self.name(one) for one in self.found.best}
         others = [name for number, name in named.items() if number != turn.candidate]
         values = {"turn": turn, "name": named.get(turn.candidate, ""), "others": others, "target": self.target()}
         texts = {key: quantity(getattr(turn, key), turn.units) for key in ("value", "until", "high")}
         texts["low"] = rounded(turn.low)
-        return say("verdict", "turn", **values, texts=texts, wear=turn.what == "wear_coefficient")
+        return say("verdict", "turn", **values, texts=texts, wear=wear)
 
     def given(self) -> Sentence:
         """Say which value was used instead of the one that was not given, or the ends of several goals."""
@@ -513,8 +540,10 @@ class _Words:
         guessed = any((p.limit, p.material) == ("wear", own) and p.on in ("", on) for p in places)
         flags = int(results.column(f"validity_{one.body}", missing=0)[case])
         worn = bool(flags & validity_bit("worn"))
-        values = {"material": own, "on": on, "guessed": guessed and found.kind != "measure", "worn": worn}
-        return say("verdict", "worn", **values) if values["guessed"] or worn else None
+        guessed &= found.kind != "measure"
+        hopeless = found.kind == "none" and bool(found.target)  # a measurement decides nothing
+        values = {"material": own, "on": on, "guessed": guessed, "worn": worn, "hopeless": hopeless}
+        return say("verdict", "worn", **values) if guessed or worn else None
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
@@ -558,9 +587,9 @@ def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
         if name in OF_PAIR and set(ends) == {"min"} and unit_of_goal == "h":
             lives.append(ends["min"])
         else:
-            parts = [f"at {'least' if end == 'min' else 'most'} {quantity(v, unit)}" for end, v in ends.items()]
+            parts = [f"at {'least' if end == 'min' else 'most'} {as_given(v, unit)}" for end, v in ends.items()]
             texts.append(f"{words} {' and '.join(parts)}")
-    return ", ".join([*([quantity(max(lives), "h")] if lives else []), *texts])
+    return ", ".join([*([as_given(max(lives), "h")] if lives else []), *texts])
 
 
 def _what(turn: Turn) -> str:

@@ -284,10 +284,11 @@ def by_limit(spectrum: Spectrum, solved: xr.Dataset, by_curve: np.ndarray, break
     words = (*LIMITS, "unknown")
     flag: dict[str, Any] = {"long_name": "limit that the body reaches first", "flag_meanings": " ".join(words)}
     flag["flag_values"] = np.arange(len(words), dtype=np.int8)
-    state = np.where(travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0).max(axis=0)
+    states = np.where(travel > 0, solved["limit_state"].transpose("case", "limit", "body").values, 0).astype(np.int8)
     out: dict[str, Any] = {
         "utilisation": (("limit", "body"), most, _attrs("1", "largest utilisation of a limit in a block")),
-        "limit_state": (("limit", "body"), state.astype(np.int8), dict(solved["limit_state"].attrs)),
+        "limit_state": (("limit", "body"), states.max(axis=0), dict(solved["limit_state"].attrs)),
+        "limit_state_of_block": (("block", "limit", "body"), states, dict(solved["limit_state"].attrs)),
     }
     for end, lives in zip(verdict.ENDS, lives_of_blocks, strict=True):
         damage = miner.block_damage(travel, lives)

@@ -1,0 +1,136 @@
+"""Sentences of the first screen of studies whose designs cannot be compared, or that only some values decide."""
+
+import re
+from collections import Counter
+
+import numpy as np
+
+import trackroller as tr
+from trackroller.report.numbers import quantity, rounded
+from trackroller.report.words.designs import unanswered
+from trackroller.report.words.findings import sentence_of
+from trackroller.report.words.verdict import verdict_sentences
+from trackroller.results.findings import why
+
+LIFE = "pair_life_to_first_limit_hours"
+STEEL = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
+BASE = {"axial_force": 8, "motor_force": 0, "guide_curve_radius": np.inf, "guide_overrollings_per_hour": 150, **STEEL}
+
+
+def run(factors, base=None, **keys):
+    study = {"name": "screen", "base": BASE | (base or {}), "factors": factors}
+    return tr.run(study | {"contact_model": "sliding", "accuracy": "preview"} | keys, progress=False)
+
+
+def test_designs_that_share_their_conditions_are_not_told_to_differ():
+    """The corners of a central composite design share theirs; its stars have the centre."""
+    factors = {"contact_angle": {"uniform": [30, 40]}, "roller_profile_radius": {"uniform": [-9, -7]}}
+    factors |= {"radial_force": {"uniform": [-150, -70]}, "friction_coefficient": {"uniform": [0.05, 0.2]}}
+    results = run(factors, design="central_composite")
+    rows = {}
+    for row in results.table.itertuples():
+        design = row.contact_angle, row.roller_profile_radius
+        rows.setdefault(design, set()).add((row.radial_force, row.friction_coefficient))
+    (_, most), *_ = Counter(map(frozenset, rows.values())).most_common()
+    sizes = sorted(map(len, rows.values()))
+    said = unanswered(results.candidates()).text
+    found = re.match(
+        r"The (\d+) designs have (\d) to (\d) conditions each, and at most (\d+) of them share the same", said
+    )
+    assert [int(text) for text in found.groups()] == [len(rows), sizes[0], sizes[-1], most]
+    assert most < len(rows) and "needs" not in said and "; they are no random sample of the use, so this" in said
+
+
+POLYMER = {"roller_material": "POM-C", "guide_material": "C45"}
+TRAVEL = {"axis_distance": {"uniform": [16, 28]}, "velocity": {"uniform": [20, 120]}}
+
+
+def test_a_study_without_target_states_its_lives_and_what_ends_them():
+    results = run(TRAVEL, {"radial_force": -45, **POLYMER}, design="morris", samples=6)
+    lives = results.data[LIFE].values
+    ends = np.unique(results.data["limiting_mechanism"].values)  # of roller and guide
+    assert (results.data["limiting_mechanism"].attrs["flag_meanings"].split()[ends[0]]) == "fatigue" and len(ends) == 1
+    said = {one.kind: one.text for one in verdict_sentences(results)}
+    text = f"Fatigue ends the roller in each of the {lives.size} cases, after {rounded(lives.min())} to "
+    assert said["lives"].startswith(text + f"{rounded(lives.max())} h")
+
+
+def test_a_target_that_every_case_meets_is_told_where_designs_cannot_be_compared():
+    kinds = {}
+    factors = {"roller_profile_radius": {"uniform": [-7.5, -6.3]}, "radial_force": {"uniform": [-150, -70]}}
+    for least in (1.0, 1e12):
+        results = run(factors, design="saltelli", samples=8, analysis={"target": {"min": least}})
+        kinds[least] = {one.kind: one.text for one in verdict_sentences(results)}
+    lives = results.data[LIFE].values
+    assert 1.0 < lives.min() and lives.min() < 1e12
+    assert f"Each of the {lives.size} cases meets the target of 1 h" in kinds[1.0]["all_meet"]
+    assert "all_meet" not in kinds[1e12]
+
+
+def test_no_measurement_is_asked_for_where_the_best_end_misses_the_target():
+    base = {"permissible_wear_depth": 0.1, "axis_distance": 25, "guide_profile_radius": 8, "contact_angle": 40}
+    base |= {"axial_force": 4, "roller_material": "PA66-dry", "guide_material": "C45", "friction_coefficient": 0.15}
+    factors = {"roller_profile_radius": {"values": [-8.3]}, "radial_force": {"values": [-20, -50]}}
+    for least, asked in ((21e6, False), (5e3, True)):
+        results = run(factors, base, analysis={"target": {"min": least}})
+        high = float(results.data[f"{LIFE}_high"].min())
+        said = " ".join(one.text for one in verdict_sentences(results))
+        assert (high >= least) == asked == ("Measure the wear coefficient" in said)
+        assert "measure it" not in said
+        assert ("No expected wear coefficient of PA66-dry on C45 is enough." in said) == (not asked)
+
+
+def test_a_factor_that_changes_no_life_is_told_to_change_none():
+    base = {"axis_distance": 25, "guide_profile_radius": 8, "contact_angle": 40, "axial_force": 4, **POLYMER}
+    factors = {"roller_profile_radius": {"values": [-9, -8.3]}, "radial_force": {"values": [-50, -20]}}
+    factors["ambient_temperature"] = {"values": [15, 40, 60]}
+    results = run(factors, base)
+    lives = results.data[LIFE].transpose("ambient_temperature", ...).values
+    assert (lives == lives[:1]).all()
+    said = " ".join(sentence_of(results, one).text for one in why(results))
+    assert "; ambient temperature does not change it at all" in said and "ambient temperature less" not in said
+
+
+def test_effects_that_differ_by_a_third_are_not_told_to_be_nearly_the_same():
+    """Elementary effects of the speed on the logarithm of the life, computed from the rows of the trajectories."""
+    results = run(TRAVEL, {"radial_force": -45, **POLYMER}, design="morris", samples=8)
+    table, lives = results.table, np.log10(results.data[LIFE].values)
+    effects = {"axis_distance": [], "velocity": []}
+    for i in (i for i in range(len(table)) if i % 3 < 2):  # a trajectory has three rows
+        moved = [name for name in effects if table[name][i] != table[name][i + 1]]
+        assert len(moved) == 1
+        low, high = TRAVEL[moved[0]]["uniform"]
+        step = (table[moved[0]][i + 1] - table[moved[0]][i]) / (high - low)
+        effects[moved[0]].append((lives[i + 1] - lives[i]) / step)
+    said = next(sentence_of(results, one) for one in why(results) if one.kind == "morris")
+    for name, words in (("axis_distance", "axis distance"), ("velocity", "mean travel speed")):
+        own = np.array(effects[name])
+        share = own.std(ddof=1) / np.abs(own).mean()
+        assert (words in said.values["straight"]) == (share <= 0.1)
+        assert (words in said.values["spread"]) == (0.1 < share <= 0.5)
+        assert share <= 0.1 or f"{100 * share:.0f} %" in said.text
+
+
+def test_a_wear_coefficient_that_decides_is_named_with_the_target_as_given():
+    """Solved again with a coefficient on either side of the value that the verdict names."""
+    base = {"axis_distance": 30, "guide_profile_radius": 10, "contact_angle": 42, "velocity": 100, "axial_force": 6}
+    base |= {"permissible_wear_depth": 0.15, "guide_material": "C45", "roller_material": "C45-induction-hardened"}
+    base |= {"friction_coefficient": 0.12, "roller_profile_radius": -10.5}
+    factors = {"radial_force": {"values": [-160, -80]}}
+    results = run(factors, base, analysis={"target": {"min": 1333}})
+    said = " ".join(one.text for one in verdict_sentences(results))
+    assert (
+        results.verdict.kind == "measure" and "target 1333 h" in said and "No expected value is surely enough" in said
+    )
+    turn = results.verdict.turns[0]
+    assert f"above {quantity(turn.until, turn.units)} it lasts too short" in said
+    worst = BASE | base | {"radial_force": -160}
+    for coefficient, end, reached in (
+        (0.99 * turn.until, "high", True),
+        (1.01 * turn.until, "high", False),
+        (turn.low, "low", False),
+    ):
+        given = {"like": "C45-induction-hardened", "wear_coefficient": coefficient}
+        case = tr.Case(**(worst | {"roller_material": given}))
+        ds = tr.solve(case, ("life", "limits"), contact_model="sliding", accuracy="preview")
+        assert (float(ds[f"{LIFE}_{end}"]) >= 1333.0) == reached
