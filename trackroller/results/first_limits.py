@@ -42,10 +42,12 @@ def deciding(results: Results, names: np.ndarray, most: int = 2) -> list[str]:
     Notes
     -----
     Factors are ranked by the mutual information of their levels and the first limit. Factors without mutual
-    information are left out, and so are factors with more than `MOST_LEVELS` levels, whose table would be too long.
+    information are left out, and so are factors with more than `MOST_LEVELS` levels, whose table would be too long, or
+    with fewer than two cases a level, which tell every case apart.
     """
     information: dict[str, float] = {}
-    for factor in (f for f in results.factors if len(results.levels(f)) <= MOST_LEVELS):
+    longest = min(MOST_LEVELS, int(results.valid.sum()) // 2)
+    for factor in (f for f in results.factors if len(results.levels(f)) <= longest):
         counts = pd.crosstab(results.table[factor].to_numpy()[results.valid], names[results.valid]).to_numpy(
             dtype=float
         )
