@@ -402,6 +402,10 @@ def _most_spread(parts: list[tuple[str, Any, Effect]]) -> list[tuple[str, Any, E
 def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray, asked: list[str]) -> Finding:
     """Return the change of the median between the lowest and the highest third of a factor, with its interval."""
     values = _values(results, column, effect, rows) | {"correlated": asked}
+    effect, within = effects.of_strata(effect, values["parts"])
+    folds = [np.log(e.ratio) for _, _, e in within]
+    apart = bool(folds) and max(folds) - min(folds) > np.log(APART)
+    values |= {"effect": effect, "within": within, "apart": within if apart else []}
     against = [p for p in values["parts"] if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in values["parts"] if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     if len({e.ratio > 1 for _, _, e in opposed}) == 2:
