@@ -183,6 +183,7 @@ def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[
     largest = max(abs(step) for step in steps.values())
     most = [i for i, step in steps.items() if abs(step) == largest]
     values: dict[str, Any] = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
+    values |= {"best": len(turned.after) < len(candidates.size), "low": results.ranged}
     values |= {"before": turned.before.index(most[0]) + 1, "after": turned.after.index(most[0]) + 1}
     values |= {"correlation": turned.correlation}
     design = candidates.table.loc[most[0]] if len(most) == 1 else None  # of ties none is the first
