@@ -138,10 +138,18 @@ def check_occurrence(raw, said, hit, among):
     counts = first(rf"occurs in {NUMBER} of {NUMBER} cases", said.text)
     assert [value(c) for c in counts] == [hit.sum(), among.sum()]
     if said.kind == "cases":
-        shown = re.findall(r"cases \(([^)]*)\)", said.text)
-        named = [int(t) for t in re.findall(r"\d+", shown[0])] if shown else said.values["cases"]
-        assert bool(shown) == (hit.sum() <= 3)
-        assert named == np.flatnonzero(hit).tolist() and hit.sum() < 20
+        assert hit.sum() < 20 and "(" not in said.text
+        return
+    if said.kind == "crossed":
+        covered = np.zeros(raw.n, bool)
+        told = re.findall(r"in (?:(the one)|all ([\d,]+)|([\d,]+) of ([\d,]+)) at", said.text)
+        assert len(told) == len(said.values["products"]) <= 3
+        for one, (single, every, some, of) in zip(said.values["products"], told, strict=True):
+            here = among & np.all([inside(raw, name, list(levels)) for name, levels in one.levels.items()], axis=0)
+            counts = (1, 1) if single else (value(every),) * 2 if every else (value(some), value(of))
+            assert counts == ((hit & here).sum(), here.sum()) and len(one.levels) == 2 and not (covered & here).any()
+            covered |= here
+        assert not (hit & ~covered).any() and 2 * hit.sum() >= covered.sum()
         return
     assert hit.sum() >= 20 or (said.kind == "only" and said.values["inside"] == hit.sum())
     told = float(first(r"\(([\d.]+) %\)", said.text)[0])
@@ -152,6 +160,10 @@ def check_occurrence(raw, said, hit, among):
             here = inside(raw, name, levels)
             assert not (hit & ~here).any() and (among & ~here).any()
             met &= here
+        names = [name for name, _ in said.values["conditions"]]
+        if met.sum() != hit.sum() and len(names) > 1:  # no combination of these levels has none or all
+            shares = pd.DataFrame({n: raw.columns[n] for n in names}).assign(hit=hit)[met].groupby(names)["hit"].mean()
+            assert (shares > 0).all() and (shares < 1).all()
         assert ("in all cases there" in said.text) == (met.sum() == hit.sum())
         if met.sum() != hit.sum():
             assert value(first(rf"of the {NUMBER} cases there", said.text)[0]) == met.sum()

@@ -117,6 +117,49 @@ def test_a_sample_says_only_at_if_one_factor_decides_all_cases():
     assert occurrence(chance, chance.regime == 2, "lift_off").kind in ("share", "frequent")
 
 
+def test_two_factors_that_confine_an_event_are_told_by_their_combinations():
+    """All 130 N at 25 degrees, half of 60 N at 25 degrees and a part of 130 N at 35 degrees, as an engineer counts."""
+    levels = {"axial_force": [10.0, 60.0, 130.0], "contact_angle": [25.0, 35.0, 50.0]}
+    ds = grid_study(levels | {"friction_coefficient": [0.1, 0.2, 0.3, 0.4], "velocity": [10.0, 20.0]})
+    lifts = (ds["axial_force"] == 130) & (ds["contact_angle"] == 25)
+    lifts = lifts | (ds["axial_force"] == 60) & (ds["contact_angle"] == 25) & (ds["friction_coefficient"] > 0.25)
+    lifts = lifts | (ds["axial_force"] == 130) & (ds["contact_angle"] == 35) & (ds["friction_coefficient"] > 0.35)
+    ds["regime"] = xr.where(lifts, 2, 0).broadcast_like(ds["regime"]).transpose(*ds["regime"].dims)
+    results = results_of(ds)
+    found = occurrence(results, results.regime == 2, "lift_off")
+    assert found.kind == "crossed" and found.values["count"] == 14
+    told = [({n: v[0] for n, v in one.levels.items()}, one.count, one.of) for one in found.values["products"]]
+    wanted = [(130.0, 25.0, 8, 8), (60.0, 25.0, 4, 8), (130.0, 35.0, 2, 8)]
+    assert told == [({"axial_force": a, "contact_angle": c}, n, of) for a, c, n, of in wanted]
+
+
+def test_levels_of_several_factors_are_not_told_together_where_a_combination_has_no_event():
+    """Two of three forces with two of three angles, in a ring of combinations that no three products cover."""
+    ds = grid_study(
+        {"axial_force": [10.0, 60.0, 130.0, 190.0], "contact_angle": [25.0, 35.0, 45.0, 50.0]}
+        | {"friction_coefficient": [0.1, 0.2, 0.3, 0.4], "velocity": [10.0, 20.0]}
+    )
+    place = {name: xr.DataArray(np.arange(4), dims=name) for name in ("axial_force", "contact_angle")}
+    some = (place["axial_force"] == place["contact_angle"]) & (place["axial_force"] > 0)
+    some = (some | (place["axial_force"] == 1) & (place["contact_angle"] == 2)) & (ds["friction_coefficient"] > 0.15)
+    ds["regime"] = xr.where(some, 2, 0).broadcast_like(ds["regime"]).transpose(*ds["regime"].dims)
+    results = results_of(ds)
+    found = occurrence(results, results.regime == 2, "lift_off")
+    assert found.kind != "only" or len(found.values["conditions"]) == 1
+
+
+def test_the_one_row_of_a_table_that_lifts_off_is_told_by_its_label_and_its_design():
+    block = np.tile(["start", "curve", "stop"], 4)[:-1]  # the last row of the grid is not there
+    angle = np.repeat([30.0, 42.0, 45.0, 50.0], 3)[:-1]
+    columns = {"block": ("case", block), "contact_angle": ("case", angle)}
+    hit = (block == "stop") & (angle == 30)
+    ds = xr.Dataset({LIFE: ("case", np.ones(11)), "regime": ("case", 2 * hit)}, columns | {"case": np.arange(11)})
+    factors = {"block": {"values": ["start", "curve", "stop"]}, "contact_angle": {"values": [30, 42, 45, 50]}}
+    ds.attrs["study"] = yaml.safe_dump({"name": "t", "factors": factors, "design": "table", "table": "t.csv"})
+    (one,) = occurrence(results_of(ds), hit, "lift_off").values["products"]
+    assert (dict(one.levels), one.count, one.of) == ({"block": ("stop",), "contact_angle": (30.0,)}, 1, 1)
+
+
 @pytest.mark.parametrize("lifts", [False, True])
 def test_full_slip_follows_the_law_of_the_drive_or_is_not_told_so(lifts):
     base = {"radial_force": -90.0, "contact_angle": 30.0, "motor_force": -20.0, "axial_force": 0.0}
