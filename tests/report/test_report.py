@@ -251,12 +251,12 @@ def test_chosen_models_and_stopped_cases_are_counted_and_laws_told_in_words():
     assert models_used(sampled_study(40)) == []
 
 
-def test_a_handful_of_cases_is_named_and_attributed_to_nothing():
+def test_a_handful_of_cases_is_counted_and_attributed_to_nothing():
     results = results_of(sampled_study(400))
     hit = np.zeros(400, dtype=bool)
     hit[:3] = True
     said = occurrence(results, hit, "Jamming")
-    assert said.kind == "cases" and said.values["cases"] == [0, 1, 2]
+    assert said.kind == "cases"
     assert (said.values["count"], said.values["of"]) == (3, 400)
 
 

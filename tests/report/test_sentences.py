@@ -75,12 +75,12 @@ def test_sentences_use_all_rows_and_not_those_of_a_figure():
     assert said.values["size"] == pytest.approx(5000 / 3, abs=2)
 
 
-def test_a_single_event_is_named_and_attributed_to_nothing():
+def test_a_single_event_is_counted_and_attributed_to_nothing():
     results = results_of(grid_study())
     hit = np.zeros(len(results.table), bool)
     hit[77] = True
     said = occurrence(results, hit, "Lift-off")
-    assert said.kind == "cases" and said.values["cases"] == [77]
+    assert said.kind == "cases"
     assert (said.values["count"], said.values["of"]) == (1, len(hit))
 
 

@@ -138,10 +138,18 @@ def check_occurrence(raw, said, hit, among):
     counts = first(rf"occurs in {NUMBER} of {NUMBER} cases", said.text)
     assert [value(c) for c in counts] == [hit.sum(), among.sum()]
     if said.kind == "cases":
-        shown = re.findall(r"cases \(([^)]*)\)", said.text)
-        named = [int(t) for t in re.findall(r"\d+", shown[0])] if shown else said.values["cases"]
-        assert bool(shown) == (hit.sum() <= 3)
-        assert named == np.flatnonzero(hit).tolist() and hit.sum() < 20
+        assert hit.sum() < 20 and "(" not in said.text
+        return
+    if said.kind == "crossed":
+        covered = np.zeros(raw.n, bool)
+        told = re.findall(r"in (?:(the one)|all ([\d,]+)|([\d,]+) of ([\d,]+)) at", said.text)
+        assert len(told) == len(said.values["products"]) <= 3
+        for one, (single, every, some, of) in zip(said.values["products"], told, strict=True):
+            here = among & np.all([inside(raw, name, list(levels)) for name, levels in one.levels.items()], axis=0)
+            counts = (1, 1) if single else (value(every),) * 2 if every else (value(some), value(of))
+            assert counts == ((hit & here).sum(), here.sum()) and len(one.levels) == 2 and not (covered & here).any()
+            covered |= here
+        assert not (hit & ~covered).any() and 2 * hit.sum() >= covered.sum()
         return
     assert hit.sum() >= 20 or (said.kind == "only" and said.values["inside"] == hit.sum())
     told = float(first(r"\(([\d.]+) %\)", said.text)[0])
@@ -152,6 +160,10 @@ def check_occurrence(raw, said, hit, among):
             here = inside(raw, name, levels)
             assert not (hit & ~here).any() and (among & ~here).any()
             met &= here
+        names = [name for name, _ in said.values["conditions"]]
+        if met.sum() != hit.sum() and len(names) > 1:  # no combination of these levels has none or all
+            shares = pd.DataFrame({n: raw.columns[n] for n in names}).assign(hit=hit)[met].groupby(names)["hit"].mean()
+            assert (shares > 0).all() and (shares < 1).all()
         assert ("in all cases there" in said.text) == (met.sum() == hit.sum())
         if met.sum() != hit.sum():
             assert value(first(rf"of the {NUMBER} cases there", said.text)[0]) == met.sum()
@@ -233,11 +245,27 @@ def third_ratio(raw, v, rows):
     return low, high
 
 
+def strata_of(raw, v):
+    """Return the thirds within the levels of the category whose mean step differs most from that of all rows."""
+    whole = third_ratio(raw, v, raw.valid)
+    best, farthest = [whole], -1.0
+    for name, values in raw.categories().items():
+        levels = dict.fromkeys(values.tolist()) if name != v["factor"] else ()
+        parts = [third_ratio(raw, v, raw.valid & (values == level)) for level in levels]
+        parts = [part for part in parts if min(map(len, part)) >= 8]
+        away = abs(np.mean([np.median(b) - np.median(a) for a, b in parts]) - np.median(whole[1]) + np.median(whole[0]))
+        if parts and away > farthest:
+            best, farthest = parts, away
+    return best
+
+
 def check_classes(raw, said):
     v = said.values | vars(said.values["effect"])
     low, high = third_ratio(raw, v, raw.valid)
-    step = np.median(high) - np.median(low)
-    assert 10**step == pytest.approx(v["ratio"]) and min(len(low), len(high)) == v["size"] >= 20
+    assert min(len(low), len(high)) >= 20
+    strata = strata_of(raw, v)
+    step = np.mean([np.median(b) - np.median(a) for a, b in strata])
+    assert 10**step == pytest.approx(v["ratio"]) and min(min(map(len, part)) for part in strata) == v["size"]
     count = (raw.valid & np.isfinite(raw.column(v["column"]))).sum()
     assert abs(len(low) - count / 3) <= 1 + sum(raw.columns[v["factor"]] == v["low"])
     parts = [third_ratio(raw, v, rows) for rows in in_categories(raw, v["factor"], raw.valid)]
@@ -246,9 +274,12 @@ def check_classes(raw, said):
         rises = re.search(r" (lengthens|raises) ", said.text) is not None
         assert rises == (step > 0) and all(p * step >= 0 for p in parts)
         rng = np.random.default_rng(0)
-        boot = [np.median(rng.choice(high, len(high))) - np.median(rng.choice(low, len(low))) for _ in range(60)]
+        again = lambda rows: np.median(rng.choice(rows, len(rows)))  # noqa: E731
+        boot = [np.mean([again(b) - again(a) for a, b in strata]) for _ in range(60)]
         assert np.mean(np.array(boot) * step <= 0) <= 0.1  # the sign is no chance
-        fold, least, most = first(rf"{NUMBER}-fold \(95 % interval {NUMBER} to {NUMBER};", said.text)
+        fold, least, most = first(
+            rf"{NUMBER}-fold[^(]* \((?:mean of \d+; )?95 % interval {NUMBER} to {NUMBER};", said.text
+        )
         assert close(fold, 10 ** abs(step), 3 if 10 ** abs(step) < 9.99 else 2)
         assert 1 <= value(least) * 1.01 and value(least) <= value(most)
     elif said.kind == "classes_none":

@@ -83,6 +83,24 @@ def test_factors_that_confounded_with_have_no_effect_of_their_own():
         assert (effect_of(results, LIFE, "axial_force") is None) == together
 
 
+def test_an_effect_of_classes_is_told_at_equal_material():
+    """Materials a decade apart with unequal shares of the thirds: pooled, a fall of 2 reads as a fall of 10 or more."""
+    rng = np.random.default_rng(4)
+    x, hard = rng.uniform(0, 1, 400), np.empty(400, bool)
+    hard[:] = rng.random(400) < 0.65 - 0.3 * x
+    life = 10 ** (2 + 2 * hard - 0.6 * np.log10(2) * 2.5 * x + rng.normal(0, 0.02, 400))
+    columns = {"velocity": ("case", x), "material_pair": ("case", np.where(hard, "hard / hard", "soft / soft"))}
+    ds = xr.Dataset({LIFE: ("case", life)}, columns | {"case": np.arange(400)})
+    ds.attrs["study"] = yaml.safe_dump({"name": "t", "factors": {"velocity": {}, "material_pair": {}}})
+    found = effect_of(results_of(ds), LIFE, "velocity")
+    effect = found.values["effect"]
+    assert effect.ratio == pytest.approx(1 / 2, rel=0.03)  # thirds lie 2/3 of the range apart
+    assert effect.interval[0] < 0.5 < effect.interval[1] < 0.6
+    low, high = x <= effect.low, x >= effect.high
+    assert np.median(life[high]) / np.median(life[low]) < 0.1
+    assert {part[1] for part in found.values["within"]} == {"hard / hard", "soft / soft"}
+
+
 def test_constraints_that_cut_unevenly_carry_no_effect_of_classes():
     """Slow cases with a short life are cut away: what is left is no comparison of all speeds."""
     life = lambda v, x: np.where(v < 35, 50.0, 500.0 * v * (1 + x))  # noqa: E731
@@ -97,6 +115,49 @@ def test_a_sample_says_only_at_if_one_factor_decides_all_cases():
     assert found.kind == "only" and found.values["inside"] == found.values["count"] == (law.regime == 2).sum()
     chance = sample(lambda v, x: v, lambda ds: 2 * ((ds["axial_force"] > 0.7) & (ds["velocity"] > 20)))
     assert occurrence(chance, chance.regime == 2, "lift_off").kind in ("share", "frequent")
+
+
+def test_two_factors_that_confine_an_event_are_told_by_their_combinations():
+    """All 130 N at 25 degrees, half of 60 N at 25 degrees and a part of 130 N at 35 degrees, as an engineer counts."""
+    levels = {"axial_force": [10.0, 60.0, 130.0], "contact_angle": [25.0, 35.0, 50.0]}
+    ds = grid_study(levels | {"friction_coefficient": [0.1, 0.2, 0.3, 0.4], "velocity": [10.0, 20.0]})
+    lifts = (ds["axial_force"] == 130) & (ds["contact_angle"] == 25)
+    lifts = lifts | (ds["axial_force"] == 60) & (ds["contact_angle"] == 25) & (ds["friction_coefficient"] > 0.25)
+    lifts = lifts | (ds["axial_force"] == 130) & (ds["contact_angle"] == 35) & (ds["friction_coefficient"] > 0.35)
+    ds["regime"] = xr.where(lifts, 2, 0).broadcast_like(ds["regime"]).transpose(*ds["regime"].dims)
+    results = results_of(ds)
+    found = occurrence(results, results.regime == 2, "lift_off")
+    assert found.kind == "crossed" and found.values["count"] == 14
+    told = [({n: v[0] for n, v in one.levels.items()}, one.count, one.of) for one in found.values["products"]]
+    wanted = [(130.0, 25.0, 8, 8), (60.0, 25.0, 4, 8), (130.0, 35.0, 2, 8)]
+    assert told == [({"axial_force": a, "contact_angle": c}, n, of) for a, c, n, of in wanted]
+
+
+def test_levels_of_several_factors_are_not_told_together_where_a_combination_has_no_event():
+    """Two of three forces with two of three angles, in a ring of combinations that no three products cover."""
+    ds = grid_study(
+        {"axial_force": [10.0, 60.0, 130.0, 190.0], "contact_angle": [25.0, 35.0, 45.0, 50.0]}
+        | {"friction_coefficient": [0.1, 0.2, 0.3, 0.4], "velocity": [10.0, 20.0]}
+    )
+    place = {name: xr.DataArray(np.arange(4), dims=name) for name in ("axial_force", "contact_angle")}
+    some = (place["axial_force"] == place["contact_angle"]) & (place["axial_force"] > 0)
+    some = (some | (place["axial_force"] == 1) & (place["contact_angle"] == 2)) & (ds["friction_coefficient"] > 0.15)
+    ds["regime"] = xr.where(some, 2, 0).broadcast_like(ds["regime"]).transpose(*ds["regime"].dims)
+    results = results_of(ds)
+    found = occurrence(results, results.regime == 2, "lift_off")
+    assert found.kind != "only" or len(found.values["conditions"]) == 1
+
+
+def test_the_one_row_of_a_table_that_lifts_off_is_told_by_its_label_and_its_design():
+    block = np.tile(["start", "curve", "stop"], 4)[:-1]  # the last row of the grid is not there
+    angle = np.repeat([30.0, 42.0, 45.0, 50.0], 3)[:-1]
+    columns = {"block": ("case", block), "contact_angle": ("case", angle)}
+    hit = (block == "stop") & (angle == 30)
+    ds = xr.Dataset({LIFE: ("case", np.ones(11)), "regime": ("case", 2 * hit)}, columns | {"case": np.arange(11)})
+    factors = {"block": {"values": ["start", "curve", "stop"]}, "contact_angle": {"values": [30, 42, 45, 50]}}
+    ds.attrs["study"] = yaml.safe_dump({"name": "t", "factors": factors, "design": "table", "table": "t.csv"})
+    (one,) = occurrence(results_of(ds), hit, "lift_off").values["products"]
+    assert (dict(one.levels), one.count, one.of) == ({"block": ("stop",), "contact_angle": (30.0,)}, 1, 1)
 
 
 @pytest.mark.parametrize("lifts", [False, True])

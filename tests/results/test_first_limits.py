@@ -79,14 +79,14 @@ def test_designs_are_ranked_by_the_first_limit_and_the_turn_is_a_rank_correlatio
     own = tuple(best[n] for n in FACTORS[:2])
     assert worst["low"].idxmax() == own and best["worst"] == worst["first"].loc[own]
     order = turn(designs)
-    by_first, by_fatigue = ((-worst[n]).argsort().tolist() for n in ("first", "fatigue"))  # groups as the designs stand
+    by_first, by_fatigue = ((-worst[n]).argsort().tolist() for n in ("low", "fatigue"))  # groups as the designs stand
     assert list(order.after) == by_first and list(order.before) == by_fatigue
     places = [by_fatigue.index(design) for design in order.after]
     assert order.correlation == pytest.approx(spearmanr(range(len(places)), places)[0], abs=1e-12)
 
 
-def test_a_target_and_ranges_do_not_enter_the_turned_order(solved):
-    """Lives at the values of the placeholders rank the designs, and of two that change places none does so most."""
+def test_a_target_does_not_enter_the_turned_order(solved):
+    """Low ends of the lives rank the designs, and of two that change places none does so most."""
     assert turn(solved.candidates()) == turn(tr.run(parse_study(STUDY | TARGET), progress=False).candidates())
     base = {"radial_force": -30, "axial_force": 2, "guide_curve_radius": np.inf, "permissible_wear_depth": 0.2}
     base |= {"motor_force": 0, "guide_overrollings_per_hour": 100, "contact_angle": 42, "guide_material": "C45"}
@@ -94,14 +94,25 @@ def test_a_target_and_ranges_do_not_enter_the_turned_order(solved):
     materials = {"values": ["POM-H", "PA66-dry", "PU"]}
     study = {"name": "range", "base": base, "factors": {"roller_material": materials}, "contact_model": "sliding"}
     results = tr.run(study | {"accuracy": "preview"}, progress=False)
-    worst = [results.column(n) for n in ("pair_life_hours", "pair_life_to_first_limit_hours")]
+    worst = [results.data[n].values for n in ("pair_life_hours", "pair_life_to_first_limit_hours_low")]
     before, after = (np.argsort(-lives).tolist() for lives in worst)
     order = turn(results.candidates())
     assert (list(order.before), list(order.after)) == (before, after)
-    told = [one.text for one in contents(results)["said"]["why"] if one.kind == "turned"]
-    moved = sum(a != b for a, b in zip(before, after, strict=True))
-    assert len(told) == (moved > 0) and all(f"{moved} of the best 3" in text for text in told)
-    assert not any("most of all" in text for text in told) or moved != 2
+    assert results.verdict.kind == "measure"  # the order is open
+    assert not any(one.kind == "turned" for one in contents(results)["said"]["why"])
+
+
+def test_the_sentence_on_the_order_says_by_which_lives_it_ranks(solved):
+    """All designs are named where all change their places; of ties none changes most."""
+    order = turn(solved.candidates())
+    moved = sum(order.before.index(i) != place for place, i in enumerate(order.after))
+    told = [one.text for one in contents(solved)["said"]["why"] if one.kind == "turned"]
+    assert len(told) == (moved > 0 and solved.verdict.kind not in ("measure", "give"))
+    for text in told:
+        assert "by the low end of the life to the first limit instead" in text
+        assert f"{'all of' if moved == 6 else f'{moved} of'} the 6 designs" in text
+        steps = [abs(order.before.index(i) - place) for place, i in enumerate(order.after)]
+        assert ("most of all" in text) == (steps.count(max(steps)) == 1)
 
 
 def test_the_factors_that_decide_the_limit_carry_its_information(solved):

@@ -6,7 +6,7 @@ import json
 
 import numpy as np
 import pytest
-from scipy.stats import norm
+from scipy.stats import norm, qmc
 
 from trackroller.methods.delta import delta
 from trackroller.methods.given_data import firsts
@@ -62,6 +62,28 @@ def test_first_order_index_of_ordered_rows_of_a_grid():
     y = ((grid - grid.mean(axis=0)) / grid.std(axis=0)) @ part
     found = firsts(y, grid, np.ones(3, dtype=bool))
     np.testing.assert_allclose(found["first"], part**2 / (part**2).sum(), atol=0.02)
+
+
+@pytest.mark.parametrize("rows", [128, 256, 512])
+def test_a_category_of_a_sobol_sequence_lends_no_share_to_an_inert_factor(rows):
+    """A category of two levels makes 0.95 of the variance; without its means taken out, inert factors reach 0.3."""
+    share = np.array([1 / 12, 2.6**2 * 0.21, *[0.0] * 8])
+    share /= share.sum()
+    for seed in range(12):
+        unit = qmc.Sobol(10, seed=seed).random(rows)
+        unit[:, 1] = unit[:, 1] > 0.7
+        found = firsts(2.6 * unit[:, 1] + unit[:, 0], unit, np.arange(10) != 1)
+        np.testing.assert_allclose(found["first"], share, atol=0.045)
+        assert found["first_low"][0] <= share[0] <= found["first_high"][0]
+
+
+def test_a_factor_that_depends_on_a_category_keeps_the_influence_that_they_share():
+    """y = x with x = category + noise: Var(E[y|x])/V is 1, although the category alone gives most of it."""
+    rng = np.random.default_rng(3)
+    kind = rng.integers(0, 2, 400).astype(float)
+    x = kind + 0.1 * rng.random(400)
+    found = firsts(x, np.column_stack([x, kind]), np.array([True, False]))
+    np.testing.assert_allclose(found["first"], 1.0, atol=0.05)  # ten harmonics do not follow a step fully
 
 
 def test_interactions_of_the_ishigami_function_from_a_plain_sample():

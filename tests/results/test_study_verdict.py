@@ -172,7 +172,7 @@ def test_none_names_the_candidate_that_meets_the_target_in_most_conditions():
     assert (found.candidates[0].met, found.candidates[0].conditions) == (2, 3)
     assert found.candidates[1].number == 1 and found.candidates[1].met == 1
     assert found.fails.count == 1 and found.fails.reasons == {"fatigue": 1}
-    assert dict(found.fails.where) == {"friction_coefficient": (0.05,)}
+    assert dict(found.fails.where[0]) == {"friction_coefficient": (0.05,)}
 
 
 def test_an_open_target_asks_for_the_wear_coefficient_at_which_it_turns():
@@ -252,10 +252,31 @@ def test_a_condition_without_any_candidate_is_left_out_of_the_ranking_but_not_of
     assert (found.best[0].met, found.best[0].conditions) == (2, 2)
     out = found.out_of_reach
     assert (out.count, out.of, dict(out.reasons)) == (1, 3, {"lifts off": 6})
-    assert dict(out.where) == {"friction_coefficient": (0.15,)}
+    assert dict(out.where[0]) == {"friction_coefficient": (0.15,)}
     missed = made(lives, regime=regime, target={LIFE: {"min": 200}}).verdict
     assert missed.kind == "none" and (missed.candidates[0].met, missed.candidates[0].conditions) == (2, 3)
     assert missed.fails.reasons == {"lifts off": 1}
+
+
+def test_conditions_that_two_factors_decide_are_named_by_their_combinations():
+    """A drive that exceeds mu |F_rad| / cos 50 degrees skids, whatever the speed: two combinations hold these cases."""
+    factors = {
+        "motor_force": {"values": [-15, -30, -60, 20]},
+        "velocity": {"values": [20, 60]},
+        "friction_coefficient": {"values": [0.05, 0.12, 0.3]},
+        "roller_profile_radius": {"values": [-6.4, -7.2]},
+    }
+    base = {"radial_force": -200, "axial_force": 10, "contact_angle": 50, "guide_overrollings_per_hour": 300}
+    study = {"name": "two", "base": base, "factors": factors, "outputs": OUTPUTS, "not_checked": ["wear"]}
+    results = tr.run(parse_study(study | {"contact_model": "sliding", "accuracy": "preview"}), progress=False)
+    out = results.verdict.out_of_reach
+    drives, mus = factors["motor_force"]["values"], factors["friction_coefficient"]["values"]
+    skids = {(f, mu) for f in drives for mu in mus if abs(f) * math.cos(math.radians(50)) > 200 * mu}
+    named = [set(itertools.product(w["motor_force"], w["friction_coefficient"])) for w in out.where]
+    assert len(named) == 2 and set.union(*named) == skids == {(-30, 0.05), (20, 0.05), (-60, 0.05), (-60, 0.12)}
+    assert not named[0] & named[1] and (out.count, out.of) == (2 * len(skids), 24)
+    text = " ".join(sentence.text for sentence in verdict_sentences(results))
+    assert "No design holds at driven −30 N and braked 20 N, friction coefficient 0.05, and at driven −60 N," in text
 
 
 def test_a_value_that_was_not_given_is_asked_for_where_it_decides():

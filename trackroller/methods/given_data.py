@@ -22,6 +22,9 @@ from trackroller.methods.replicates import wide
 MIN_ROWS = 30
 GROUPS = 20  # of the grouped jackknife
 HARMONICS, ROWS_PER_HARMONIC = 10, 16  # of RBD-FAST: SALib's number, fewer for small samples
+ROWS_PER_LEVEL = 10  # of a column whose means are taken out before RBD-FAST: fewer would take much of the rest out
+DEPENDENT = 0.05  # share of the variance of a factor between the levels of a column, from which on the two depend
+ROUNDING = 1e-12  # share of variance
 FAST_RESAMPLES, FAST_ROWS, RARE_ROWS = 32, 4096, 40  # of the bootstrap; RARE_ROWS have a rare value
 ROWS_PER_COSINE, COSINES = 32, (4, 64)  # of a factor, for replicates: fewest and most cosines
 MEASURES = {
@@ -78,10 +81,12 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
 
     Notes
     -----
-    Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur. SALib's bootstrap draws
-    half of the rows, so its half width is scaled by sqrt(1/2) (m out of n bootstrap [2]_). The bootstrap of a long
-    sample takes 4096 of its rows, more for a rare event, and its half width is scaled by one over the root of the
-    rows. For an inert factor the true half width falls faster, as one over the rows; the interval is then too wide.
+    Continuous factors: RBD-FAST of SALib [1]_ with the bias correction of Tissot & Prieur, on the output without the
+    means of the categories: in a Sobol sequence a column of few levels may repeat at a frequency of the estimator, and
+    its effect would count for the factor. SALib's bootstrap draws half of the rows, so its half width is scaled by
+    sqrt(1/2) (m out of n bootstrap [2]_). The bootstrap of a long sample takes 4096 of its rows, more for a rare event,
+    and its half width is scaled by one over the root of the rows. For an inert factor the true half width falls faster,
+    as one over the rows; the interval is then too wide.
     Categories and columns whose values repeat: `first_order` of the groups, because RBD-FAST orders equal values by
     their rows. It is biased for a category (0.88 for a share of 0.96), and in a table with the rows of a grid it
     takes other factors for this one (0.63 for a share of 0.004).
@@ -102,21 +107,40 @@ def firsts(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) 
     unlike = int((y != np.median(y)).sum())  # few if the output is 1 where a rare event occurs
     most = max(FAST_ROWS, RARE_ROWS * len(y) // max(1, unlike))
     some = np.linspace(0, len(y) - 1, min(len(y), most)).astype(int)
-    for j in np.flatnonzero(np.ptp(unit, axis=0) > 0):
+    varied = [(j, *np.unique(unit[:, j], return_inverse=True)) for j in np.flatnonzero(np.ptp(unit, axis=0) > 0)]
+    categories = [group for _, values, group in varied if ROWS_PER_LEVEL * len(values) <= len(y)]
+    for j, values, group in varied:
         x = unit[:, j]
-        values, group = np.unique(x, return_inverse=True)
         if ordered[j] and 2 * len(values) > len(x):
+            rest, share, error = _without(y, categories, x)
+            if share < ROUNDING:
+                out["first"][j] = out["first_low"][j] = out["first_high"][j] = 0.0
+                continue
             harmonics = max(2, min(HARMONICS, len(y) // ROWS_PER_HARMONIC))
-            plain = rbd_fast.compute_first_order(rbd_fast.permute_outputs(x, y), harmonics)
-            value, rng = float(rbd_fast.unskew_S1(plain, harmonics, len(y))), np.random.default_rng(seed)
+            plain = rbd_fast.compute_first_order(rbd_fast.permute_outputs(x, rest), harmonics)
+            value, rng = share * float(rbd_fast.unskew_S1(plain, harmonics, len(y))), np.random.default_rng(seed)
             with np.errstate(invalid="ignore"):  # a resample may miss a rare event altogether
-                spread = rbd_fast.bootstrap(x[some], y[some], harmonics, FAST_RESAMPLES, 0.95, rng)
-            half = float(spread) * (0.5 * len(some) / len(y)) ** 0.5
+                spread = rbd_fast.bootstrap(x[some], rest[some], harmonics, FAST_RESAMPLES, 0.95, rng)
+            half = np.hypot(share * float(spread) * (0.5 * len(some) / len(y)) ** 0.5, Z * error * value / share)
         else:
             value, error = first_order(y, group, seed)
             half = Z * error
         out["first"][j], out["first_low"][j], out["first_high"][j] = value, value - half, value + half
     return out
+
+
+def _without(y: np.ndarray, categories: list[np.ndarray], x: np.ndarray) -> tuple[np.ndarray, float, float]:
+    """Return an output without the means of categories, and the share of the variance that is left, with its error.
+
+    The means of a category that depends on the factor x stay: they hold influence of the factor.
+    """
+    rest, lost, error = y, 0, 0.0
+    for group in categories:
+        count = np.bincount(group)
+        if first_order(x, group)[0] < DEPENDENT:
+            rest, lost = rest - (np.bincount(group, rest) / count)[group], lost + len(count) - 1
+            error = np.hypot(error, first_order(y, group)[1])
+    return rest, float(rest.var() / y.var() * len(y) / (len(y) - lost)), float(error)
 
 
 def first_order(y: np.ndarray, group: np.ndarray, seed: int = 0) -> tuple[float, float]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,7 +15,7 @@ from trackroller.results.results import Results
 
 FEWEST_PAIRS = 3  # fewer pairs of designs state no effect
 FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
-FEWEST_STRATUM = 8  # the same within one level of a category, where only the direction counts
+FEWEST_STRATUM = 8  # the same within one level of a category
 COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
 UNCHANGED = 0.02  # a ratio of medians between 0.98 and 1.02 counts as no change
 MOST = 0.9  # share of the pairs that must change in the same direction
@@ -28,7 +28,7 @@ class Effect:
     Attributes
     ----------
     low, high : the two levels of pairs; of classes the last value of the low and the first value of the high class
-    ratio : median of the ratios of pairs, or ratio of the medians of the classes [1]
+    ratio : median of the ratios of pairs, or ratio of the medians of the classes, see `of_strata` [1]
     interval : 95 % interval of that ratio of medians (of classes), NaN for pairs
     size : number of pairs, or of rows in the smaller class
     rising, falling : pairs in which the output rises and falls (of pairs)
@@ -184,6 +184,25 @@ def strata(results: Results, column: str, effect: Effect, rows: np.ndarray) -> l
             if part is not None:
                 effects.append((category, level, part))
     return effects
+
+
+def of_strata(pooled: Effect, parts: list[tuple[str, Any, Effect]]) -> tuple[Effect, list[tuple[str, Any, Effect]]]:
+    """Return the mean effect of classes within the levels of a category, and the effects within these.
+
+    Pooled classes hold unequal shares of the levels, whose outputs may lie far apart. Of several categories the one
+    counts within which the effect differs most from the pooled one. Without a category it is the pooled effect.
+    """
+    own: list[tuple[str, Any, Effect]] = []
+    mean, lower, upper = np.log([pooled.ratio, *pooled.interval])
+    for category in dict.fromkeys(name for name, _, _ in parts):
+        inside = [part for part in parts if part[0] == category]
+        logs = np.log([[e.ratio, *e.interval] for _, _, e in inside]).T
+        middle = logs[0].mean()
+        if not own or abs(middle - np.log(pooled.ratio)) > abs(mean - np.log(pooled.ratio)):
+            errors = np.sqrt(((logs - logs[0]) ** 2).sum(axis=1)) / len(inside)
+            own, mean, lower, upper = inside, middle, middle - errors[1], middle + errors[2]
+    interval, size = (float(np.exp(lower)), float(np.exp(upper))), min([e.size for _, _, e in own] or [pooled.size])
+    return replace(pooled, ratio=float(np.exp(mean)), interval=interval, size=size), own
 
 
 def _repeated(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:

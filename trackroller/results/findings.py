@@ -11,6 +11,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+import pandas as pd
 import xarray as xr
 from scipy.stats import norm, spearmanr
 
@@ -21,7 +22,7 @@ from trackroller.results.candidates import Candidates, of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
 from trackroller.results.first_limits import first_limit, settled, turn, varied
-from trackroller.results.groups import MOST_LEVELS
+from trackroller.results.groups import MOST_LEVELS, Product, confined
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import (
     SIZED,
@@ -35,9 +36,10 @@ from trackroller.results.ranking import (
 )
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life, pair_first
-from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.design.entries import FACTOR_NAMES, OPTION_FACTORS
 
 MOST = 5  # findings under *Why*
+MOST_PRODUCTS = 3  # of levels of two factors that confine an event
 MOST_EFFECTS = 3  # of them on effects of factors
 FEW = 20  # with fewer events or cases the share of an event at a level is not looked at
 WORTH = 0.05  # of the variance: a smaller interaction changes no decision
@@ -184,6 +186,7 @@ def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[
     largest = max(abs(step) for step in steps.values())
     most = [i for i, step in steps.items() if abs(step) == largest]
     values: dict[str, Any] = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
+    values |= {"best": len(turned.after) < len(candidates.size), "low": results.ranged}
     values |= {"before": turned.before.index(most[0]) + 1, "after": turned.after.index(most[0]) + 1}
     values |= {"correlation": turned.correlation}
     design = candidates.table.loc[most[0]] if len(most) == 1 else None  # of ties none is the first
@@ -409,6 +412,10 @@ def _most_spread(parts: list[tuple[str, Any, Effect]]) -> list[tuple[str, Any, E
 def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray, asked: list[str]) -> Finding:
     """Return the change of the median between the lowest and the highest third of a factor, with its interval."""
     values = _values(results, column, effect, rows) | {"correlated": asked}
+    effect, within = effects.of_strata(effect, values["parts"])
+    folds = [np.log(e.ratio) for _, _, e in within]
+    apart = bool(folds) and max(folds) - min(folds) > np.log(APART)
+    values |= {"effect": effect, "within": within, "apart": within if apart else []}
     against = [p for p in values["parts"] if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in values["parts"] if p[2].interval[0] > 1 or p[2].interval[1] < 1]
     if len({e.ratio > 1 for _, _, e in opposed}) == 2:
@@ -465,7 +472,7 @@ def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None
     """Say how often an event occurs and at which levels of the factors.
 
     That it occurs only at some levels is said of a grid, in which every combination was tried, and of a sample if one
-    factor decides all of its cases.
+    factor decides all of its cases. Where two factors together confine it, their combinations are named.
 
     Parameters
     ----------
@@ -484,25 +491,46 @@ def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None
     values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
     if cases == whole:
         return finding(results, "everywhere", "all", looked, **values)
-    only = confining(results, hit, looked)
-    if not results.grid:  # a sample carries no more than a law: one factor decides each of its cases
-        only = [pair for pair in only if cases >= FEW and (meets(results, *pair) & looked == hit).all()][:1]
-    inside = looked.copy()
-    for name, levels in only:
-        inside &= meets(results, name, levels)
-    met = int(inside.sum())
+    only = [(name, levels, meets(results, name, levels) & looked) for name, levels in confining(results, hit, looked)]
+    # a sample carries no more than a law: one factor decides each of its cases
+    only = only if results.grid else [one for one in only if cases >= FEW and (one[2] == hit).all()][:1]
+    inside = np.logical_and.reduce([looked, *(rows for _, _, rows in only)])
+    exact = int(inside.sum()) == cases and all(isinstance(levels, list) for _, levels, _ in only)
+    products = [] if only and exact else crossed(results, hit, looked)
+    if products:
+        return finding(results, "crossed", "all", looked, **values, products=products)
+    if not exact and len(only) > 1 and not _alike(results, hit, inside, [name for name, _, _ in only]):
+        only, inside = only[:1], only[0][2]
     # few events may share levels by chance, unless all cases at these levels have the event
-    common = met == cases and all(isinstance(levels, list) for _, levels in only)
-    if only and (cases >= FEW or common):
-        return finding(results, "only", "all", looked, **values, conditions=only, inside=met)
+    if only and (cases >= FEW or exact):
+        conditions = [(name, levels) for name, levels, _ in only]
+        return finding(results, "only", "all", looked, **values, conditions=conditions, inside=int(inside.sum()))
     if cases < FEW:
-        return finding(results, "cases", "all", looked, **values, cases=np.flatnonzero(hit).tolist())
+        return finding(results, "cases", "all", looked, **values)
     most = most_frequent(results, hit, looked)
     if most is None:
         return finding(results, "share", "all", looked, **values)
     return finding(
         results, "frequent", "all", looked, **values, **dict(zip(("factor", "most", "least"), most, strict=True))
     )
+
+
+def crossed(results: Results, hit: np.ndarray, among: np.ndarray) -> list[Product]:
+    """Return the levels of two factors that together confine an event; of a table only if they decide its cases.
+
+    Labels of a table come first: the reader knows its rows by them.
+    """
+    if not (results.grid or results.config.method.observed):
+        return []
+    names = [n for n in results.factors if n not in OPTION_FACTORS and 1 < len(results.levels(n)) <= MOST_LEVELS]
+    names.sort(key=lambda name: name in FACTOR_NAMES)
+    return confined(results.table, names, hit, among, MOST_PRODUCTS, whole=not results.grid)
+
+
+def _alike(results: Results, hit: np.ndarray, inside: np.ndarray, names: list[str]) -> bool:
+    """Return whether an event occurs in some but not in all cases of each combination of levels."""
+    shares = pd.Series(hit[inside]).groupby(codes(results.table[inside], names)).mean()
+    return bool(shares.between(0, 1, inclusive="neither").all())
 
 
 def meets(results: Results, name: str, levels: Any) -> np.ndarray:

@@ -65,8 +65,8 @@ class Turn:
     Attributes
     ----------
     correlation : rank correlation (Spearman) of the worst cases of the designs [1]
-    before, after : designs (rows of `Candidates.table`), the best first, by the S-N curve and by the first limit, both
-        with placeholders at their values and without a target
+    before, after : designs (rows of `Candidates.table`), the best first, by the S-N curve, and by the first limit: by
+        the low end of the range of each life, as the verdict counts it
     """
 
     correlation: float
@@ -75,17 +75,24 @@ class Turn:
 
 
 def turn(candidates: Candidates) -> Turn | None:
-    """Return how the order of at most `AMONG` designs turns; None with fewer than three designs or without lives."""
+    """Return how the order of at most `AMONG` designs turns; None with fewer than three designs or without lives.
+
+    Designs without a low end above 0 do not count. Where designs tie, their order says nothing.
+    """
     results = candidates.results
     published = next((life for life in results.fatigue_lives if life[0] in results.table), None)
     if candidates.goal != FIRST_LIMIT or published is None or not candidates.comparable:
         return None
-    by_fatigue, by_limits = replace(candidates, goal=published).by_life, candidates.by_life
-    known = by_limits.index[by_limits["valid"] > 0]
-    after = [int(i) for i in known[:AMONG]]
-    before = [int(i) for i in by_fatigue.index if i in after]
-    if len(after) < 3:
+    found = results.verdict
+    if found is None or (found.goal, found.choices) != (candidates.goal, candidates.choices):
         return None
+    low = {one.number: one.low for one in found.candidates if 0 < one.low < np.inf}
+    after = sorted(low, key=lambda i: -low[i])[:AMONG]
+    by_fatigue = replace(candidates, goal=published).by_life
+    by_fatigue = by_fatigue[by_fatigue.index.isin(after)]
+    if len(after) < 3 or len({low[i] for i in after}) < len(after) or by_fatigue["rank"].duplicated().any():
+        return None
+    before = [int(i) for i in by_fatigue.index]
     places = pd.Series(range(len(before)), index=before)[after]
     return Turn(float(np.corrcoef(places, range(len(after)))[0, 1]), tuple(before), tuple(after))
 

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import permutations
 from typing import Any
 
 import numpy as np
@@ -106,3 +108,68 @@ def drives(table: pd.DataFrame) -> Groups:
     own = [force[index == k] for k in range(len(signs))]
     low, high = (tuple(float(end(forces)) for forces in own) for end in (np.min, np.max))
     return Groups(DRIVE, index, low, high, np.arange(len(signs), dtype=float), False)
+
+
+@dataclass(frozen=True)
+class Product:
+    """Every level of a factor combined with every level of another one.
+
+    Attributes
+    ----------
+    levels : levels by factor
+    count, of : cases in which an event occurs, and all cases at these levels
+    """
+
+    levels: Mapping[str, tuple[Any, ...]]
+    count: int
+    of: int
+
+
+def confined(
+    table: pd.DataFrame, names: Sequence[str], hit: np.ndarray, among: np.ndarray, most: int, whole: bool = False
+) -> list[Product]:
+    """Return at most `most` products of levels of two factors that together hold every case of an event.
+
+    Parameters
+    ----------
+    table : one row a case
+    names : factors with few levels; of equal descriptions that by the first ones counts
+    hit, among : the cases of the event, and all cases that count, shape (n,) bool
+    most : number of products
+    whole : whether the event must occur in all cases of the products, otherwise in at least half of them
+
+    Returns
+    -------
+    The products with as few other cases as possible, those with the event in all cases first; nothing if no two
+    factors confine the event better than one of them.
+    """
+    coded = {name: pd.factorize(table[name][among]) for name in names}
+    best: list[Product] = []
+    own, rank = hit[among], (np.inf, np.inf)
+    for one, other in permutations(names, 2):
+        (a, firsts), (b, others) = coded[one], coded[other]
+        shape = len(firsts), len(others)
+        cell = a * shape[1] + b
+        of, hits = (np.bincount(cell, w, shape[0] * shape[1]).reshape(shape) for w in (np.ones(len(a)), own))
+        there, full = hits > 0, (hits > 0) & (hits == of)
+        inside = of[there].sum()
+        alone = min(of[there.any(axis=1)].sum(), of[:, there.any(axis=0)].sum())
+        if inside >= alone or 2 * hits.sum() < inside or (whole and (there & ~full).any()):
+            continue
+        merged: dict[tuple[int, ...], list[int]] = {}
+        for i in np.flatnonzero(full.any(axis=1)).tolist():
+            merged.setdefault(tuple(np.flatnonzero(full[i]).tolist()), []).append(i)
+        blocks = [*((rows, list(columns)) for columns, rows in merged.items())]
+        blocks += [([i], [j]) for i, j in np.argwhere(there & ~full).tolist()]
+        if len(blocks) <= most and (inside, len(blocks)) < rank:
+            best, rank = [], (inside, len(blocks))
+            for rows, columns in blocks:
+                at = np.ix_(rows, columns)
+                held = {one: _in_order(firsts[rows]), other: _in_order(others[columns])}
+                best.append(Product(held, int(hits[at].sum()), int(of[at].sum())))
+    return sorted(best, key=lambda product: -product.count / product.of)
+
+
+def _in_order(values: Any) -> tuple[Any, ...]:
+    """Return levels as plain values, numbers in rising order."""
+    return tuple(levels(pd.Series(values)))

@@ -115,7 +115,8 @@ def _excess(total: float, error: float, used: float, tied: list[str], drawn: boo
     if tied:
         return text + f"{' and '.join(tied)} are correlated, and each index holds influence of the others."
     if total - 1 > error and used < 1:
-        return text + f"{100 * (1 - used):.0f} % of the rows are left out, and in the others the factors are dependent."
+        left = f"{100 * (1 - used):.0f} % of the rows are left out, and in the others the factors may be dependent."
+        return text + left
     if total - 1 > error and not drawn:
         return (
             text + f"the excess is above the sampling error of ± {100 * error:.0f} %, so the factors may be dependent."

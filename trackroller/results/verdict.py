@@ -21,6 +21,7 @@ from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES
 from trackroller.results.candidates import STRESS, TIED, Candidates, goal_without_lives, slip_margin
 from trackroller.results.first_limits import COEFFICIENT, reached_by_body
+from trackroller.results.groups import MOST_LEVELS, confined
 from trackroller.results.intervals import Cases, OnTarget
 from trackroller.results.lives import BESIDE, FIRST_LIMIT
 from trackroller.results.pareto import end_places, goals_of
@@ -37,6 +38,7 @@ MANY = 0.5  # share of conditions out of reach by an input that was not given, f
 RESAMPLES = 400  # of the sampled conditions, for the error of a difference of B10
 TAIL = 0.025  # share of the resamples below the 95 % interval
 GAP = 10.0  # ratio of neighbouring Pareto-optimal designs in the first goal, from which on the gap is named
+MOST_PLACES = 2  # combinations of two factors that describe conditions
 STRONGEST = 50  # candidates of each pair of materials by each measure that may beat others
 
 
@@ -104,8 +106,8 @@ class Misses:
     ----------
     count, of : number of these conditions, and of all conditions
     reasons : why, each with the number of its cases, the most frequent first
-    where : levels of one or more factors that hold together exactly in these conditions; empty if no levels do, and for
-        sampled conditions, whose values coincide by chance
+    where : levels of factors that hold together exactly in these conditions, or two such combinations of two factors;
+        empty if no levels do, and for sampled conditions, whose values coincide by chance
     not_given : inputs among the causes that were not given, or where no candidate is enough all such loads, with the
         values that were used
     """
@@ -113,7 +115,7 @@ class Misses:
     count: int
     of: int
     reasons: Mapping[str, int]
-    where: Mapping[str, tuple[Any, ...]] = field(default_factory=dict)
+    where: tuple[Mapping[str, tuple[Any, ...]], ...] = ()
     not_given: Mapping[str, float] = field(default_factory=dict)
 
 
@@ -777,8 +779,13 @@ def _misses(cases: Cases, bad: np.ndarray, among: np.ndarray, reason: np.ndarray
         if len(levels) < len(candidates.results.levels(name)):
             restricted[name] = tuple(map(_plain, levels))
     covered = among & np.all([among, *(table[name].isin(own).to_numpy() for name, own in restricted.items())], axis=0)
-    exact = restricted and set(use[covered]) == set(use[bad])
-    return replace(found, where=restricted) if exact else found
+    if restricted and set(use[covered]) == set(use[bad]):
+        return replace(found, where=(restricted,))
+    first = np.flatnonzero(among)[np.unique(use[among], return_index=True)[1]]  # a row of each condition
+    few = [name for name in names if len(candidates.results.levels(name)) <= MOST_LEVELS]
+    hit = np.isin(use[first], use[bad])
+    products = confined(table.iloc[first], few, hit, np.ones(len(first), dtype=bool), MOST_PLACES, whole=True)
+    return replace(found, where=tuple(one.levels for one in products))
 
 
 def _plain(value: Any) -> Any:

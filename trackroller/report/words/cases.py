@@ -89,11 +89,16 @@ def event_words(results: Results, finding: Finding) -> Sentence:
     values["model"] = finding.models[0] if "contact_model" in results.factors else ""
     if "conditions" in values:
         values["places"] = [f"at {_levels_words(results, name, levels)}" for name, levels in values["conditions"]]
+    if "products" in values:
+        values["places"] = [
+            (one.count, one.of, " with ".join(_levels_words(results, *item) for item in one.levels.items()))
+            for one in values["products"]
+        ]
     return say("cases", finding.kind, **values)
 
 
 def _levels_words(results: Results, name: str, levels: Any) -> str:
-    if isinstance(levels, tuple):
+    if isinstance(levels, tuple) and results.ordered(name) and len(results.levels(name)) > MOST_LEVELS:
         own = results.table[name]
         low, high = levels
         if low <= own.min():

@@ -66,6 +66,14 @@ def _within(parts: Strata, column: str) -> list[str]:
     return [f"{times(r)} {_change(column, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
 
 
+def _stratum(parts: Strata) -> str:
+    """Return where an effect of classes holds: 'at equal material pair', or at the one level that has enough rows."""
+    if not parts:
+        return ""
+    category, level, _ = parts[0]
+    return f" at equal {long_name(category)}" if len(parts) > 1 else f" with {setting(category, level)}"
+
+
 def _of_pairs(results: Results, finding: Finding) -> dict[str, Any]:
     """Return the words of the median change of cases that differ in one factor only."""
     values = finding.values
@@ -88,6 +96,9 @@ def _of_classes(results: Results, finding: Finding) -> dict[str, Any]:
         "high_class": at_least(effect.factor, effect.high, high),
         "name": long_name(effect.factor),
         "turns": _within(values.get("turns", []), values["column"]),
+        "within": _stratum(values["within"]),
+        "strata": len(values["within"]),
+        "medians": _within(values["apart"], values["column"]),
         "kinds": [long_name(name) for name in values.get("kinds", ())],
         "correlated": [long_name(name) for name in values["correlated"]],
     }

@@ -18,7 +18,7 @@ INDICES = {
     "levels": level_words,
 }
 EFFECTS = ("pairs", "pairs_same", "pairs_both", "classes", "classes_both", "classes_none")
-EVENTS = ("everywhere", "only", "cases", "share", "frequent", "slip_law")
+EVENTS = ("everywhere", "only", "crossed", "cases", "share", "frequent", "slip_law")
 LIMITS = ("first_limits", "turned", "whichever_first")
 OF_STUDY = (
     dict.fromkeys(EFFECTS, effect_words) | dict.fromkeys(EVENTS, event_words) | dict.fromkeys(LIMITS, limit_words)

@@ -612,9 +612,12 @@ def _values(not_given: Mapping[str, float]) -> list[str]:
 
 def _levels(misses: Misses) -> str:
     """Write the levels of conditions: 'friction coefficient 0 and 0.05, driven −20 N'."""
-    parts = []
-    for name, levels in misses.where.items():
-        texts = [level_text(name, v) for v in levels]
-        spoken = setting(name, levels[0]) == texts[0]
-        parts.append(shortened(texts) if spoken else f"{long_name(name)} {shortened(texts)}")
-    return ", ".join(parts)
+    places = []
+    for place in misses.where:
+        parts = []
+        for name, levels in place.items():
+            texts = [level_text(name, v) for v in levels]
+            spoken = setting(name, levels[0]) == texts[0]
+            parts.append(shortened(texts) if spoken else f"{long_name(name)} {shortened(texts)}")
+        places.append(", ".join(parts))
+    return ", and at ".join(places)
