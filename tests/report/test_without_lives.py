@@ -135,6 +135,25 @@ def test_a_target_on_a_force_is_judged_by_the_conditions_that_meet_it():
     assert kinds == {"none", "build", "a_or_b"}
 
 
+def test_nine_of_ten_sampled_conditions_meet_a_target_on_a_force():
+    """The best angle meets it in so many of 64 conditions; 59 and 62 of 64 leave nine of ten open."""
+    factors = {"contact_angle": {"values": [25, 45]}, "radial_force": {"uniform": [-160, -60]}}
+    study = {"name": "made", "design": "inner_outer", "samples": 64, "outputs": ["forces"], "contact_model": "sliding"}
+    study |= {"base": {"guide_curve_radius": 300, "motor_force": 0, "friction_coefficient": 0.15}}
+    study |= {"factors": factors | {"axial_force": {"uniform": [0, 40]}}, "accuracy": "preview"}
+    kinds = []
+    for least in (10.0, 20.0, 40.0):
+        results = tr.run(study | {"analysis": {"target": {FORCE: {"min": least}}}}, progress=False)
+        held = (results.data["regime"].values.ravel() == 0) & (results.quantity(FORCE)[0].astype(float) >= least)
+        met = results.table.assign(met=held).groupby("contact_angle")["met"].sum()
+        found = results.verdict
+        first = found.candidates[0]
+        assert (first.choices["contact_angle"], first.met, first.conditions) == (met.idxmax(), met.max(), 64)
+        assert f"{met.max()} of 64 " in verdict_sentences(results)[1].text
+        kinds.append((found.kind, found.why))
+    assert kinds == [("build", ""), ("cannot_tell", "sample"), ("none", "")]
+
+
 def test_the_worst_value_of_each_target_stands_in_the_table():
     for outputs in (("forces",), ("forces", "peak_stress", "life")):
         results, _, force, rolls = on_force(1.0, outputs)

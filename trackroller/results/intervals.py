@@ -11,7 +11,7 @@ import numpy as np
 from trackroller.methods.b10 import b10
 from trackroller.parameters import BODIES, FIRST_TO_FAIL, REGIMES
 from trackroller.results.by_tests import POSITIONS, ByTests, probability_of
-from trackroller.results.candidates import FEWEST, Candidates
+from trackroller.results.candidates import FEWEST, STRESS, Candidates
 from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE, first_at, first_limit
 from trackroller.results.groups import MOST_LEVELS
@@ -75,9 +75,9 @@ class Cases:
 
     @property
     def sampled(self) -> bool:
-        """Return whether the conditions are a random sample, large enough for the life that nine of ten reach."""
+        """Return whether the conditions are a random sample, large enough for what nine of ten reach: no stress."""
         own = self.candidates
-        return own.drawn and own.rising and bool(self.conditions) and bool(own.size.min() >= FEWEST)
+        return own.drawn and own.goal != STRESS and bool(self.conditions) and bool(own.size.min() >= FEWEST)
 
     @cached_property
     def reason(self) -> np.ndarray:

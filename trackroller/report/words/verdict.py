@@ -229,6 +229,7 @@ class _Words:
             scattered=self.scattered,
             shared=bool(self.candidates.untried.any()),
             compared=self.compared,
+            met=min(one.met for one in found.best),
             not_given=_values(not_given),
         )
 
@@ -352,7 +353,8 @@ class _Words:
         found, one = self.found, self.found.best[0]
         values = {"candidate": one, "name": self.name(one) if len(found.candidates) > 1 else ""}
         values |= {"lives": self.span(one), "interval": [rounded(end) for end in one.interval], "unit": found.goal[2]}
-        return say("verdict", "sample", **values, target=self.target(), scattered=self.scattered)
+        values |= {"scattered": self.scattered, "compared": self.compared}
+        return say("verdict", "sample", **values, target=self.target())
 
     def range_of(self) -> Sentence:
         """State the ranges of the candidates between which the measurement decides."""
