@@ -319,14 +319,20 @@ OF_ANALYSIS = {  # the statements on an output of an analysis, in their order
 
 
 def strongest_effects(results: Results, column: str) -> list[Finding]:
-    """Return the effects of the factors on an output, those in one direction first, then by their size."""
+    """Return the effects of the factors on an output, those in one direction first.
+
+    Among them choices of the design come before conditions, larger effects before smaller ones, and the speed last:
+    hours are distance over speed.
+    """
     found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
-    clear = [one for one in found if one.kind in ("pairs", "classes")]
-    turning = [one for one in found if one.kind in ("pairs_both", "classes_both")]
-    return [
-        *sorted(clear, key=lambda one: -abs(np.log(one.values["effect"].ratio))),
-        *sorted(turning, key=lambda one: -abs(np.log(one.values["effect"].ratio))),
-    ]
+    kinds = ("pairs", "classes", "pairs_both", "classes_both")
+
+    def place(one: Finding) -> tuple[bool, bool, bool, float]:
+        effect = one.values["effect"]
+        given = results.roles.get(effect.factor) != "choice"
+        return one.kind.endswith("_both"), effect.factor == "velocity", given, -abs(float(np.log(effect.ratio)))
+
+    return sorted((one for one in found if one.kind in kinds), key=place)
 
 
 def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | None = None) -> Finding | None:
