@@ -21,7 +21,7 @@ from trackroller.results import effects
 from trackroller.results.candidates import Candidates, of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
-from trackroller.results.first_limits import first_limit, settled, turn, varied
+from trackroller.results.first_limits import first_limit, outlasted, settled, turn, varied
 from trackroller.results.groups import MOST_LEVELS, Product, confined
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import (
@@ -170,9 +170,13 @@ def limits_first(results: Results) -> list[Finding]:
     rows = of_one_model(results, results.valid)
     names = first_limit(results)[rows]
     counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
-    if len(counts) < 2:
+    if len(counts) == 1:
+        beaten = outlasted(results, next(iter(counts)), rows)
+        facts = {"counts": counts, "of": int(rows.sum()), "beaten": beaten}
+        return [finding(results, "first_limits", "valid", rows, **facts)] if beaten else []
+    if not counts:
         return []
-    found = [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()))]
+    found = [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()), beaten={})]
     return [*found, *_turned(results, candidates, rows), *_whichever(results, candidates, rows)]
 
 
