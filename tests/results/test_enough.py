@@ -1,13 +1,16 @@
 """The number of samples that the report asks for: enough on functions with known indices, and not far too many."""
 
 import re
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
 from scipy import stats
 from synthetic_results import results_of
 
-from trackroller.report.words.samples import samples
+from trackroller.methods.b10 import b10 as life_of_nine_in_ten
+from trackroller.report.words.samples import of_target, samples, undecided
 from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
@@ -107,3 +110,46 @@ def test_first_order_indices_above_100_percent_say_why():
     assert 150 <= int(re.search(r"(\d+) %", tied)[1]) < 200 and "are correlated" in tied
     exact = [note(3000, seed, factors=dict(list(CARRIERS.items())[:2])) for seed in range(3)]
     assert [text for text in exact if text and not re.search("10[1-4] %, .* ± [1-4] %", text)] == []
+
+
+def drawn(count, seed, least):
+    """Return the analysis of a random sample with a lognormal life and a target on it."""
+    data = {"name": "t", "design": "lhs", "samples": count, "seed": seed, "outputs": ["forces", "life"]}
+    data["factors"] = {"axial_force": {"normal": [0.0, 1.0]}, "velocity": {"uniform": [20.0, 60.0]}}
+    data["factors"]["friction_coefficient"] = {"uniform": [0.1, 0.3]}
+    data["analysis"] = {"target": {"roller_life_hours": {"min": least}}}
+    ds = parse_study(data).design()
+    noise = np.random.default_rng(seed).normal(0.0, 0.3, count)
+    ds["roller_life_hours"] = ("case", 10 ** (3 + 0.2 * ds["axial_force"].values + noise), {"units": "h"})
+    return analyse(results_of(ds))
+
+
+def test_a_sample_with_a_target_is_judged_by_its_probability():
+    """60 rows know the probability of 1,000 h, one in two, to about +- 12 %, and 2,000 rows to +- 2 %."""
+    said = of_target(drawn(60, 1, 1000.0), 60)
+    told, half = (int(text) for text in re.findall(r" is (\d+) ± (\d+) % only", said.text)[0])
+    plain = 1.96 * np.sqrt(0.25 / 60)
+    assert said.kind == "more" and abs(told / 100 - 0.5) < plain and 0.6 * plain < half / 100 < 1.2 * plain
+    late = of_target(drawn(said.values["number"], 2, 1000.0), 0)
+    assert late.kind == "enough" and re.search(
+        r"Enough samples: the probability of .* is (4[5-9]|5[0-5]) ± [1-5] %", late.text
+    )
+
+
+def test_the_number_that_decides_an_open_target_leaves_it_outside_the_interval_of_b10():
+    """Lognormal lives whose B10 is 1,000 h: of the number asked for, the lower bound is nine tenths of it."""
+    draw = lambda n, seed: 1000 * 10 ** (0.2 * (np.random.default_rng(seed).normal(size=n) + stats.norm.ppf(0.9)))  # noqa: E731
+    middle, low, high = life_of_nine_in_ten(draw(80, 5))
+    required = 0.9 * middle
+    assert low < required < middle
+    one = SimpleNamespace(low=middle, interval=(low, high))
+    found: Any = SimpleNamespace(best=(one,), required=required)
+    said = undecided(found, 80, False)
+    number = int(re.search(r"Write `samples: (\d+)`", said.text)[1])
+    assert number % 80 == 0 and 80 < number <= 80 * 64
+    bounds = np.array([life_of_nine_in_ten(draw(number, seed)) for seed in range(8)])
+    assert np.median(bounds[:, 1] / bounds[:, 0]) > 0.9 * 0.98  # beside a target at nine tenths of it
+    quarter = np.array([life_of_nine_in_ten(draw(number // 8, seed)) for seed in range(8)])
+    assert np.median(quarter[:, 1] / quarter[:, 0]) < 0.85
+    found.required = middle * 1.0001
+    assert undecided(found, 80, False) is None  # too close to say

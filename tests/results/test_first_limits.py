@@ -8,6 +8,7 @@ from scipy.stats import spearmanr
 import trackroller as tr
 from trackroller.damage import LIMITS
 from trackroller.report.explorer.rows import collect
+from trackroller.report.numbers import quantity
 from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import ended_by
 from trackroller.results.first_limits import deciding, first_limit, reached_hours, turn
@@ -113,6 +114,29 @@ def test_the_sentence_on_the_order_says_by_which_lives_it_ranks(solved):
         assert f"{'all of' if moved == 6 else f'{moved} of'} the 6 designs" in text
         steps = [abs(order.before.index(i) - place) for place, i in enumerate(order.after)]
         assert ("most of all" in text) == (steps.count(max(steps)) == 1)
+
+
+def test_where_one_limit_ends_all_cases_the_hours_of_the_others_are_told():
+    """The least of the low ends of the wear lives of both bodies; nothing where wear may come first."""
+    told = {}
+    for depth in (0.3, 100.0):
+        base = STUDY["base"] | {"permissible_wear_depth": depth, "radial_force": -90, "wear_coefficient_factor": 0.01}
+        pair = {"material_pair": {"values": [["1.7225-normalised"] * 2]}}
+        results = tr.run(parse_study(STUDY | {"base": base, "factors": STUDY["factors"] | pair}), progress=False)
+        low = results.data["life_hours_by_limit_low"]
+        fatigue = results.data["life_hours_by_limit"].sel(limit="fatigue").min("body")
+        wear = low.sel(limit="wear").min("body")
+        surely = bool((fatigue.values[results.regime.reshape(fatigue.shape) == 0] < wear.values.min()).all())
+        found = [one for one in contents(results)["said"]["why"] if one.kind == "first_limits"]
+        told[surely] = [one.text for one in found]
+        if surely:
+            (text,) = told[surely]
+            assert found[0].values["valid"] == results.valid.sum()
+            assert text.startswith(
+                f"Rolling-contact fatigue comes first in all {results.valid.sum()} valid cases; wear"
+            )
+            assert text.endswith(f"before {quantity(float(wear.min()), 'h')}.")
+    assert True in told and not any("comes first in all" in text for text in told.get(False, []))
 
 
 def test_the_factors_that_decide_the_limit_carry_its_information(solved):

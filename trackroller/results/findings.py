@@ -21,7 +21,7 @@ from trackroller.results import effects
 from trackroller.results.candidates import Candidates, of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
-from trackroller.results.first_limits import first_limit, settled, turn, varied
+from trackroller.results.first_limits import first_limit, outlasted, settled, turn, varied
 from trackroller.results.groups import MOST_LEVELS, Product, confined
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import (
@@ -171,9 +171,13 @@ def limits_first(results: Results) -> list[Finding]:
     rows = of_one_model(results, results.valid)
     names = first_limit(results)[rows]
     counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
-    if len(counts) < 2:
+    if len(counts) == 1:
+        beaten = outlasted(results, next(iter(counts)), rows)
+        facts = {"counts": counts, "of": int(rows.sum()), "beaten": beaten}
+        return [finding(results, "first_limits", "valid", rows, **facts)] if beaten else []
+    if not counts:
         return []
-    found = [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()))]
+    found = [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()), beaten={})]
     return [*found, *_turned(results, candidates, rows), *_whichever(results, candidates, rows)]
 
 
@@ -326,14 +330,20 @@ OF_ANALYSIS = {  # the statements on an output of an analysis, in their order
 
 
 def strongest_effects(results: Results, column: str) -> list[Finding]:
-    """Return the effects of the factors on an output, those in one direction first, then by their size."""
+    """Return the effects of the factors on an output, those in one direction first.
+
+    Among them choices of the design come before conditions, larger effects before smaller ones, and the speed last:
+    hours are distance over speed.
+    """
     found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
-    clear = [one for one in found if one.kind in ("pairs", "classes")]
-    turning = [one for one in found if one.kind in ("pairs_both", "classes_both")]
-    return [
-        *sorted(clear, key=lambda one: -abs(np.log(one.values["effect"].ratio))),
-        *sorted(turning, key=lambda one: -abs(np.log(one.values["effect"].ratio))),
-    ]
+    kinds = ("pairs", "classes", "pairs_both", "classes_both")
+
+    def place(one: Finding) -> tuple[bool, bool, bool, float]:
+        effect = one.values["effect"]
+        given = results.roles.get(effect.factor) != "choice"
+        return one.kind.endswith("_both"), effect.factor == "velocity", given, -abs(float(np.log(effect.ratio)))
+
+    return sorted((one for one in found if one.kind in kinds), key=place)
 
 
 def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | None = None) -> Finding | None:

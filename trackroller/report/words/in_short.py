@@ -9,7 +9,7 @@ from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.limits import guesses, worn
 from trackroller.report.words.optimum import optimum_sentences, searched, tolerances
 from trackroller.report.words.pareto import pareto_sentence
-from trackroller.report.words.samples import grown, samples
+from trackroller.report.words.samples import grown, of_target, samples, undecided
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import b10_by_tests, target
 from trackroller.report.words.verdict import verdict_sentences
@@ -72,13 +72,17 @@ def _enough(results: Results) -> Sentence | None:
     known = grown(results)
     if known is not None or sens is None or results.unfinished:
         return known
+    found, asked, method = results.verdict, results.config.samples, results.config.method
+    if found is not None and (found.kind, found.why) == ("cannot_tell", "sample"):
+        return undecided(found, len(results.table) if method.observed else asked, method.observed)
+    if "target" in sens.dims and method.sampled and (said := of_target(sens, asked)) is not None:
+        return said
     told = [one.values["output"] for one in results.findings["why"] if one.kind == "index"]
     lives = main_lives(sens) if robust_design(sens) else []
     about = next(iter([*told, *lives]), None)
-    found = results.verdict
     kinds = ("build", *SETTLED) if found is not None and found.target else ("build",)
     settled = found is not None and found.sampled and found.kind in kinds
-    return None if about is None else samples(sens, results.config.samples, about, settled)
+    return None if about is None else samples(sens, asked, about, settled)
 
 
 def _target(results: Results) -> Sentence | None:

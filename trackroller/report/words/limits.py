@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.report.numbers import capital, count, level_text, long_name, rounded
+from trackroller.report.numbers import capital, count, level_text, long_name, quantity, rounded
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import design_words, limit_title, within_words
 from trackroller.report.words.sentence import Sentence, say
@@ -21,7 +21,8 @@ def limit_words(results: Results, finding: Finding) -> Sentence:
     values = finding.values
     if finding.kind == "first_limits":
         counts = {limit_title(name): cases for name, cases in values["counts"].items()}
-        return say("limits", "first_limits", counts=counts, valid=values["of"])
+        beaten = {limit_title(name): quantity(hours, "h") for name, hours in values["beaten"].items()}
+        return say("limits", "first_limits", counts=counts, valid=values["of"], beaten=beaten)
     if finding.kind == "turned":
         candidates, design, name = results.candidates(), values["design"], ""
         if design is not None:

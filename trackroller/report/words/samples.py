@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from typing import Any
 
 import numpy as np
 import xarray as xr
@@ -18,10 +19,12 @@ from trackroller.report.words.targets import samples_of_points, target_words
 from trackroller.results.looks import looks_of
 from trackroller.results.ranking import best_points, estimate
 from trackroller.results.results import Results
+from trackroller.results.verdict import Verdict
 from trackroller.roller.output_names import PARTS, is_life
 from trackroller.study.file.goals import statistic
 
 HALF_B10 = 0.1  # of B10 at the best design point, relative: a narrower interval is good enough
+CLOSE = 10.0  # half width of B10 over its distance from the target, above which no number of samples is told
 FEWEST = 64  # with fewer samples the lower bound of B10 is just the shortest life
 
 
@@ -56,7 +59,13 @@ def samples(sens: xr.Dataset, asked: int, about: str = "", settled: bool = False
     worst = max(needed, key=lambda name: (needed[name], float(sens["half_width"].sel(output=name))))
     half, times = float(sens["half_width"].sel(output=worst)), needed[worst]
     number = int(times * asked)
-    values = {"point": False, "too_few": False, "output": worst, "what": f"the indices of {of_output(sens, worst)}"}
+    values: dict[str, Any] = {
+        "point": False,
+        "chance": None,
+        "too_few": False,
+        "output": worst,
+        "what": f"the indices of {of_output(sens, worst)}",
+    }
     values |= {"table": method.observed, "settled": settled}
     values |= {"share": "the largest effect" if method.effects else "the variance", "half": half}
     values |= {"take_times": times, "number": number, "predicted": half / math.sqrt(times)}
@@ -80,16 +89,60 @@ def _of_points(sens: xr.Dataset, asked: int, about: str, settled: bool) -> Sente
     if not widths:
         return None
     half, wanted, what = max(widths, key=lambda item: item[0] / item[1])
-    values = {"point": True, "table": False, "what": what, "half": half, "wanted": wanted, "asked": asked}
+    values = {
+        "point": True,
+        "chance": None,
+        "table": False,
+        "what": what,
+        "half": half,
+        "wanted": wanted,
+        "asked": asked,
+    }
     values["settled"] = settled
     lives = any(limit == HALF_B10 for _, limit, _ in widths)
     if half <= wanted and (asked >= FEWEST or not lives):
         return say("samples", "enough", **values)
-    times = 2.0 ** max(0, math.ceil(math.log2((half / wanted) ** 2) - 1e-9))
+    times = _times(half / wanted)
     while lives and times * asked < FEWEST:
         times *= 2
     values |= {"number": int(times * asked), "predicted": half / math.sqrt(times)}
     return say("samples", "more", **values, too_few=half <= wanted)
+
+
+def of_target(sens: xr.Dataset, asked: int) -> Sentence | None:
+    """Say whether the samples suffice for the probability to meet all targets; None where it has no interval."""
+    own, method = sens.isel(target=-1), METHODS[str(sens.attrs["method"])]  # the last target joins several
+    if own["target_probability"].ndim or not np.isfinite(estimate(own, "target_probability")).all():
+        return None
+    chance, low, high = map(float, estimate(own, "target_probability"))
+    half, asked = (high - low) / 2, int(sens.attrs.get("samples", asked))
+    values: dict[str, Any] = {
+        "point": True,
+        "table": method.observed,
+        "what": f"the probability of {target_words(sens, -1)}",
+    }
+    values |= {"half": half, "chance": (chance, low, high), "settled": False}
+    if half <= HALF_WIDTH:
+        return say("samples", "enough", **values)
+    times = _times(half / HALF_WIDTH)
+    return say("samples", "more", **values, number=times * asked, predicted=half / math.sqrt(times), too_few=False)
+
+
+def undecided(found: Verdict, asked: int, table: bool) -> Sentence | None:
+    """Say how many samples decide where the interval of B10 holds the target; None where the two are too close."""
+    one, required = found.best[0], found.required
+    ends = np.log([one.low, *one.interval, required]) if one.low > 0 and one.interval[0] > 0 else np.full(4, np.nan)
+    away = float(ends[3] - ends[0])
+    half = float(ends[2] - ends[0] if away > 0 else ends[0] - ends[1])
+    if not np.isfinite([away, half]).all() or half > CLOSE * abs(away):
+        return None
+    times = _times(half / abs(away))
+    return say("samples", "undecided", number=times * asked, table=table) if times > 1 else None
+
+
+def _times(ratio: float) -> int:
+    """Return the power of two by which more samples divide a half width by a ratio."""
+    return int(2 ** max(0, math.ceil(math.log2(ratio**2) - 1e-9)))
 
 
 def quantity_words(name: str, method: Method) -> str:
