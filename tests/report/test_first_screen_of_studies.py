@@ -6,11 +6,14 @@ from collections import Counter
 import numpy as np
 
 import trackroller as tr
+from trackroller.parameters.example import used_of
 from trackroller.report.numbers import quantity, rounded
+from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import unanswered
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.findings import why
+from trackroller.study.design.levels import short
 
 LIFE = "pair_life_to_first_limit_hours"
 STEEL = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
@@ -134,3 +137,20 @@ def test_a_wear_coefficient_that_decides_is_named_with_the_target_as_given():
         case = tr.Case(**(worst | {"roller_material": given}))
         ds = tr.solve(case, ("life", "limits"), contact_model="sliding", accuracy="preview")
         assert (float(ds[f"{LIFE}_{end}"]) >= 1333.0) == reached
+
+
+def test_a_drawn_profile_replaces_the_radius_of_the_example_and_its_arcs_are_named():
+    arcs = [{"radius": -7.5, "to": -0.2}, {"radius": -6.3, "to": 0.2}, {"radius": -7.5}]
+    factors = {"roller_profile": {"values": [{"arc": -6.5}, {"arcs": arcs}]}}
+    keys = {"outputs": ["forces", "peak_stress", "life"], "normal": "halfspace"}
+    results = run(factors, {"radial_force": -70, "friction_coefficient": 0.2}, **keys)
+    page = contents(results)
+    assert "guide_profile_radius 6 mm" in page["not_given"] and "roller_profile_radius" not in page["not_given"]
+    names = [short("roller_profile", text) for text in results.levels("roller_profile")]
+    assert sorted(names) == ["arc −6.5 mm", "arcs −7.5 to −0.2, −6.3 to 0.2, −7.5 mm"]
+    inner = [[{"radius": r, "to": 0.1 * i} for i, r in enumerate((-7, -8, end))] for end in (-6, -9)]
+    more = [{"arcs": [*own, {"radius": -7}]} for own in inner]
+    first, second = (short("roller_profile", one) for one in more)
+    assert first.startswith("4 arcs −7/…/−7 mm ") and first != second
+    radius = {"roller_profile_radius": -7.0}
+    assert used_of(radius | {"roller_profile": {"values": ["", {"arc": -6.5}]}}, radius) == radius

@@ -13,7 +13,7 @@ import numpy as np
 from trackroller.cli.case import case_of, free_for_page, names_study, tell_doubts, writable, writable_page
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
-from trackroller.parameters.example import drive_question, not_given_text
+from trackroller.parameters.example import drive_question, not_given_text, used_of
 from trackroller.report.tables.table import cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.roller.case import to_table
@@ -269,7 +269,7 @@ def print_plan(
 
 def _print_not_given(values: Mapping[str, Any], not_given: Iterable[str], to: TextIO | None = None) -> None:
     """Print the values that are taken from the paper's example, and ask about a drive that is not given."""
-    used = {name: values[name] for name in not_given}
+    used = used_of(values, not_given)
     for line in filter(None, (not_given_text(used), drive_question(used, values.keys() - used.keys()))):
         print_text(line, to=to)
 

@@ -47,6 +47,22 @@ def not_given(named: Iterable[str]) -> dict[str, Any]:
     }
 
 
+def used_of(values: Mapping[str, Any], names: Iterable[str]) -> dict[str, Any]:
+    """Return the values of parameters that were not given, without the radius that a drawn profile replaces.
+
+    Parameters
+    ----------
+    values : mapping
+        Values by name; a factor of a study stands for itself.
+    names : iterable of str
+        Parameters that were not given.
+    """
+    profile = values.get("roller_profile")
+    levels = profile.get("values", [profile]) if isinstance(profile, Mapping) else getattr(profile, "levels", [profile])
+    drawn = {"roller_profile_radius"} if all(levels) else set()
+    return {name: values[name] for name in names if name not in drawn}
+
+
 def with_unit(name: str, value: Any) -> str:
     """Return a parameter with its value and unit, such as 'motor_force -30 N'."""
     unit = PARAMETERS[name].unit if name in PARAMETERS else "-"

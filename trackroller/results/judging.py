@@ -121,13 +121,14 @@ def required(results: Results) -> bool:
     return bool(set(results.config.analysis.target) - chances)
 
 
-def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray:
+def shortfall(results: Results, nine_of_ten: bool = False, exact: bool = False) -> np.ndarray:
     """Return how far each design of a search is from the target of the study, shape (designs,).
 
     Parameters
     ----------
     results : the solved search
     nine_of_ten : whether nine of ten conditions have to meet the target, as for a goal that is a B10, instead of all
+    exact : whether the errors of the solutions do not count
 
     Returns
     -------
@@ -140,7 +141,7 @@ def shortfall(results: Results, nine_of_ten: bool = False) -> np.ndarray:
     if not required(results) or goal is None:
         return np.zeros(shape[0])
     cases = Cases(Candidates.grouped(results, goal))
-    least, *hits = cases.on_target(exact=False)
+    least, *hits = cases.on_target(exact=exact)
     sure, may = (own.astype(float).reshape(shape) for own in hits)
 
     def of_design(values: np.ndarray) -> np.ndarray:

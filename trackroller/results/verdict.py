@@ -128,7 +128,7 @@ class Turn:
     what : value of a material, field of a case, `requirement`, or `tests` of a fitted material
     of, on : its material, and the material that it runs on; '' otherwise
     value : at which the decision turns, NaN if it is not known
-    until : for two candidates: from which on the other one is better for certain, NaN otherwise
+    until : from which on the other of two candidates is better for certain, or the target is missed; NaN otherwise
     low, high : range of the placeholder, NaN if there is none
     units : of these numbers
     candidate : number of the candidate that it belongs to, -1 without one
@@ -877,6 +877,14 @@ def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
             turns.append(_of_wear(cases, other, np.nan, np.nan))
     first = {(turn.what, turn.of, turn.on): turn for turn in reversed(turns)}
     return tuple(turn for turn in turns if first[turn.what, turn.of, turn.on] is turn)
+
+
+def open_values(cases: Cases, number: int) -> tuple[Turn, ...]:
+    """Return what to measure for a candidate whose range leaves the target of the study open."""
+    candidates, many = cases.candidates, len(cases.candidates.size)
+    facts = {"met": np.zeros(many), "conditions": candidates.size, "status": np.full(many, "open")}
+    one = _candidate(cases, _scores(cases, cases.own), cases.own, number, facts)
+    return _turns(cases, Verdict("measure", candidates.goal, (one,), required=cases.on_target()[0], named=1))
 
 
 def _bodies(cases: Cases, one: Candidate) -> tuple[str, str]:

@@ -15,6 +15,7 @@ from trackroller.errors import InputError
 from trackroller.materials import Material, load_database
 from trackroller.materials.database import FRICTION
 from trackroller.parameters import FRICTION_LEVELS, MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS
+from trackroller.parameters.example import used_of
 from trackroller.roller.case import STUDY, Case
 from trackroller.roller.doubts import doubts_of_case
 
@@ -155,9 +156,7 @@ def case_of_result(ds: xr.Dataset) -> Case:
 
 def not_given_of(ds: xr.Dataset) -> dict[str, Any]:
     """Return the values of a solved case that were not given but taken from the paper's example, by name."""
-    values = inputs_of(ds)
-    drawn = {"roller_profile_radius"} if values.get("roller_profile") else set()  # the profile stands in its place
-    return {name: values[name] for name in names_not_given(ds.attrs) if name not in drawn}
+    return used_of(inputs_of(ds), names_not_given(ds.attrs))
 
 
 def names_not_given(attrs: Mapping[str, Any]) -> list[str]:

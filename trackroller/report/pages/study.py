@@ -12,7 +12,7 @@ import xarray as xr
 
 from trackroller import parameters
 from trackroller.methods import METHODS
-from trackroller.parameters.example import not_given_text
+from trackroller.parameters.example import not_given_text, used_of
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import capital, count, lives_in_years, long_name, part_of, percent, plain, rounded
@@ -129,7 +129,7 @@ def contents(results: Results) -> dict[str, Any]:
         "factors": inputs.factor_table(results),
         "base": inputs.base_rows(results),
         "doubts": _doubts(results),
-        "not_given": not_given_text({name: settings["base"][name] for name in names_not_given(attrs)}),
+        "not_given": not_given_text(used_of(settings["base"] | settings["factors"], names_not_given(attrs))),
         "options": options + models_used(results.data) + inputs.correlation_row(results),
         "materials": [t for t in (inputs.materials_table(attrs), inputs.friction_table(attrs)) if t],
         "solution": solution_facts(results),

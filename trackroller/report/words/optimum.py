@@ -6,14 +6,34 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.methods.b10 import b10
 from trackroller.methods.optimise import nondominated_ranks
+from trackroller.methods.probability import bounds
 from trackroller.parameters.of_carriage import parameter_of
-from trackroller.report.numbers import BEYOND, Life, capital, lasting, long_name, percent, quantity, setting, with_unit
+from trackroller.report.numbers import (
+    BEYOND,
+    Life,
+    capital,
+    lasting,
+    long_name,
+    percent,
+    quantity,
+    rounded,
+    setting,
+    with_unit,
+)
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.verdict import bearing_words, targets_in_words, unchecked_words, vain_in_base
+from trackroller.report.words.verdict import (
+    bearing_words,
+    targets_in_words,
+    turn_words,
+    unchecked_words,
+    vain_in_base,
+    what_words,
+)
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.judging import (
@@ -25,11 +45,12 @@ from trackroller.results.judging import (
     optimum_of,
     recommended,
     required,
+    shortfall,
 )
 from trackroller.results.pareto import pareto_of_search
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
-from trackroller.results.verdict import not_checked
+from trackroller.results.verdict import Turn, not_checked, open_values
 from trackroller.roller.limit_notes import guessed_lines
 from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import names_in
@@ -52,7 +73,8 @@ def optimum_sentences(results: Results) -> list[Sentence]:
     least, best = least_violation(search), _best(results, search)
     said = [_invalid(results, search, least) if least else None]
     if best is not None:
-        said += [_recommended(results, search, best), _unreached(results, search), _guessed(results, search, best)]
+        said += [_recommended(results, search, best), *_turns(results, search, best), _unreached(results, search)]
+        said.append(_guessed(results, search, best))
         said.append(bearing_words(results, _limits(results, search, best)))
     said.append(_unchecked(results, search))
     return [sentence for sentence in said if sentence is not None]
@@ -110,8 +132,24 @@ def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) ->
         text = percent(value) if judged_by(goal)[0] == "probability" else text
         if ends is not None and ends[1][design] > ends[0][design] * (1 + SAME):
             text = ends_text(float(ends[0][design]), float(ends[1][design]), BEYOND * beyond, units)
+        else:
+            text += _interval(results, goal, design)
         texts.append(f"{words} {text}")
     return texts
+
+
+def _interval(results: Results, goal: str, number: int) -> str:
+    """Write the 95 % interval of a B10 or a probability over conditions that are all drawn; '' for other goals."""
+    kind, output = judged_by(goal)
+    inner, many = results.design.meta["inner"], results.design.meta["inner_samples"]
+    if kind not in ("b10", "probability") or any(results.design.factors[name].discrete for name in inner):
+        return ""
+    rows = slice(number * many, (number + 1) * many)
+    if kind == "probability":
+        ends = [percent(float(end)) for end in bounds(goal_column(results, goal)[0][number], many)]
+        return f" (95 % interval {' to '.join(ends)})"
+    _, low, high = b10(np.where(results.valid, np.nan_to_num(results.quantity(output)[0].astype(float)), 0.0)[rows])
+    return f" (95 % interval {rounded(low)} to {rounded(high)})"
 
 
 def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence:
@@ -137,11 +175,32 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     front = nondominated_ranks(judged.costs, judged.missed) == 0
     values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}
     values["short"] = float(judged.short[best["design"]])
+    values["what"] = [what_words(turn) for turn in _open_values(results, search, best)]
     values["others"] = int((judged.short == 0).sum()) if values["short"] else 0
     values |= {"meeting": int((front & (judged.short == 0)).sum()), "designs": len(front)}
     values["life"] = _life(results, search, best)
     values |= {"conditions": results.design.meta["inner_samples"], "limits": _limits(results, search, best)}
     return say("optimum", "recommended", **values)
+
+
+def _open_values(results: Results, search: dict[str, Any], best: dict[str, Any]) -> tuple[Turn, ...]:
+    """Return what to measure where no design surely meets the target, and the range of the nearest one leaves it open.
+
+    Nothing where the error of its solution does.
+    """
+    nine_of_ten = any(judged_by(goal)[0] == "b10" for goal in search["goals"])
+    if results.life is None or not 1 <= shortfall(results, nine_of_ten, exact=True)[best["design"]] < 2:
+        return ()
+    cases = Cases(Candidates.grouped(results, results.life))
+    row = best["design"] * results.design.meta["inner_samples"]
+    return open_values(cases, int(cases.candidates.place[row]))
+
+
+def _turns(results: Results, search: dict[str, Any], best: dict[str, Any]) -> list[Sentence | None]:
+    """Say at which values the target is met or missed."""
+    if int(judge(results).short.min()) != 1:  # a design meets it, or all miss it
+        return []
+    return [turn_words(turn, targets_in_words(results)) for turn in _open_values(results, search, best)]
 
 
 def _first_life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> tuple[Cases, int] | None:
@@ -247,6 +306,14 @@ def _changes(before: list[float], after: list[float]) -> list[float]:
     return [b / a - 1 if a and np.isfinite([a, b]).all() else 0.0 for a, b in zip(before, after, strict=True)]
 
 
+def _change(goal: str, before: float, after: float) -> str:
+    """Write how a goal changes: a probability from one share to another, others by percent; '' if it does not."""
+    if judged_by(goal)[0] == "probability":
+        return f"from {percent(before)} to {percent(after)}" if abs(after - before) > SMALL else ""
+    change = _changes([before], [after])[0]
+    return f"by {100 * change:+.2g} %".replace("-", "−") if abs(change) > SMALL else ""
+
+
 def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
     """Say what a small change of each real choice costs."""
     words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
@@ -256,8 +323,9 @@ def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -
         moved = f"{'+' if step > 0 else ''}{quantity(step, getattr(parameter_of(name), 'unit', '1'))}"
         invalid = near["violation"] if near["violation"] > best["violation"][0] else 0.0
         missed = required(results) and short == 0 < near.get("short", 0.0)
-        changes = zip(search["goals"], words, _changes(best["values"], near["values"]), strict=True)
-        changed = [(text, change) for goal, text, change in changes if goal != name and abs(change) > SMALL]
+        changes = zip(search["goals"], words, best["values"], near["values"], strict=True)
+        texts = [(text, _change(goal, *both)) for goal, text, *both in changes if goal != name]
+        changed = [(text, change) for text, change in texts if change]
         neighbours.append((long_name(name), moved, invalid, missed, changed))
     return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
 

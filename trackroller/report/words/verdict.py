@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -144,7 +144,7 @@ class _Words:
         found = self.found
         named = [self.name(one) for one in found.best]
         values = {"names": named, "tried": found.tried, "many": len(named), "tie": found.why == "tie"}
-        what = [_what(turn) for turn in found.turns]
+        what = [what_words(turn) for turn in found.turns]
         lives = self.span(found.best[0]) if found.best else ""
         who = lasting_one(self.candidates) if found.goal_rises else "roller"
         if found.why == "tie" and (free := self.without_effect()):
@@ -400,16 +400,9 @@ class _Words:
 
     def turn(self, turn: Turn) -> Sentence | None:
         """Say at which value the decision turns."""
-        wear = turn.what == "wear_coefficient"
-        bounds = wear and bool(self.found.target) and math.isfinite(turn.low)  # of the wear life, which may decide, too
-        if not (math.isfinite(turn.value) or math.isfinite(turn.until) or bounds):
-            return None
         named = {one.number: self.name(one) for one in self.found.best}
         others = [name for number, name in named.items() if number != turn.candidate]
-        values = {"turn": turn, "name": named.get(turn.candidate, ""), "others": others, "target": self.target()}
-        texts = {key: quantity(getattr(turn, key), turn.units) for key in ("value", "until", "high")}
-        texts["low"] = rounded(turn.low)
-        return say("verdict", "turn", **values, texts=texts, wear=wear)
+        return turn_words(turn, self.target(), named.get(turn.candidate, ""), others)
 
     def given(self) -> Sentence:
         """Say which value was used instead of the one that was not given, or the ends of several goals."""
@@ -594,7 +587,19 @@ def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
     return ", ".join([*([as_given(max(lives), "h")] if lives else []), *texts])
 
 
-def _what(turn: Turn) -> str:
+def turn_words(turn: Turn, target: str, name: str = "", others: Sequence[str] = ()) -> Sentence | None:
+    """Say at which value a decision turns, None where it is not known; `name` and `others` are candidates."""
+    wear = turn.what == "wear_coefficient"
+    bounds = wear and bool(target) and math.isfinite(turn.low)  # of the wear life, which may decide, too
+    if not (math.isfinite(turn.value) or math.isfinite(turn.until) or bounds):
+        return None
+    texts = {key: quantity(getattr(turn, key), turn.units) for key in ("value", "until", "high")}
+    texts["low"] = rounded(turn.low)
+    values = {"turn": turn, "name": name, "others": list(others), "target": target, "wear": wear}
+    return say("verdict", "turn", **values, texts=texts)
+
+
+def what_words(turn: Turn) -> str:
     """Name what to measure or to give."""
     if turn.what == "requirement":
         return "a requirement"

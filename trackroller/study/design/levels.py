@@ -16,6 +16,7 @@ from trackroller.parameters import MAPPING_FIELDS, MECHANICAL_MAPPINGS
 
 OF_MATERIALS = ("material_pair", "roller_material", "guide_material")
 NAMED = ("motor_force", "guide_curve_radius", *OF_MATERIALS)  # factors whose levels have names
+MOST_ARCS = 3  # of a profile whose arcs are named one by one
 EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
 
@@ -101,9 +102,10 @@ def _profile(profile: Mapping[str, Any]) -> str:
 
 
 def _arcs(rows: list[Mapping[str, Any]]) -> str:
-    if len(rows) > 2:
-        return f"{len(rows)} arcs {_mark(rows)}"
-    first, last = rows[0], rows[-1]
+    radii = [_number(row["radius"]) for row in rows]
     if len(rows) == 1:
-        return f"arc {_number(first['radius'])} mm"
-    return f"arcs {_number(first['radius'])} to {_number(first['to'])}, {_number(last['radius'])} mm"
+        return f"arc {radii[0]} mm"
+    if len(rows) > MOST_ARCS:
+        return f"{len(rows)} arcs {radii[0]}/…/{radii[-1]} mm {_mark(rows)}"
+    ends = [f" to {_number(row['to'])}" for row in rows[:-1]]
+    return f"arcs {', '.join(map(''.join, zip(radii, [*ends, ''], strict=True)))} mm"

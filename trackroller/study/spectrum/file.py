@@ -35,6 +35,7 @@ from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import OF_LIMITS, PARAMETERS
 from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
+from trackroller.parameters.example import used_of
 from trackroller.roller.aliases import ALIASES, renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
@@ -132,7 +133,8 @@ class Spectrum:
     @property
     def not_given(self) -> dict[str, Any]:
         """Return the parameters that neither `base` nor every block names, with the values of the paper's example."""
-        return {name: getattr(block.case, name) for block in self.blocks for name in block.case.not_given}
+        cases = [block.case for block in self.blocks]
+        return {name: value for case in cases for name, value in used_of(case.as_dict(), case.not_given).items()}
 
     @classmethod
     def from_dict(cls, values: Mapping[str, Any]) -> Spectrum:
