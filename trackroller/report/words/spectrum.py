@@ -85,7 +85,9 @@ def _states(ds: xr.Dataset) -> list[Sentence]:
         yields = (flags[body] & validity_bit("yield")) != 0
         if yields.any():
             found["exceeded"].append(f"pressure limit of the {body} in {_blocks(ds, yields)}")
-    return [say("spectrum", f"spectrum_{state}", limits=limits) for state, limits in found.items() if limits]
+    exceeded, open_ = found["exceeded"], found["open"]
+    said = [say("spectrum", "spectrum_exceeded", limits=exceeded)] if exceeded else []
+    return [*said, *([say("spectrum", "spectrum_open", limits=open_)] if open_ else [])]
 
 
 def _blocks(ds: xr.Dataset, here: np.ndarray) -> str:
