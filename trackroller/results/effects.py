@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
+from scipy import stats
 
 from trackroller.methods.intervals import difference_of_medians
 from trackroller.parameters import PARAMETERS
@@ -122,7 +123,8 @@ def _of_steps(factor: str, low: Any, high: Any, steps: np.ndarray) -> Effect:
 def class_effect(results: Results, column: str, factor: str, rows: np.ndarray) -> Effect | None:
     """Compare the lowest third of the designs along a factor to the highest third.
 
-    Designs with the same value of the factor stay in one class. None if a class has fewer than 20 rows.
+    Designs with the same value of the factor stay in one class. None if a class has fewer than 20 rows, or if the other
+    factors, which differ between the classes by chance, make more of the difference than its interval allows for.
     """
     if not results.ordered(factor):
         return None
@@ -130,7 +132,33 @@ def class_effect(results: Results, column: str, factor: str, rows: np.ndarray) -
     if len(x) < 3 * FEWEST_ROWS:
         return None
     ends = np.sort(x)[[len(x) // 3, len(x) - 1 - len(x) // 3]]
-    return _between(factor, x, logs, (float(ends[0]), float(ends[1])), FEWEST_ROWS)
+    found = _between(factor, x, logs, (float(ends[0]), float(ends[1])), FEWEST_ROWS)
+    if found is None:
+        return None
+    alone = _between(factor, x, logs - _of_others(results, column, factor, rows), (found.low, found.high), FEWEST_ROWS)
+    return found if alone is not None and found.interval[0] <= alone.ratio <= found.interval[1] else None
+
+
+def _of_others(results: Results, column: str, factor: str, rows: np.ndarray) -> np.ndarray:
+    """Return what the other numbers among the factors make of the logarithm of an output, shape (m,).
+
+    By least squares with the rank of each factor and its square, as far as there are three rows for each term.
+    """
+    values = results.table[column].to_numpy(dtype=float)
+    good = rows & np.isfinite(values) & (values > 0)
+    logs = np.log10(values[good])
+
+    def terms(name: str) -> list[np.ndarray]:
+        place = stats.rankdata(results.table[name].to_numpy(dtype=float)[good]) / len(logs) - 0.5
+        return [place, place**2] if np.ptp(place) else []
+
+    names = [name for name in results.factors if name != factor and results.ordered(name)]
+    others = [term for name in names for term in terms(name)][: max(0, len(logs) // 3 - 3)]
+    if not others:
+        return np.zeros(len(logs))
+    matrix = np.stack([*others, np.ones(len(logs)), *terms(factor)], axis=1)
+    weights = np.linalg.lstsq(matrix, logs, rcond=None)[0]
+    return np.asarray(matrix[:, : len(others)] @ weights[: len(others)])
 
 
 def comparable(results: Results, effect: Effect, column: str, rows: np.ndarray) -> bool:
