@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import trackroller as tr
 from trackroller.parameters import REGIMES
 from trackroller.report.numbers import quantity
+from trackroller.report.words.designs import best_table
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.verdict import verdict_of
 from trackroller.study.file.load import parse_study
@@ -256,6 +257,26 @@ def test_a_condition_without_any_candidate_is_left_out_of_the_ranking_but_not_of
     missed = made(lives, regime=regime, target={LIFE: {"min": 200}}).verdict
     assert missed.kind == "none" and (missed.candidates[0].met, missed.candidates[0].conditions) == (2, 3)
     assert missed.fails.reasons == {"lifts off": 1}
+
+
+def test_a_worst_condition_names_what_decides_and_counts_its_ties():
+    """Skids at 25 degrees where |F_m| cos 25 > mu |F_rad|, whatever the speed; equal lives are counted."""
+    factors = {
+        "contact_angle": {"values": [25, 50]},
+        "motor_force": {"values": [-5, -12, -15]},
+        "velocity": {"values": [20, 60]},
+        "friction_coefficient": {"values": [0.05, 0.12]},
+    }
+    base = {"radial_force": -200, "axial_force": 10, "roller_profile_radius": -6.4, "guide_overrollings_per_hour": 300}
+    study = {"name": "ties", "base": base, "factors": factors, "outputs": OUTPUTS, "not_checked": ["wear"]}
+    results = tr.run(parse_study(study | {"contact_model": "sliding", "accuracy": "preview"}), progress=False)
+    skids = [f for f in (5, 12, 15) if f * math.cos(math.radians(25)) > 200 * 0.05]
+    assert skids == [12, 15] and not any(f * math.cos(math.radians(50)) > 200 * 0.05 for f in (5, 12, 15))
+    ends = next(row for row in best_table(results).rows if row[0] == "Ends it")
+    assert ends[2] == "skids at driven −12 N, friction coefficient 0.05; the same in 2 more"  # 15 N at both speeds
+    lives = np.array([[[5.0, 5.0, 9.0], [4.0, 8.0, 8.0]]])
+    worst = next(row for row in best_table(made(lives)).rows if row[0] == "Worst condition")
+    assert worst[1:] == ["friction coefficient 0.05; the same in 1 more", "friction coefficient 0.05"]
 
 
 def test_conditions_that_two_factors_decide_are_named_by_their_combinations():

@@ -52,19 +52,47 @@ def design_words(candidates: Candidates, row: Mapping[Any, Any] | pd.Series) -> 
     return ", ".join(setting(name, row[name]) for name in names)
 
 
-def condition_words(candidates: Candidates, case: int) -> str:
-    """Name the conditions of a case, without those that do not change the goal of its design there."""
+def condition_words(candidates: Candidates, case: int, ties: bool = False) -> str:
+    """Name the conditions of a case, without those that do not change what its design does there.
+
+    Its design has the same goal there, or does not hold for the same reason. With `ties` the words count the other
+    conditions of which the same is true.
+    """
+    table, names = candidates.results.table, [n for n in candidates.conditions if n not in UNSURE]
+    own, alike = _same(candidates, case)
+    kept = list(names)
+    for name in names:
+        there = own & np.all([own, *(_at(table, n, case) for n in kept if n != name)], axis=0)
+        everywhere = table[name][there].nunique() == max(table[name][own].nunique(), 2)
+        if everywhere and alike[there].all():
+            kept.remove(name)
+    text = ", ".join(setting(name, table[name].iloc[case]) for name in kept or names)
+    told = np.all([own, *(_at(table, n, case) for n in kept)], axis=0)
+    more = len(np.unique(codes(table, names)[alike & ~told]))
+    return f"{text}; the same in {more} more" if ties and more else text
+
+
+def _at(table: pd.DataFrame, name: str, case: int) -> np.ndarray:
+    """Mark the rows that have the level of a case."""
+    return np.asarray(table[name] == table[name].iloc[case])
+
+
+def _same(candidates: Candidates, case: int) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cases of the design of a case at the same values within ranges, and those that do the same."""
     table, goal = candidates.results.table, candidates.results.column(candidates.goal[0])
-    own = candidates.usable & (candidates.place == candidates.place[case])
-    alike = own & (goal == goal[case])
-    names = [n for n in candidates.conditions if n not in UNSURE]
-    varied = [n for n in names if table[n][alike].nunique() < max(table[n][own].nunique(), 2)]
-    return ", ".join(setting(name, table[name].iloc[case]) for name in varied or names)
+    own = candidates.place == candidates.place[case]
+    for name in (n for n in UNSURE if n in candidates.conditions):
+        own &= _at(table, name, case)
+    if candidates.usable[case]:
+        own &= candidates.usable
+        return own, own & (goal == goal[case])
+    reason = Cases(candidates).reason
+    return own, own & (reason == reason[case])
 
 
 def worst_words(candidates: Candidates, one: Candidate) -> str:
     """Name the condition in which a candidate lasts shortest; of a range that of each end, where they differ."""
-    low, high = (condition_words(candidates, case) for case in (one.case, one.case_high))
+    low, high = (condition_words(candidates, case, ties=True) for case in (one.case, one.case_high))
     return low if low == high else f"{low} at the low end, {high} at the high end"
 
 
@@ -260,7 +288,10 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
-        named = ["–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"])) for row in best]
+        named = [
+            "–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"]), ties=True)
+            for row in best
+        ]
         if worst:
             pairs = zip(named, known, strict=True)
             named = [text if one is None or text == "–" else worst_words(candidates, one) for text, one in pairs]
@@ -274,8 +305,7 @@ def _end_cell(candidates: Candidates, one: Candidate | None) -> str:
         return "–"
     if one.ends in LIMITS:
         return f"{ends_words(one)}, {one.body}"
-    names = [name for name in candidates.conditions if name not in UNSURE]
-    where = ", ".join(setting(name, candidates.results.table[name].iloc[one.case]) for name in names)
+    where = condition_words(candidates, one.case, ties=True)
     return plain_reason(one.ends) + f" at {where}" * bool(where)
 
 
