@@ -85,7 +85,7 @@ def _states(ds: xr.Dataset) -> list[Sentence]:
         yields = (flags[body] & validity_bit("yield")) != 0
         if yields.any():
             found["exceeded"].append(f"pressure limit of the {body} in {_blocks(ds, yields)}")
-    return [say("spectrum", f"spectrum_{state}", limits=limits) for state, limits in found.items() if limits]
+    return [say("spectrum", "spectrum_states", **found)] if any(found.values()) else []
 
 
 def _blocks(ds: xr.Dataset, here: np.ndarray) -> str:
