@@ -4,6 +4,7 @@ import re
 from collections import Counter
 
 import numpy as np
+import pytest
 
 import trackroller as tr
 from trackroller.parameters.example import used_of
@@ -21,7 +22,8 @@ BASE = {"axial_force": 8, "motor_force": 0, "guide_curve_radius": np.inf, "guide
 
 
 def run(factors, base=None, **keys):
-    study = {"name": "screen", "base": BASE | (base or {}), "factors": factors}
+    given = {name: value for name, value in (BASE | (base or {})).items() if name not in factors}
+    study = {"name": "screen", "base": given, "factors": factors}
     return tr.run(study | {"contact_model": "sliding", "accuracy": "preview"} | keys, progress=False)
 
 
@@ -154,3 +156,19 @@ def test_a_drawn_profile_replaces_the_radius_of_the_example_and_its_arcs_are_nam
     assert first.startswith("4 arcs −7/…/−7 mm ") and first != second
     radius = {"roller_profile_radius": -7.0}
     assert used_of(radius | {"roller_profile": {"values": ["", {"arc": -6.5}]}}, radius) == radius
+
+
+def test_the_effect_of_a_material_says_from_which_level_to_which():
+    """The effect of a two-level design is the difference of the mean logarithms of the lives at both levels."""
+    materials = ["1.7225-quenched-tempered", "100Cr6"]
+    factors = {"axis_distance": {"uniform": [20, 24]}, "roller_profile_radius": {"uniform": [-9, -7]}}
+    for listed in (materials, materials[::-1]):
+        own = factors | {"roller_material": {"values": listed}, "friction_coefficient": {"uniform": [0.05, 0.2]}}
+        results = run(own, {"radial_force": -90}, design="plackett_burman")
+        table, lives = results.table, np.log10(results.data[LIFE].values)
+        means = [lives[(table["roller_material"] == name).to_numpy()].mean() for name in listed]
+        said = next(sentence_of(results, one).text for one in why(results) if one.kind == "index")
+        found = re.search(r"roller material \(from (\S+) to (\S+)\).*? by ([−\d.]+)", said)
+        effect = float(found[3].replace("−", "-"))
+        assert {*found.groups()[:2]} == {*materials}
+        assert effect == pytest.approx((means[1] - means[0]) * (1 if found[1] == listed[0] else -1), abs=0.006)

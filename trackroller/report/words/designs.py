@@ -299,14 +299,30 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     return rows
 
 
+def roller_words(results: Results, row: int) -> str:
+    """Name the worst roller of a case of a study of carriages and its load case; '' without one."""
+    if results.study.carriage is None:
+        return ""
+    roller, load_case = (str(results.quantity(name)[0][row]) for name in ("worst_roller", "worst_load_case"))
+    return f"roller {roller} in load case {load_case}" if roller else ""  # a carriage that tips has none
+
+
+def body_words(candidates: Candidates, one: Candidate) -> str:
+    """Name the body that ends a candidate; of a carriage that of its worst roller, with its load case."""
+    roller, _, load_case = roller_words(candidates.results, one.case).partition(" in ")
+    place = f"rail at {roller}" if one.body == "guide" else roller
+    return f"{place} (most of it in {load_case})" if roller else one.body
+
+
 def _end_cell(candidates: Candidates, one: Candidate | None) -> str:
     """Say what ends a candidate and which body, or where it is not met or not judged."""
     if one is None or not one.ends:
         return "–"
     if one.ends in LIMITS:
-        return f"{ends_words(one)}, {one.body}"
+        return f"{ends_words(one)}, {body_words(candidates, one)}"
     where = condition_words(candidates, one.case, ties=True)
-    return plain_reason(one.ends) + f" at {where}" * bool(where)
+    text = plain_reason(one.ends) + f" at {where}" * bool(where)
+    return ", ".join(filter(None, (text, roller_words(candidates.results, one.case))))
 
 
 def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate | None]:

@@ -4,7 +4,14 @@ from __future__ import annotations
 
 from trackroller.report.words.cases import event_words
 from trackroller.report.words.factors import effect_words
-from trackroller.report.words.indices import group_words, idle_factors, index_words, level_words, named_words
+from trackroller.report.words.indices import (
+    coded_levels,
+    group_words,
+    idle_factors,
+    index_words,
+    level_words,
+    named_words,
+)
 from trackroller.report.words.limits import limit_words
 from trackroller.report.words.sentence import Sentence
 from trackroller.results.findings import Finding
@@ -28,7 +35,8 @@ OF_STUDY = (
 def sentence_of(results: Results, finding: Finding) -> Sentence:
     """Say a finding in words; its numbers stay with the sentence."""
     if finding.kind == "index":
-        return index_words(results.indices(), finding, idle_factors(results, finding))
+        sens = results.indices()
+        return index_words(sens, finding, idle_factors(results, finding), coded_levels(results, sens))
     if finding.kind in INDICES:
         return INDICES[finding.kind](results.indices(), finding)
     return OF_STUDY[finding.kind](results, finding)

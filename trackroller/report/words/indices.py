@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 import xarray as xr
@@ -63,15 +63,38 @@ def idle_factors(results: Results, finding: Finding) -> list[str]:
     return idle
 
 
-def index_words(sens: xr.Dataset, finding: Finding, idle: Sequence[str] = ()) -> Sentence:
-    """Name the factors that decide an output, by one index with its interval, and those that do not change it."""
+def coded_levels(results: Results, sens: xr.Dataset) -> dict[str, str]:
+    """Return the two levels of each category whose effect has a sign, from the first to the second one, by factor."""
+    if headline(sens) not in SIGNED:
+        return {}
+    pairs = {n: f.levels for n, f in results.design.factors.items() if f.discrete and not f.ordered}
+    return {
+        name: " to ".join(level_text(name, level) for level in levels)
+        for name, levels in pairs.items()
+        if len(levels) == 2
+    }
+
+
+def index_words(
+    sens: xr.Dataset, finding: Finding, idle: Sequence[str] = (), levels: Mapping[str, str] | None = None
+) -> Sentence:
+    """Name the factors that decide an output, by one index with its interval, and those that do not change it.
+
+    Parameters
+    ----------
+    sens, finding : the indices, and the finding on one output
+    idle : factors that do not change the output at all
+    levels : words for both levels of a category by factor, where an effect has a sign
+    """
     values, output = finding.values, finding.values["output"]
     ranks, sized, index = values["ranks"], values["sized"], values["index"]
     together = [ranks[0].name, *(r.name for r in values["ties"])]
     large = [r for r in ranks[1:] if r not in values["small"] and r not in values["ties"]]
     unit = f" {effect_unit(sens, output)}".replace(" –", "") if sized else ""
     shares = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in large]
-    sizes = [f"{r.name} by {plus_minus(r.value, r.low, r.high)}{unit}" for r in large]
+    coded = {r.name: f" (from {levels[r.factor]})" for r in ranks if levels and r.factor in levels}
+    sizes = [f"{r.name}{coded.get(r.name, '')} by {plus_minus(r.value, r.low, r.high)}{unit}" for r in large]
+    together = [name + coded.get(name, "") for name in together] if sized else together
     words = {"what": of_output(sens, output), "first": ranks[0], "together": together, "unit": unit}
     words |= {
         "idle": [r.name for r in values["small"] if r.factor in idle],

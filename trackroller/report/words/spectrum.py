@@ -85,9 +85,7 @@ def _states(ds: xr.Dataset) -> list[Sentence]:
         yields = (flags[body] & validity_bit("yield")) != 0
         if yields.any():
             found["exceeded"].append(f"pressure limit of the {body} in {_blocks(ds, yields)}")
-    exceeded, open_ = found["exceeded"], found["open"]
-    said = [say("spectrum", "spectrum_exceeded", limits=exceeded)] if exceeded else []
-    return [*said, *([say("spectrum", "spectrum_open", limits=open_)] if open_ else [])]
+    return [say("spectrum", "spectrum_states", **found)] if any(found.values()) else []
 
 
 def _blocks(ds: xr.Dataset, here: np.ndarray) -> str:

@@ -26,6 +26,7 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.words.designs import (
     SAME,
+    body_words,
     condition_words,
     design_words,
     ended_by,
@@ -33,6 +34,7 @@ from trackroller.report.words.designs import (
     ends_words,
     idle,
     lasting_one,
+    roller_words,
     span_words,
     unanswered,
     worst_words,
@@ -215,7 +217,7 @@ class _Words:
             sampled=found.sampled,
             where=self.where(one),
             who=lasting_one(self.candidates),
-            body=self.body(one),
+            body=body_words(self.candidates, one),
             goal=found.goal[1],
             rises=found.goal_rises,
             limit=ends_words(one),
@@ -232,15 +234,6 @@ class _Words:
             met=min(one.met for one in found.best),
             not_given=_values(not_given),
         )
-
-    def body(self, one: Candidate) -> str:
-        """Name the body that ends a candidate; of a carriage that of its worst roller, with its load case."""
-        if self.results.study.carriage is None:
-            return one.body
-        names = ("worst_roller", "worst_load_case")
-        roller, load_case = (str(self.results.quantity(name)[0][one.case]) for name in names)
-        place = f"roller {roller}" if one.body == "roller" else f"rail at roller {roller}"
-        return f"{place} (most of it in load case {load_case})"
 
     def where(self, one: Candidate) -> str:
         """Name the worst condition of a candidate."""
@@ -297,11 +290,19 @@ class _Words:
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = (self.untried_life(one, alone=False) or self.span(one)) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": self.causes(fails), "limits": limits, "life": life}
-        values |= {"not_given": _values(fails.not_given)}
+        values |= {"not_given": _values(fails.not_given), "rollers": self.failing(one)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
         values |= {"scattered": self.scattered, "alone": one.conditions == 1}
         values["ranged"] = bool(found.target) and one.high > one.low * (1 + SAME)
         return say("verdict", "nearest", **values, sampled=found.sampled)
+
+    def failing(self, one: Candidate) -> list[str]:
+        """Name the rollers of a carriage that keep a candidate from holding, with their load cases; some at most."""
+        cases = Cases(self.candidates)
+        good = cases.on_target(scattered=False)[1] if self.found.target else cases.reason == ""
+        rows = (self.candidates.design == one.number) & ~good
+        named = list(dict.fromkeys(roller_words(self.results, int(row)) for row in np.flatnonzero(rows)))
+        return named if all(named) and len(named) <= MOST else []
 
     def nowhere(self) -> Sentence:
         """Say that no case of a study whose designs cannot be compared meets the target, and what the best reaches."""
