@@ -326,7 +326,7 @@ def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -
         changes = zip(search["goals"], words, best["values"], near["values"], strict=True)
         texts = [(text, _change(goal, *both)) for goal, text, *both in changes if goal != name]
         changed = [(text, change) for text, change in texts if change]
-        neighbours.append((long_name(name), moved, invalid, missed, changed))
+        neighbours.append((long_name(name), moved, invalid, missed, changed, name in search["goals"]))
     return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
 
 
