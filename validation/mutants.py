@@ -149,7 +149,7 @@ DECISIONS = {
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
     "rounded-outwards": ("results/findings.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
-    "bent": ("results/findings.py", "if sigma[r.factor] > 0.5 *", "if sigma[r.factor] > 5.0 *", WORDS),
+    "bent": ("results/findings.py", "if share > BENT]", "if share > 10 * BENT]", WORDS),
     "pareto-end": (
         "results/pareto.py",
         '-1.0 if way == "max" else 1.0',
