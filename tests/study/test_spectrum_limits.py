@@ -112,6 +112,21 @@ def test_the_first_sentences_name_ranges_and_limits_that_a_block_exceeds():
     assert other.kind == "spectrum_limit" and "measured" not in other.text and "beyond" not in other.text
 
 
+def test_a_limit_that_a_placeholder_decides_is_open_in_its_blocks():
+    """The use of the shakedown limit is inversely proportional to the yield strength, which is a placeholder."""
+    low, high = 400.0, 550.0  # MPa; the value is 450 MPa
+    one = solved(LOADED, EMPTY, limits=("fatigue", "shakedown"))
+    used = float(one.utilisation.sel(limit="shakedown", body="roller"))
+    # the pressure of an elliptic contact rises with the third root of the force
+    force = LOADED["radial_force"] * (0.99 / used) ** 3
+    near = solved(LOADED | {"radial_force": force}, EMPTY, limits=("fatigue", "shakedown"))
+    used = float(near.utilisation.sel(limit="shakedown", body="roller"))
+    assert used * 450 / high < 1 < used * 450 / low
+    said = next(one.text for one in sentences(near) if one.kind == "spectrum_states")
+    assert said.startswith("Open, exceeded at one end of the range of a placeholder: elastic shakedown of the roller, ")
+    assert f"of the roller, {rounded(100 * used)} % in 'loaded'" in said
+
+
 def test_a_block_outside_the_half_space_is_named_before_any_life():
     blocks = [LOADED | {"radial_force": -300, "axial_force": 70}, EMPTY | {"axial_force": 0}]
     base = BASE | {"roller_material": "POM-C", "guide_material": "C45", "roller_profile_radius": -6.6}

@@ -127,6 +127,7 @@ def _first_limit(ds: xr.Dataset, body: str, of_pair: bool = False, unknown: str 
 def _within(ds: xr.Dataset, bodies: tuple[str, ...], high: float, but: tuple[str, str]) -> list[tuple[str, str]]:
     """Return the limits and bodies, except one, whose life may end by `high` [h] within its range."""
     low = ds["life_hours_by_limit_low"]
+    low = low.where(np.isfinite(low))  # a limit that is never reached ends no life
     pairs = ((name, body) for body in bodies for name in ds["limit"].values.tolist() if not LIMITS[name].beside)
     return [p for p in pairs if p != but and float(low.sel(limit=p[0], body=p[1])) <= high * (1.0 + TIED)]
 
