@@ -335,7 +335,9 @@ def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
     ds["roller_life_hours"] = ("case", 1e5 / -ds["radial_force"].values, {"units": "h"})
     ds.attrs["study"] = study.merged()
     results = results_of(ds)
-    for factor in ("axial_force", "radial_force", "velocity"):
+    # what the radial force makes is no effect of the axial force that goes with it
+    assert effect_of(results, "roller_life_hours", "axial_force", np.ones(300, bool)) is None
+    for factor in ("radial_force", "velocity"):
         said = effect_of(results, "roller_life_hours", factor, np.ones(300, bool))
         named = [n for n in results.factors if n.replace("_", " ") in said.values["correlated"]]
         tied = [n for n in results.factors if n != factor and abs(spearmanr(ds[factor], ds[n]).statistic) > 0.3]
