@@ -97,7 +97,8 @@ def robustness(
 def _attributes(design: Design, scatter: float) -> dict[str, str | int | float]:
     treatment = (
         "percentiles and the first B10 are those of the cases that roll, the second B10 counts every "
-        "other case as life 0; a body above its tensile strength counts as life 0; "
+        "other case as life 0; a body above its tensile strength counts as life 0, and so does a case that exceeds a "
+        "limit in the life to the first one; "
         "the same inner sample at every design point"
     )
     return {
