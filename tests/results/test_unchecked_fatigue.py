@@ -53,3 +53,30 @@ def test_half_of_the_bearings_reach_the_life_of_a_verdict():
     assert f"nine of ten {share:.2g} times it" in said["bearing"]
     median = tr.run(study | {"failure_probability": 0.1}, progress=False)
     assert "bearing" not in {one.kind for one in verdict_sentences(median)}
+
+
+def test_a_life_by_fewer_limits_beats_no_other(tmp_path, monkeypatch):
+    """At 10 % failures fatigue of one of two steels is not known: its life to the bearing is not compared, nor counted.
+
+    The bearing outlasts fatigue of the other steel by far, so that this life alone would win.
+    """
+    (tmp_path / "materials.yaml").write_text(MATERIALS)
+    monkeypatch.setenv("TRACKROLLER_MATERIALS", str(tmp_path / "materials.yaml"))
+    base = {"bearing": BEARING, "motor_force": 0, "axial_force": 5, "guide_overrollings_per_hour": 100}
+    base |= {"guide_material": SCATTERS, "guide_curve_radius": np.inf, "roller_profile_radius": -7.5}
+    study = {"name": "fewer", "base": base, "failure_probability": 0.1, "contact_model": "sliding"}
+    study |= {"factors": {"roller_material": {"values": [PLAIN, SCATTERS]}, "radial_force": {"values": [-60, -90]}}}
+    study |= {"accuracy": "preview", "analysis": {"target": {"min": 10}}}
+    results = tr.run(study, progress=False)
+    lives = results.data["pair_life_to_first_limit_hours"]
+    assert float(lives.sel(roller_material=PLAIN).min()) > float(lives.sel(roller_material=SCATTERS).max())
+    found = results.verdict
+    assert [one.choices["roller_material"] for one in found.best] == [SCATTERS] and found.kind == "build"
+    assert [one.judged for one in found.candidates] == [True, False]
+    scattering = (results.table["roller_material"] == SCATTERS).to_numpy()
+    np.testing.assert_array_equal(results.held, scattering)
+    assert (
+        results.analysis["target_probability"].values.item() == 0.5 * (lives.sel(roller_material=SCATTERS) >= 10).mean()
+    )
+    said = " ".join(one.text for one in verdict_sentences(results))
+    assert f"Not judged: {PLAIN}, which has no known life by fatigue." in said

@@ -214,12 +214,16 @@ def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
     output = next((n for n in dict.fromkeys([*lives, *names]) if decisive(sens, n)), None)
     if output is None or not carries_indices(results, sens, output):
         return []
+    if is_life(output) and results.without_fatigue.any():  # lives by fewer limits are among the rows
+        return []
     values = {kind: found for kind, of in OF_ANALYSIS.items() if (found := of(sens, output)) is not None}
     large = [r.factor for r in values["index"]["ranks"] if r not in values["index"]["small"]]
     if results.config.method.observed and any(confounded_with(results, name, results.counted) for name in large):
         values.pop("index")  # the share of one factor may be that of another
     if "index" in values:
-        values["index"]["outside"] = int((results.counted & ~results.valid).sum())
+        told = results.quantity(output)[0].astype(float)  # a life counts by its logarithm
+        used = np.isfinite(told) & ((told > 0) | ~is_life(output))
+        values["index"]["outside"] = int((results.counted & ~results.valid & used).sum())
     kinds = [*values]
     if headline(sens) == "first":  # a design with groups serves these better than single factors
         kinds.sort(key=lambda kind: kind not in ("groups", "levels"))

@@ -21,7 +21,14 @@ from trackroller.results.robustness import material_deviations
 from trackroller.study.outputs import flat
 
 OnTarget = tuple[np.ndarray, np.ndarray]  # cases that surely meet the target, and cases that may meet it, shape (n,)
-NOT_JUDGED = ("life not known", "steep friction", "conformal", "outside the half-space", "not converged")
+NOT_JUDGED = (
+    "life not known",
+    "fatigue not known",
+    "steep friction",
+    "conformal",
+    "outside the half-space",
+    "not converged",
+)
 
 
 @dataclass(frozen=True)
@@ -90,6 +97,7 @@ class Cases:
             missed = ~results.allowed
         masks = [
             ("life not known", np.isnan(life)),
+            ("fatigue not known", results.without_fatigue),
             *((f"limit {name}", rows) for name, rows in self.results.limits_in("exceeded").items()),
             ("yields", results.flagged("yield")),
             ("breaks", results.flagged("static")),

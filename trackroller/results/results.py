@@ -521,9 +521,30 @@ class Results:
         return self.rolling if self.allowed is None else self.rolling & self.allowed
 
     @cached_property
+    def without_fatigue(self) -> np.ndarray:
+        """Return the cases without a life by fatigue that other materials have for the same body, shape (n,).
+
+        Their life to the first limit is one by fewer limits, and compares with no other. At a failure probability
+        other than 0.5 no life by fatigue of a material without scatter is known.
+        """
+        out = np.zeros(len(self.table), dtype=bool)
+        if FIRST_LIMIT[0] not in self.table or "fatigue" not in self.data["limit"].values:
+            return out
+        known = ~np.isnan(flat(self.data.sel(limit="fatigue"), "life_hours_by_limit", self.dims))  # (n, body)
+        for i, body in enumerate(BODIES):
+            of, rows = self.material(body), self.inside
+            if known[rows, i].any():
+                never = [name for name in np.unique(of[rows]) if not known[rows & (of == name), i].any()]
+                out |= rows & np.isin(of, never)
+        return out
+
+    @cached_property
     def valid(self) -> np.ndarray:
-        """Return the cases inside the model that meet the constraints of the study, shape (n,)."""
-        return np.asarray(self.inside & self.counted)
+        """Return the cases inside the model that meet the constraints of the study, shape (n,).
+
+        Cases whose life by fatigue is not known where that of other materials is are left out.
+        """
+        return np.asarray(self.inside & self.counted & ~self.without_fatigue)
 
     def limits_in(self, state: str) -> dict[str, np.ndarray]:
         """Return the cases in which each limit of the verdict is `exceeded` or `open`, shape (n,) by limit.

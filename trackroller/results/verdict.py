@@ -17,6 +17,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.damage import LIMITS
+from trackroller.errors import listing
 from trackroller.methods.b10 import b10, quantile
 from trackroller.parameters import BODIES
 from trackroller.results.candidates import STRESS, TIED, Candidates, goal_without_lives, slip_margin
@@ -920,13 +921,16 @@ def _of_wear(cases: Cases, one: Candidate, least: float, until: float) -> Turn:
 
 
 def _of_limit(cases: Cases, one: Candidate, limit: str) -> Turn:
-    """Return the placeholder that an open limit rests on, and the value from which on the limit is kept."""
+    """Return the placeholders that an open limit rests on, and of the only one the value from which it is kept."""
     results = cases.results
     rows = rows_of(cases.candidates, one, cases.own)
     place = results.data["limit"].values.tolist().index(limit)
     use = flat(results.data, "utilisation", results.dims)[rows, place]
     body = BODIES[int(np.nanargmax(np.nanmax(use, axis=0)))] if np.isfinite(use).any() else one.body
     of = str(results.material(body)[one.case])
+    several = list(dict.fromkeys(one.name for one in _placeholders(results, limit, of)))
+    if len(several) > 1:  # which of them opens the limit is not known
+        return Turn(listing(several, "or"), of, candidate=one.number)
     own = next(iter(_placeholders(results, limit, of)), Placeholder(limit, of, "placeholder"))
     stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(of, {}).get(own.name, np.nan)
     known = own.name == "yield_strength" and np.isfinite(use).any()

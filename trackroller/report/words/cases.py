@@ -32,6 +32,8 @@ def valid_cases(results: Results) -> Sentence:
     reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(results) if hit.any()]
     values: dict[str, Any] = {"total": len(results.table), "lost": {words: n for words, n in lost.items() if n}}
     values |= {name: int(getattr(results, name).sum()) for name in ("rolling", "inside", "valid")}
+    values["unknown"] = int(results.without_fatigue.sum())
+    values["chance"] = results.config.failure_probability
     exceeded = {name: int((results.valid & rows).sum()) for name, rows in results.limits_in("exceeded").items()}
     values["exceeded"] = {limit_title(name): n for name, n in exceeded.items() if n}
     if results.allowed is not None:

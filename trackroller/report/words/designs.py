@@ -175,12 +175,16 @@ def best_table(results: Results) -> Table | None:
         rows.append(["Holds in", *(part_of(row["valid"], row["cases"]) for row in best)])
     if met is not None:
         places = candidates.table.index[: len(best)]
-        ranged = results.ranged and bool(results.judged_targets)
-        cells = [part_of(met[0][i], met[1][i]) for i in places]
-        # what meets the target at the high end only, or within its error, is neither met nor missed
         known = _of_verdict(candidates, best) or [None] * len(best)
-        cells = [c + " (open)" * (o is not None and o.status == "open") for c, o in zip(cells, known, strict=True)]
-        rows.append([f"Meets the targets{' for certain' * ranged} in", *cells])
+        certain = (results.ranged and bool(results.judged_targets)) or any(one and one.open_limits for one in known)
+        cells = []
+        for i, one in zip(places, known, strict=True):
+            count, of = int(met[0][i]), int(met[1][i])
+            if one is not None and one.conditions == of:
+                count = one.met  # not where a limit is open
+            # what meets the target at the high end only, or within its error, is neither met nor missed
+            cells.append(part_of(count, of) + " (open)" * (one is not None and one.status == "open"))
+        rows.append([f"Meets the targets{' for certain' * certain} in", *cells])
     ranks = [int(row["rank"]) for row in best]
     heads = [f"Candidate {rank}{' (tie)' if ranks.count(rank) > 1 else ''}" for rank in ranks]
     title = "Candidates" if candidates.choices or candidates.goal == UNRANKED else "Life of the design"
@@ -276,7 +280,8 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
             cells = ("–" if one is None else span_words(one, candidates.goal[2]) for one in known)
             rows.append(["Nine of ten reach, 90 % by the tests", *cells])
     at_worst = f"worst {'shared ' * bool(candidates.untried.any())}condition"
-    places = {"worst": at_worst if rising else "largest", "median": "median"}
+    lost = any(row["valid"] < row["cases"] for row in best)
+    places = {"worst": at_worst if rising else "largest", "median": f"median{' where it holds' * lost}"}
     places = places if candidates.conditions else {"worst": ""}
     known = _of_verdict(candidates, best) if rising else []
     if worst := _worst_row(candidates, known, at_worst if candidates.conditions else ""):

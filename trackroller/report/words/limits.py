@@ -59,9 +59,11 @@ def _unsure(results: Results, names: list[str]) -> dict[str, str]:
     """Return words for the values that a study varies within their ranges, and for the ranges."""
     if names == [POSITION]:
         return {"what": "placeholders of materials", "span": "each within its range"}
+    if POSITION in names:
+        return {"what": "wear coefficients and other placeholders", "span": "within the ranges of both factors"}
     factors = results.table[COEFFICIENT]
     span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
-    return {"what": "wear coefficients" + " and other placeholders" * (POSITION in names), "span": span}
+    return {"what": "wear coefficients", "span": span}
 
 
 def first_limit_table(results: Results) -> Table | None:

@@ -69,6 +69,7 @@ REASONS = {  # of `Cases.reason`, as what the candidate does
     "yields": "yields below its surface",
     "not converged": "has no solution",
     "life not known": "has no known life",
+    "fatigue not known": "has no known life by fatigue",
     "outside the half-space": "lies outside the half-space",
     "conformal": "touches the edge of its groove",
     "steep friction": "may not roll steadily",
@@ -447,7 +448,8 @@ class _Words:
         unit = found.goal[2]
         shown = []
         for one in others[:MOST]:
-            holds = "" if math.isnan(one.holds) or not self.compared else quantity(one.holds, unit)
+            told = self.compared and one.ends != "fatigue not known" and not math.isnan(one.holds)
+            holds = quantity(one.holds, unit) if told else ""
             shown.append((self.name(one), REASONS.get(one.ends, one.ends), holds))
         return say("verdict", "not_judged", shown=shown, left=len(others) - len(shown), rises=found.goal_rises)
 
