@@ -74,8 +74,10 @@ def test_a_limit_without_a_life_is_exceeded_at_once_by_the_worst_block():
     jerk = LOADED | {"name": "jerk", "distance": 1, "radial_force": -9e4}
     ds = solved(EMPTY, jerk, limits=("static",))
     assert (ds.life_to_first_limit_shifts == 0).all() and (ds.utilisation > 1).all()
-    assert [said.kind for said in sentences(ds)[:3]] == ["spectrum_outside", "spectrum_unknown", "spectrum_unknown"]
-    assert sentences(ds)[3].text.startswith("The roller exceeds static failure")
+    kinds = ["spectrum_outside", "spectrum_states", "spectrum_unknown", "spectrum_unknown"]
+    assert [said.kind for said in sentences(ds)[:4]] == kinds
+    assert sentences(ds)[1].text.startswith("Exceeded: static failure of the roller, ")
+    assert sentences(ds)[4].text.startswith("The roller exceeds static failure")
     assert (ds.limit_state == STATES.index("exceeded")).all()
     still = solved(EMPTY, jerk | {"distance": 0, "guide_overrollings": 0}, limits=("static",))
     assert (still.utilisation < 1).all() and np.isnan(still.life_to_first_limit_shifts).all()  # no limit has a life

@@ -35,8 +35,8 @@ def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
 def sentences(ds: xr.Dataset) -> list[Sentence]:
     """Return what a spectrum says of roller and guide, the life of the pair to its first limit at the head.
 
-    Blocks that the model does not judge stand before it, limits that are exceeded or open behind it. Then follow the
-    first limit of the other body, and for each body its life by fatigue, the track that fails first and the block with
+    Blocks that the model does not judge stand before it, limits that are exceeded or open behind it, or before all lives
+    where a body breaks. Then follow the first limit of the other body, and for each body its life by fatigue, the track that fails first and the block with
     the most damage. Without limits only fatigue is known.
     """
     by_fatigue = [_sentence(ds, body) for body in BODIES]
@@ -47,7 +47,11 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
     sooner, later = sorted(BODIES, key=lambda body: (np.isnan(lives[body]), lives[body]))
     head = _first_limit(ds, sooner, of_pair=True, unknown=later if np.isnan(lives[later]) else "")
     if head.kind != "spectrum_pair":  # why no life is known or left stands in the sentences on fatigue
-        return [*outside, *by_fatigue, *_states(ds), *(_first_limit(ds, body) for body in BODIES)]
+        states, listed = _states(ds), ds["limit"].values.tolist()
+        state = ds["limit_state"]
+        breaks = "static" in listed and bool((state.sel(limit="static") == STATES.index("exceeded")).any())
+        first, after = (states, []) if breaks else ([], states)
+        return [*outside, *first, *by_fatigue, *after, *(_first_limit(ds, body) for body in BODIES)]
     return [*outside, head, *_states(ds), _first_limit(ds, later), *by_fatigue]
 
 
@@ -62,16 +66,11 @@ def _outside(ds: xr.Dataset) -> list[Sentence]:
 
 
 def _states(ds: xr.Dataset) -> list[Sentence]:
-    """Name the limits without hours that are exceeded or open, the most that a block uses, and the blocks.
-
-    Where a body breaks, nothing else counts: the sentences on fatigue name the blocks.
-    """
+    """Name the limits without hours that are exceeded or open, the most that a block uses, and the blocks."""
     travelled = ds["distance"].values > 0
     flags = {body: np.zeros(len(travelled), dtype=int) for body in BODIES}
     if "validity_body" in ds:
         flags = {body: np.where(travelled, ds["validity_body"].sel(body=body).values, 0) for body in BODIES}
-    if any((own & validity_bit("static")).any() for own in flags.values()):
-        return []
     found: dict[str, list[str]] = {"exceeded": [], "open": []}
     for body in BODIES:
         for limit in (LIMITS[name] for name in ds["limit"].values.tolist()):
