@@ -456,6 +456,7 @@ def ends(results: Results) -> list[Finding]:
     """Return a finding for each regime other than rolling that occurs: how often, and at which levels."""
     found = [slip_law(results) or regime_of(results, REGIMES.index("full_slip"))]
     found += [regime_of(results, REGIMES.index(name)) for name in ("lift_off", "failed")]
+    found += [occurrence(results, results.valid & rows, name) for name, rows in results.limits_in("exceeded").items()]
     return [one for one in found if one is not None]
 
 

@@ -352,17 +352,18 @@ def holes_of(front: xr.Dataset) -> tuple[str, list[tuple[float, float]]]:
     """Return a goal of a Pareto set and the widest steps between its designs that leave a hole, at most two.
 
     The goal is the first life, otherwise the first goal. A step is a hole if it takes `HOLE` of the range of the set,
-    and twice an even step; lives that span a decade count by their logarithm.
+    and twice an even step; lives that span a decade count by their logarithm. So is a step over a decade.
     """
     names = [name for name, _ in goals_of(front)]
     goal = next((name for name in names if is_life(statistic(name)[1])), names[0])
     values = front[goal].values[front["optimal"].values == 1].astype(float)
     values = np.unique(values[np.isfinite(values)])
-    if len(values) < 4:
+    if len(values) < 2:
         return goal, []
     places = np.log(values) if values[0] > 0 and values[-1] > 10 * values[0] else values
     steps = np.diff(places) / (places[-1] - places[0])
-    wide = [i for i in np.argsort(-steps)[:2] if steps[i] > max(HOLE, 2 / len(steps))]
+    decade = (values[:-1] > 0) & (values[1:] > 10 * values[:-1])
+    wide = [i for i in np.argsort(-steps)[:2] if steps[i] > max(HOLE, 2 / len(steps)) or decade[i]]
     return goal, [(float(values[i]), float(values[i + 1])) for i in sorted(wide)]
 
 

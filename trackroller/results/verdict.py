@@ -38,7 +38,6 @@ LOADS = ("radial_force", "axial_force", "motor_force")  # on which each life res
 MANY = 0.5  # share of conditions out of reach by an input that was not given, from which on the input is asked for
 RESAMPLES = 400  # of the sampled conditions, for the error of a difference of B10
 TAIL = 0.025  # share of the resamples below the 95 % interval
-GAP = 10.0  # ratio of neighbouring Pareto-optimal designs in the first goal, from which on the gap is named
 MOST_PLACES = 2  # combinations of two factors that describe conditions
 STRONGEST = 50  # candidates of each pair of materials by each measure that may beat others
 
@@ -58,7 +57,7 @@ class Candidate:
     case, case_high : row of the worst condition, for the low and for the high end
     ends, body : what ends it there: a limit, or the reason why the condition is not met or not judged; '' where nothing
         does; and the body
-    ends_high : what ends it there at the high end of the ranges of the placeholders
+    ends_high, body_high : what ends it there at the high end of the ranges of the placeholders, and the body
     met, conditions : number of conditions that it meets, and of all conditions that count
     status : `met`, `open` or `missed` of the target; '' without a target
     judged : whether the model judges it in all conditions
@@ -84,6 +83,7 @@ class Candidate:
     ends: str
     ends_high: str
     body: str
+    body_high: str
     met: int
     conditions: int
     status: str
@@ -148,7 +148,7 @@ class Turn:
 
 @dataclass(frozen=True)
 class Tradeoff:
-    """The ends of a Pareto set, and its widest gap in the first goal.
+    """The ends of a Pareto set.
 
     Attributes
     ----------
@@ -156,13 +156,11 @@ class Tradeoff:
     ends : for each goal the choices and the values of the design that is best in it, and which of these are lives
         beyond the S-N data
     designs : number of Pareto-optimal designs
-    gap : values of the first goal between which no design lies; empty without a gap
     """
 
     goals: tuple[tuple[str, str, str], ...]
     ends: tuple[tuple[Mapping[str, Any], tuple[float, ...], tuple[bool, ...]], ...]
     designs: int
-    gap: tuple[float, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -660,6 +658,7 @@ def _candidate(cases: Cases, scores: Scores, kept: np.ndarray, i: int, facts: Ma
         ends=str(cases.reason[case] or ("" if np.isinf(cases.ends[0][case]) else cases.low_end[0][case])),
         ends_high=str(cases.reason[highest] or ("" if np.isinf(cases.ends[1][highest]) else cases.high_end[highest])),
         body="guide" if cases.low_end[1][case] else "roller",
+        body_high="guide" if cases.at_end("_high")[1][highest] else "roller",
         met=int(facts["met"][i]),
         conditions=int(facts["conditions"][i]),
         status=str(facts["status"][i]),
@@ -846,17 +845,10 @@ def _tradeoff(results: Results) -> Tradeoff | None:
         )
         for place in end_places(front)
     )
-    first = np.unique(front[goals[0][0]].values[front["optimal"].values == 1].astype(float))
-    first = first[np.isfinite(first) & (first > 0)]
-    gap: tuple[float, ...] = ()
-    if len(first) > 1:
-        widest = int(np.argmax(first[1:] / first[:-1]))
-        if first[widest + 1] > GAP * first[widest]:
-            gap = float(first[widest]), float(first[widest + 1])
     words = tuple(
         (str(front[n].attrs.get("long_name") or n), str(front[n].attrs.get("units", "")), way) for n, way in goals
     )
-    return Tradeoff(words, ends, int((front["optimal"].values == 1).sum()), gap)
+    return Tradeoff(words, ends, int((front["optimal"].values == 1).sum()))
 
 
 def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
@@ -874,8 +866,9 @@ def _turns(cases: Cases, found: Verdict) -> tuple[Turn, ...]:
     if one.ends == "wear" or not turns:
         turns.append(_of_wear(cases, one, least, until))
         alone = np.isfinite([turns[-1].value, turns[-1].until]).any() or np.isfinite(found.required)
-        if other is not None and other.ends == "wear" and not alone:  # one coefficient does not decide
-            turns.append(_of_wear(cases, other, np.nan, np.nan))
+        if not alone:  # one coefficient does not decide
+            others = (c for c in found.best if c.number != one.number and c.ends == "wear")
+            turns += [_of_wear(cases, c, np.nan, np.nan) for c in others]
     first = {(turn.what, turn.of, turn.on): turn for turn in reversed(turns)}
     return tuple(turn for turn in turns if first[turn.what, turn.of, turn.on] is turn)
 

@@ -13,7 +13,7 @@ from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
 from trackroller.report.numbers import as_given, capital, count, head_unit, listing, long_name, plain
-from trackroller.report.words.designs import design_words, ends_words
+from trackroller.report.words.designs import body_words, design_words, ends_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading
 from trackroller.results.candidates import UNRANKED, Candidates
@@ -62,7 +62,7 @@ def candidates_side_by_side(results: Results) -> style.Drawn:
         style.log_ticks(axes.xaxis, *axes.get_xlim())
     style.name_rows(axes, place, [textwrap.fill(name, WIDEST) for name in names])
     for at, one in zip(place, listed, strict=True):
-        text = f"{ends_words(one)}, {one.body}" if rising and one.ends else ""
+        text = f"{ends_words(one)}, {body_words(candidates, one)}" if rising and one.ends else ""
         axes.text(1.01, at, text, transform=axes.get_yaxis_transform(), va="center", fontsize=7)
     axes.set(ylim=(-0.6, len(listed) - 0.4), xlabel=f"{ranked.goal[1]} [{head_unit(unit)}]")
     figure.legend(loc="outside lower center", ncols=4, columnspacing=1.0, handletextpad=0.4)

@@ -24,17 +24,18 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
     -------
     The figure and its caption, or None if no body has known damage.
     """
-    shares, unknown = {}, np.zeros(ds.sizes["block"], dtype=bool)
+    shares, unknown = {}, {}
     for body in BODIES:
         _, damage = known_damage(ds, body)
         if (whole := float(np.nansum(damage))) > 0:
             shares[body] = np.nan_to_num(damage) / whole
-            unknown |= np.isnan(damage)
+            unknown[body] = np.isnan(damage)
     if not shares:
         return None
     names = [str(name) for name in ds["block"].values]
     order = np.argsort(-sum(shares.values()), kind="stable")
-    order = order[~unknown[order]]
+    nowhere = np.logical_and.reduce(list(unknown.values()))
+    order = order[~nowhere[order]]
     shown, rest = order[:MOST], order[MOST:]
     words = [names[i] for i in shown] + ([f"{len(rest)} others"] if len(rest) else [])
     figure, panels = style.panels(
@@ -50,7 +51,10 @@ def damage_by_block(ds: xr.Dataset) -> style.Drawn:
         most = int(np.argmax(part))
         worst_blocks.append(f"{chance(float(part[most]))} of the damage of the {body} comes from '{names[most]}'")
     panels[0].invert_yaxis()
-    caption = "Share of each block in the damage of a shift, in the track of each body that fails first."
-    if unknown.any():
-        caption += f" Blocks without known damage are not counted: {listing(ds['block'].values[unknown].tolist())}."
+    caption = "Share of each block in the damage of all blocks, in the track of each body that fails first."
+    missing = {body: listing(ds["block"].values[rows].tolist()) for body, rows in unknown.items() if rows.any()}
+    if len(set(missing.values())) == 1 and len(missing) == len(unknown):
+        caption += f" Blocks without known damage are not counted: {next(iter(missing.values()))}."
+    else:
+        caption += "".join(f" Not counted for the {body}, without known damage: {m}." for body, m in missing.items())
     return figure, style.FigureInfo("damage_by_block", caption, f"{listing(worst_blocks)}.")

@@ -193,10 +193,17 @@ def _facts(results: Results, merged: dict[str, Any]) -> str:
         str(merged.get("date_created", ""))[:10],
         f"design of experiments {plain(design)}" + f" with {most}{count(samples)} samples" * METHODS[design].sampled,
         size_words(results),
-        f"contact model {_option_text(merged['contact_model'])}",
-        f"accuracy {_option_text(merged['accuracy'])}",
+        *(
+            f"{plain(name)} {_option_text(_levels(results, name, merged[name]))}"
+            for name in ("contact_model", "accuracy")
+        ),
     ]
     return " · ".join(filter(None, parts))
+
+
+def _levels(results: Results, name: str, value: Any) -> Any:
+    """Return the levels of an option that is a factor, otherwise its value."""
+    return results.levels(name) if name in results.factors else value
 
 
 def _option_text(value: Any) -> str:

@@ -8,9 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import LIMITS
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
-from trackroller.report.numbers import count, level_text, listing, long_name, number, plain, setting, share
+from trackroller.report.numbers import capital, count, level_text, listing, long_name, number, plain, setting, share
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import bodies_of, of_body
 from trackroller.report.words.designs import limit_title
@@ -34,8 +35,7 @@ def valid_cases(results: Results) -> Sentence:
     values |= {name: int(getattr(results, name).sum()) for name in ("rolling", "inside", "valid")}
     values["unknown"] = int(results.without_fatigue.sum())
     values["chance"] = results.config.failure_probability
-    exceeded = {name: int((results.valid & rows).sum()) for name, rows in results.limits_in("exceeded").items()}
-    values["exceeded"] = {limit_title(name): n for name, n in exceeded.items() if n}
+    values["exceeded"] = int((results.valid & ~results.held).sum())
     if results.allowed is not None:
         values["constraints"] = [f"`{limit}`" for limit in results.config.constraints]
     values |= {
@@ -87,7 +87,8 @@ def silent_drive(results: Results) -> Sentence | None:
 def event_words(results: Results, finding: Finding) -> Sentence:
     """Say how often an event occurs, and at which levels of the factors."""
     values = dict(finding.values)
-    values["subject"] = EVENTS.get(values["what"], values["what"])
+    what = values["what"]
+    values["subject"] = f"{capital(limit_title(what))} beyond its limit" if what in LIMITS else EVENTS.get(what, what)
     values["model"] = finding.models[0] if "contact_model" in results.factors else ""
     if "conditions" in values:
         values["places"] = [f"at {_levels_words(results, name, levels)}" for name, levels in values["conditions"]]

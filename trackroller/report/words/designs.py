@@ -166,7 +166,8 @@ def best_table(results: Results) -> Table | None:
     rows = [[heading(n), *(factor_cell(n, value) for value in values)] for n, values in own.items()] + rows
     rows += _judged(candidates, best) if candidates.goal != UNRANKED else []
     rows += _on_targets(candidates, best)
-    for name, words in (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off")):
+    margins_of = (("slip_margin", "Least margin to slip"), ("lift_off_margin", "Least margin to lift-off"))
+    for name, words in margins_of if results.study.carriage is None else ():  # a row of a carriage has one load case
         if any(row[name] < 1 for row in best):  # without a drive nothing slips
             margins = [("none" if row[name] <= 0 else percent(row[name])) for row in best]
             rows.append([words, *(m if np.isfinite(row[name]) else "–" for m, row in zip(margins, best, strict=True))])
@@ -316,7 +317,8 @@ def body_words(candidates: Candidates, one: Candidate) -> str:
     """Name the body that ends a candidate; of a carriage that of its worst roller, with its load case."""
     roller, _, load_case = roller_words(candidates.results, one.case).partition(" in ")
     place = f"rail at {roller}" if one.body == "guide" else roller
-    return f"{place} (most of it in {load_case})" if roller else one.body
+    bodies = dict.fromkeys([one.body, one.body_high] if one.ends_high in LIMITS and one.high > one.low else [one.body])
+    return f"{place} (most of it in {load_case})" if roller else " or ".join(bodies)
 
 
 def _end_cell(candidates: Candidates, one: Candidate | None) -> str:

@@ -35,9 +35,9 @@ def known_damage(ds: xr.Dataset, body: str) -> tuple[int, np.ndarray]:
 def sentences(ds: xr.Dataset) -> list[Sentence]:
     """Return what a spectrum says of roller and guide, the life of the pair to its first limit at the head.
 
-    Blocks that the model does not judge stand before it. Limits that are exceeded or open stand behind it, or before all
-    lives where a body breaks. Then follow the first limit of the other body, and for each body its life by fatigue, the
-    track that fails first and the block with the most damage. Without limits only fatigue is known.
+    Blocks that the model does not judge stand before it. Limits that are exceeded or open stand behind it, or before
+    all lives where a body breaks. Then follow the first limit of the other body, and for each body its life by fatigue,
+    the track that fails first and the block with the most damage. Without limits only fatigue is known.
     """
     by_fatigue = [_sentence(ds, body) for body in BODIES]
     outside = _outside(ds)

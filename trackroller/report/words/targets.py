@@ -14,6 +14,7 @@ from trackroller.report.numbers import (
     chance,
     head_unit,
     level_text,
+    listing,
     long_name,
     number,
     part_of,
@@ -83,8 +84,15 @@ def target(table: xr.Dataset, number: int) -> Sentence:
         points=[point_words(table, i) for i in order] if robust else [],
         tests=_by_tests(table, number),
         changes=long_name(str(part["level_factor"][most[0]].item())) if most else "",
-        ends=[f"{_cell(part, 'level', i)} at {_level_words(part, i)}" for i in most or ()],
+        ends=[f"{_cell(part, 'level', i)} at {_alike(part, i)}" for i in most or ()],
     )
+
+
+def _alike(part: xr.Dataset, place: int) -> str:
+    """Name the levels of a factor that have the same probability as one of them."""
+    share, names = part["level_probability"].values, part["level_factor"].values
+    same = np.flatnonzero((names == names[place]) & (np.abs(share - share[place]) < SAME))
+    return listing([_level_words(part, int(i)) for i in same], "or")
 
 
 def _by_tests(table: xr.Dataset, number: int) -> str:

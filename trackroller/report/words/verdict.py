@@ -39,6 +39,7 @@ from trackroller.report.words.designs import (
     unanswered,
     worst_words,
 )
+from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import UNRANKED, Candidates, of_one_model
@@ -201,6 +202,7 @@ class _Words:
         values["beyond"] = BEYOND * bool((cases.beyond | cases.beyond_at_high)[rows].any())
         values["ranged"] = bool((high > low * (1 + SAME)).any())
         values["lives"] = ends_text(float(low.min()), float(high.max()), "", self.found.goal[2])
+        values["model"] = self.results.held_level("contact_model") if "contact_model" in self.results.factors else ""
         return say("verdict", "lives", **values, who=lasting_one(self.candidates))
 
     def ends(self, one: Candidate) -> Sentence:
@@ -420,9 +422,9 @@ class _Words:
             ]
             ends.append(f"{' at '.join(lives)} ({', '.join(setting(n, v) for n, v in choices.items())})")
         ends = list(dict.fromkeys(ends))
-        unit = traded.goals[0][1]
-        gap = [rounded(traded.gap[0]), quantity(traded.gap[1], unit)] if traded.gap else []
-        return say("verdict", "tradeoff", designs=traded.designs, ends=ends, gap=gap)
+        front = self.results.pareto()
+        holes = [] if front is None else holes_words(front)
+        return say("verdict", "tradeoff", designs=traded.designs, ends=ends, holes=holes)
 
     def rest(self) -> list[Sentence | None]:
         """Say the verdict over the conditions that remain."""
@@ -506,7 +508,9 @@ class _Words:
         found = self.found.ranked
         if not found.best or found.why == "model" or "fatigue" not in (found.best[0].ends, found.best[0].ends_high):
             return None
-        material = str(self.results.material(found.best[0].body)[found.best[0].case])
+        one = found.best[0]
+        body, case = (one.body, one.case) if one.ends == "fatigue" else (one.body_high, one.case_high)
+        material = str(self.results.material(body)[case])
         return say("verdict", "guessed", material=material) if material in guessed_lines(self.results.data) else None
 
     def bearings(self) -> Sentence | None:
@@ -532,11 +536,11 @@ class _Words:
         if not found.best or "wear" not in (found.best[0].ends, found.best[0].ends_high):
             return None
         one, results = found.best[0], self.results
-        case = one.case if one.ends == "wear" else one.case_high
-        own, on = (str(results.material(body)[case]) for body in (one.body, *({*BODIES} - {one.body})))
+        worn_body, case = (one.body, one.case) if one.ends == "wear" else (one.body_high, one.case_high)
+        own, on = (str(results.material(body)[case]) for body in (worn_body, *({*BODIES} - {worn_body})))
         places = placeholders_of(results.data)
         guessed = any((p.limit, p.material) == ("wear", own) and p.on in ("", on) for p in places)
-        flags = int(results.column(f"validity_{one.body}", missing=0)[case])
+        flags = int(results.column(f"validity_{worn_body}", missing=0)[case])
         worn = bool(flags & validity_bit("worn"))
         guessed &= found.kind != "measure"
         hopeless = found.kind == "none" and bool(found.target)  # a measurement decides nothing
