@@ -356,7 +356,7 @@ def test_the_sheet_names_what_it_rests_on(complete):
     facts, _ = complete
     assert "ISO" not in facts.standards and "EN 13001-3-3" in facts.standards  # no bearing was given
     (told,) = facts.not_checked
-    assert "heat (give heat_transfer_coefficient)" in told and "bearing (give bearing)" in told
+    assert "heat of the roller (give heat_transfer_coefficient)" in told and "bearing (give bearing)" in told
     (value,) = (text for text in facts.data if text.startswith("Friction coefficient"))
     known = builtin_database().friction("1.7225-normalised", "PA6")
     assert float(value.split()[2].rstrip(":")) == pytest.approx(known.value, rel=5e-3)

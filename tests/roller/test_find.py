@@ -93,3 +93,15 @@ def test_the_command_prints_the_range_and_its_exit_code_says_whether_there_is_on
     told = json.loads(capsys.readouterr().out)
     assert told["low"] is None and told["name"] == "axial_force"
     assert run_app(lambda: app(words)) == 2 and "--for" in capsys.readouterr().err
+
+
+def test_what_a_condition_does_not_count_is_told():
+    """A life is a range by the wear coefficient, and the guide has no hours without its overrollings."""
+    case = {"radial_force": -150, "axial_force": 5, "motor_force": 0, "permissible_wear_depth": 0.05}
+    options = {"contact_model": "sliding", "accuracy": "preview"}
+    wish = "pair_life_to_first_limit_hours > 10"
+    alone = tr.find(case, "axial_force", wish, **options)
+    assert any("pair_life_to_first_limit_hours_low is surely reached" in note for note in alone.notes)
+    assert "give guide_overrollings_per_hour" in alone.text
+    whole = tr.find(case | {"guide_overrollings_per_hour": 60}, "axial_force", "pair_life_hours > 10", **options)
+    assert whole.notes == ()

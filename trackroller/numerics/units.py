@@ -64,9 +64,16 @@ def without_units(text: str, unit_of: Callable[[str], str | None], field: str) -
         wanted = unit_of(name)
         if wanted is None:  # whoever reads the text refuses the name
             return f"{name}{sign}{number}{end}"
+        check_hours(f"{number} {unit}", unit, wanted, field)
         return f"{name}{sign}{in_unit(float(number), unit, wanted, field):.15g}{end}"
 
     return _COMPARED.sub(plain, text) if isinstance(text, str) else text
+
+
+def check_hours(given: Any, unit: str, wanted: str, field: str) -> None:
+    """Refuse hours of travel that are given in another unit of time: a year of a duty has fewer of them than a year."""
+    if wanted == "h" and unit.strip() not in ("h", "hour", "hours", ""):
+        raise InputError(field, given, "hours of travel, h", "Multiply years by the hours of a year of the duty.")
 
 
 def in_unit(number: float, unit: str, wanted: str, field: str, difference: bool = False) -> float:

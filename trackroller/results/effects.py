@@ -128,14 +128,22 @@ def class_effect(results: Results, column: str, factor: str, rows: np.ndarray) -
     """
     if not results.ordered(factor):
         return None
-    x, logs = _logarithms(results, column, factor, rows)
+    x = _logarithms(results, column, factor, rows)[0]
     if len(x) < 3 * FEWEST_ROWS:
         return None
     ends = np.sort(x)[[len(x) // 3, len(x) - 1 - len(x) // 3]]
-    found = _between(factor, x, logs, (float(ends[0]), float(ends[1])), FEWEST_ROWS)
+    return _alone(results, column, factor, rows, (float(ends[0]), float(ends[1])), FEWEST_ROWS)
+
+
+def _alone(
+    results: Results, column: str, factor: str, rows: np.ndarray, ends: tuple[float, float], fewest: int
+) -> Effect | None:
+    """Compare the classes of a factor; None if the other factors make more of it than its interval allows for."""
+    x, logs = _logarithms(results, column, factor, rows)
+    found = _between(factor, x, logs, ends, fewest)
     if found is None:
         return None
-    alone = _between(factor, x, logs - _of_others(results, column, factor, rows), (found.low, found.high), FEWEST_ROWS)
+    alone = _between(factor, x, logs - _of_others(results, column, factor, rows), ends, fewest)
     return found if alone is not None and found.interval[0] <= alone.ratio <= found.interval[1] else None
 
 
@@ -236,8 +244,7 @@ def of_strata(pooled: Effect, parts: list[tuple[str, Any, Effect]]) -> tuple[Eff
 def _repeated(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:
     """Return the effect between the same levels or classes for other rows."""
     if np.isfinite(effect.interval[0]):
-        x, logs = _logarithms(results, column, effect.factor, rows)
-        return _between(effect.factor, x, logs, (effect.low, effect.high), FEWEST_STRATUM)
+        return _alone(results, column, effect.factor, rows, (effect.low, effect.high), FEWEST_STRATUM)
     matrix, levels = pair_matrix(results, column, effect.factor, rows)
     if not len(matrix):
         return None

@@ -41,6 +41,7 @@ REPORTED = 10  # optima that are solved again at reference, spread along the fro
 DECIDED = 2  # designs of the best fronts that the study's model decides among, in populations
 TOLERANCE = 0.05  # mm; a choice without the unit mm is changed by 1 % of its range
 POLISH_STEPS = (0.04, 0.02, 0.01, 0.005)  # shares of the range of a real choice
+REPEATED = 3  # times that each of these steps is taken
 
 
 @dataclass
@@ -207,8 +208,11 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
 
 
 def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> Judged:
-    """Add neighbours of the recommended design, in falling steps from the best one found so far."""
-    for step in POLISH_STEPS:
+    """Add neighbours of the recommended design, in falling steps from the best one found so far.
+
+    A step is taken again from the design that it has found, some times at most.
+    """
+    for step in (step for step in POLISH_STEPS for _ in range(REPEATED)):
         front = decided.take(np.flatnonzero(nondominated_ranks(decided.costs, decided.missed) == 0))
         middle = front.genes[recommended(front)]
         known = {row.tobytes() for row in decided.genes}
@@ -241,5 +245,5 @@ def _neighbours(choices: Mapping[str, Factor], genes: np.ndarray) -> list[tuple[
             moved = genes.copy()
             moved[j] = (to - low) / (high - low) if factor.kind == "uniform" else np.log(to / low) / np.log(high / low)
             if moved[j] != genes[j]:
-                out.append((name, f"{side * size:+.3g}", moved))
+                out.append((name, f"{to - value:+.3g}", moved))
     return out

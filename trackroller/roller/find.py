@@ -26,6 +26,7 @@ from trackroller.roller.solver import solve
 STEPS = 24  # values tried on either side of the case
 RATIO = 16.0  # a value of one sign is tried from a sixteenth to sixteen times the case's
 PARTS_OF_A_STEP = (8,) * 5  # each round cuts the step that holds an end into so many parts
+ROUNDING = 1e-9  # of a life, below which its ends are one
 STATUS = "status"  # group of results that are always there
 
 
@@ -48,6 +49,8 @@ class Found:
         Smallest and largest value that was tried. An end of the range that equals one of these is no limit.
     below, above : str
         What is the case just outside either end; an empty text where the search ended.
+    notes : tuple of str
+        What the condition does not count: ends of the range of a life, and a guide whose hours are not known.
     """
 
     name: str
@@ -59,6 +62,7 @@ class Found:
     tried: tuple[float, float]
     below: str
     above: str
+    notes: tuple[str, ...] = ()
 
     @property
     def value(self) -> float:
@@ -84,7 +88,7 @@ class Found:
         unit = "" if self.unit == "-" else f" {self.unit}"
         words, tried = PARAMETERS[self.name].long_name, f"{self.tried[0]:.4g} and {self.tried[1]:.4g}{unit}"
         if not self.met:
-            return f"No {words} between {tried} meets '{self.condition}': {self.below}"
+            return " ".join([f"No {words} between {tried} meets '{self.condition}': {self.below}", *self.notes])
         inside = self.low <= self.start <= self.high
         said = f"'{self.condition}' is met from {self.low:.6g} to {self.high:.6g}{unit} of {words}"
         said += f" (now {self.start:g}{unit}{', where it is not met' * (not inside)})."
@@ -93,7 +97,7 @@ class Found:
         if not (self.below and self.above):
             open_ = [f"{end:.4g}{unit}" for end, why in ((self.low, self.below), (self.high, self.above)) if not why]
             said += f" The search ended at {' and '.join(open_)}."
-        return said
+        return " ".join([said, *self.notes])
 
 
 def find(
@@ -196,6 +200,7 @@ class _Search:
         if VERDICT in groups:
             groups |= set(groups_of("find", ["all"]))
         self.options = {**options, "outputs": tuple(sorted(groups | {"forces"}))}
+        self.ranged: set[str] = set()
 
     def at(self, values: Iterable[float]) -> list[tuple[bool, str]]:
         """Return for each value whether the condition is met, and what the results are."""
@@ -223,6 +228,9 @@ class _Search:
         lacking = [one for one in self.results if one not in columns]
         if lacking:
             raise InputError("find", self.condition, f"results of this roller; it has no {', '.join(lacking)}")
+        for one in self.results:
+            if (low := PARTS.get(f"{one}_low")) is not None and low.variable.name in ds:
+                self.ranged |= {one} if (low.values(ds).values < columns[one] * (1.0 - ROUNDING)).any() else set()
         regime = ds["regime"].values
         columns["regime"] = np.array(REGIMES, dtype=object)[regime]
         columns |= {one: np.array([getattr(case, one) for case in cases], dtype=object) for one in self.parameters}
@@ -235,6 +243,16 @@ class _Search:
             out.append((bool(good), ", ".join(said) + "."))
         return out
 
+    def notes(self) -> tuple[str, ...]:
+        """Say what the condition does not count."""
+        said = [
+            f"{one} lies between the ends of its range; {one}_low is surely reached." for one in sorted(self.ranged)
+        ]
+        alone = self.case.guide_overrollings_per_hour is None and self.name != "guide_overrollings_per_hour"
+        if alone and any(one.startswith("pair_life") for one in self.results):
+            said.append("The guide's hours are not known: give guide_overrollings_per_hour.")
+        return tuple(said)
+
     def found(self, start: float, values: np.ndarray) -> Found:
         """Return the range of values that meet the condition and holds the start, or is next to it."""
         told = self.at(values)
@@ -243,7 +261,9 @@ class _Search:
         unit = PARAMETERS[self.name].unit
         if not held.any():
             nearest = told[int(np.argmin(np.abs(values - start)))][1]
-            return Found(self.name, unit, self.condition, start, math.nan, math.nan, tried, f"now {nearest}", "")
+            return Found(
+                self.name, unit, self.condition, start, math.nan, math.nan, tried, f"now {nearest}", "", self.notes()
+            )
         inside = np.flatnonzero(held)[np.argmin(np.abs(values[held] - start))]
         first, last = inside, inside
         while first > 0 and held[first - 1]:
@@ -264,4 +284,6 @@ class _Search:
         closer = iter(narrowed([end for end, _ in there], PARTS_OF_A_STEP, meets_at))
         ends = [end if math.isnan(end[1]) else next(closer) for end in ends]
         whys = [said.get(outside, "") for _, outside in ends]
-        return Found(self.name, unit, self.condition, start, ends[0][0], ends[1][0], tried, *whys)
+        return Found(
+            self.name, unit, self.condition, start, ends[0][0], ends[1][0], tried, whys[0], whys[1], self.notes()
+        )

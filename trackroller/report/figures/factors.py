@@ -129,7 +129,11 @@ def _compared_words(alike: Compared) -> str:
     """Say of which panels the medians hold the same cases at all levels, and of which they do not."""
     some = [f"{long_name(n)} {own.sum():,}" for n, own in alike.items() if own is not None and not own.all()]
     unlike = [long_name(name) for name, own in alike.items() if own is None]
-    text = f" Drawn are the cases that are valid at all levels of the factor: {listing(some)}." if some else ""
+    text = (
+        f" Drawn are the cases that are valid at all levels of the factor which have valid cases: {listing(some)}."
+        if some
+        else ""
+    )
     if unlike:
         text += f" Other cases are valid at each level of {listing(unlike)}: the medians do not show its effect."
     return text

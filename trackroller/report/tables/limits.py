@@ -308,7 +308,7 @@ class First:
         if not ending:
             return None
         low, high = (min(0.0 if m.breaks else getattr(m, end) for m in ending) for end in ("low", "high"))
-        return cls(tuple(m for m in ending if m is ending[0] or m.low < high * (1.0 - TIED)), low, high)
+        return cls(tuple(m for m in ending if m is ending[0] or m.low <= high * (1.0 + TIED)), low, high)
 
     @property
     def breaks(self) -> bool:
@@ -331,16 +331,16 @@ class First:
         return between(self.low, self.high, any(margin.beyond for margin in self.margins))
 
 
-def first_limits(listed: list[Margin]) -> list[str]:
-    """Return one sentence for roller, guide and pair each on what ends its life first."""
-    out = []
+def first_limits(listed: list[Margin], judged: bool = True) -> list[str]:
+    """Return one sentence for roller, guide and pair each on what ends its life first; `judged` by the model or not."""
+    out, head = [], "First limit" if judged else "If the model holds all the same, first limit"
     for body in BODIES:
         if (own := First.of(m for m in listed if m.body in (body, BOTH))) is not None:
             titles = " or ".join(f"{m.title}{GUESSED * m.guessed}" for m in own.margins)
-            out.append(f"First limit of the {body}: {titles}, {own.when}.")
+            out.append(f"{head} of the {body}: {titles}, {own.when}.")
     if (pair := First.of(listed)) is not None:
         words = " or ".join(margin.words for margin in pair.margins)
-        out.append(f"First limit of the pair: {words}, {pair.when}{_guide_alone(listed)}.")
+        out.append(f"{head} of the pair: {words}, {pair.when}{_guide_alone(listed)}.")
     return out
 
 
@@ -384,6 +384,11 @@ def not_checked(ds: xr.Dataset) -> list[str]:
     lacking: dict[str, list[str]] = {}
     for lack in lacks_of(ds):
         lacking.setdefault(lack.limit, []).append(lack.words if lack.material else f"give {lack.name}")
+    for name in [name for name in lacking if "limit_state" in ds and name in ds["limit"].values]:
+        state = ds["limit_state"].sel(limit=name)
+        known = [b for b in BODIES if bool((state.sel(body=b) != STATES.index("unknown")).any())]
+        if known == ["guide"]:  # so that only the roller lacks it
+            lacking = {f"{n} of the roller" if n == name else n: texts for n, texts in lacking.items()}
     for_guide = [name for name, texts in lacking.items() if texts == [f"give {OF_GUIDE[0]}"]]
     parts = [f"{name} ({', '.join(texts)})" for name, texts in lacking.items() if name not in for_guide]
     parts += [f"{listing(for_guide)} of the guide (give {OF_GUIDE[0]})"] if for_guide else []

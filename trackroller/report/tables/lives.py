@@ -128,4 +128,4 @@ def _of_pair(
     life = _text(hours, inputs, bool(past_data(cycles, materials[body].cycles_at_fatigue_limit)))
     if first == "unknown":
         return Row("pair, median life of the roller alone (the guide's hours are unknown)", life)
-    return Row("pair, median life" + (f" (the {first} fails first)" if first != "none" else ""), life)
+    return Row("pair, median life by fatigue" + (f" (the {first} fails first)" if first != "none" else ""), life)

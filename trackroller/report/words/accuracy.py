@@ -91,7 +91,10 @@ def life_error(results: Results) -> Sentence | None:
     ranked = None if found is None else found.ranked
     if ranked is None or not ranked.best or not ranked.goal_rises or ranked.best[0].error <= LARGE_ERROR:
         return None
-    return say("accuracy", "life", error=ranked.best[0].error, many=len(ranked.candidates) > 1)
+    best, rival = ranked.best[0], ranked.next
+    lead = rival is not None and rival.high * (1 + 2 * best.error) < best.low
+    decided = ranked.kind == "build" and lead and not ranked.target  # a target counts the error itself
+    return say("accuracy", "life", error=best.error, many=len(ranked.candidates) > 1, decided=decided)
 
 
 _ROLLING = REGIMES.index("rolling")

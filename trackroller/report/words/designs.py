@@ -44,6 +44,7 @@ from trackroller.roller.output_names import is_life
 
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
+UNHELD, UNJUDGED = "does not hold", "not judged"  # of a candidate at its worst condition
 
 
 def design_words(candidates: Candidates, row: Mapping[Any, Any] | pd.Series) -> str:
@@ -344,14 +345,21 @@ def _of_verdict(candidates: Candidates, best: list[pd.Series]) -> list[Candidate
 def _worst_row(candidates: Candidates, known: list[Candidate | None], place: str) -> list[Any]:
     """Return the row on the life of each design at its worst condition, empty for drawn conditions.
 
-    It is that of the verdict: 0 h where a design does not hold a condition, and both ends of a range if one is a range.
+    It is that of the verdict: none where a design does not hold a condition, and both ends of a range if one is one.
     """
     head, unit = f"{capital(candidates.goal[1])}{', ' * bool(place)}{place}", candidates.goal[2]
     if candidates.drawn or not known:
         return []
     if any(one is not None and one.high > one.low * (1 + SAME) for one in known):
-        return [head, *("–" if one is None else span_words(one, unit) for one in known)]
-    return [with_unit(head, unit), *(math.nan if one is None else Life(one.low, one.beyond) for one in known)]
+        texts = ("–" if one is None else UNHELD if one.high == 0.0 else span_words(one, unit) for one in known)
+        return [
+            head,
+            *(UNJUDGED if one is not None and not one.judged else t for one, t in zip(known, texts, strict=True)),
+        ]
+    return [
+        with_unit(head, unit),
+        *(math.nan if one is None else Life(one.low, one.beyond) if one.low > 0.0 else UNHELD for one in known),
+    ]
 
 
 def span_words(one: Candidate, unit: str) -> str:

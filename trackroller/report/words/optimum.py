@@ -96,7 +96,8 @@ def searched(results: Results) -> list[Sentence]:
         return []
     facts = ("designs", "generations", "model", "valid", "stopped")
     how = say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts})
-    return [*([_checked(search)] if search["optima"] and least_violation(search) < 1 else []), how]
+    checked = _checked(results, search) if search["optima"] and least_violation(search) < 1 else None
+    return [*([] if checked is None else [checked]), how]
 
 
 def _best(results: Results, search: dict[str, Any]) -> dict[str, Any] | None:
@@ -268,8 +269,9 @@ def _edges(results: Results, number: int) -> list[str]:
 
 
 def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
-    """Name the limits that the search did not check, where a goal is a life."""
-    if not any(is_life(judged_by(goal)[1]) for goal in search["goals"]):
+    """Name the limits that the search did not check, where a goal or the target is a life."""
+    asked = [*(judged_by(goal)[1] for goal in search["goals"]), *results.config.analysis.target]
+    if not any(map(is_life, asked)):
         return None
     left_out = not_checked(results)
     names, vain = unchecked_words(results, left_out), vain_in_base(results, left_out)
@@ -294,11 +296,15 @@ def _unreached(results: Results, search: dict[str, Any]) -> Sentence | None:
     return say("optimum", "unreached", goals=low) if low else None
 
 
-def _checked(search: dict[str, Any]) -> Sentence:
+def _checked(results: Results, search: dict[str, Any]) -> Sentence | None:
+    """Say how much goals that are results change at `reference`; None where all goals are choices."""
     optima = search["optima"]
-    change = max(abs(c) for one in optima for c in _changes(one["values"], one["reference"]))
+    solved = [i for i, goal in enumerate(search["goals"]) if goal not in results.design.meta["outer"]]
+    if not solved:
+        return None
+    change = max(abs(_changes(one["values"], one["reference"])[i]) for one in optima for i in solved)
     worse = sum(one["violation"][1] > one["violation"][0] for one in optima)
-    return say("optimum", "checked", change=change, worse=worse, many=len(optima), several=len(search["goals"]) > 1)
+    return say("optimum", "checked", change=change, worse=worse, many=len(optima), several=len(solved) > 1)
 
 
 def _changes(before: list[float], after: list[float]) -> list[float]:

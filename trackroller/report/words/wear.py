@@ -7,8 +7,9 @@ import xarray as xr
 
 from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.parameters import BODIES
-from trackroller.report.numbers import lasting
+from trackroller.report.numbers import lasting, quantity, rounded
 from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.record import inputs_of
 from trackroller.roller.wearing import ENDS
 
@@ -28,7 +29,7 @@ def run_in(ds: xr.Dataset) -> str:
 
 def sentences(ds: xr.Dataset) -> list[Sentence]:
     """Return what a user asks first: how far, how deep, how pressure and patch change, and the life with wear."""
-    return [_end(ds), _pressure(ds), *(s for body in BODIES if (s := _life(ds, body)) is not None)]
+    return [_end(ds), *_guessed(ds), _pressure(ds), *(s for body in BODIES if (s := _life(ds, body)) is not None)]
 
 
 def _worn(depth: xr.DataArray) -> dict[str, float]:
@@ -43,6 +44,17 @@ def _end(ds: xr.Dataset) -> Sentence:
     travel = float(ds["travel"][-1])
     hours = travel / (KM_PER_HOUR * float(inputs_of(ds)["velocity"]))
     return say("wear", "wear_end", travel=travel, life=lasting(hours, "h"), depths=depths, why=why)
+
+
+def _guessed(ds: xr.Dataset) -> list[Sentence]:
+    """Say of which materials the wear coefficient is a guess."""
+    own = [one for one in placeholders_of(ds) if one.name == "wear_coefficient"]
+    named = [
+        f"{one.material}{f' on {one.on}' * bool(one.on)}, expected from {rounded(one.low)} to "
+        f"{quantity(one.high, one.units)}"
+        for one in own
+    ]
+    return [say("wear", "wear_guessed", named=list(dict.fromkeys(named)))] if named else []
 
 
 def _pressure(ds: xr.Dataset) -> Sentence:

@@ -26,7 +26,7 @@ from trackroller.damage import judged
 from trackroller.errors import InputError, collected, listing, raise_all, unknown_name
 from trackroller.methods.factor import Factor
 from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.units import split_quantity, without_units
+from trackroller.numerics.units import check_hours, split_quantity, without_units
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import PARTS, body_of, is_life, parts_of, unit_of
@@ -68,8 +68,8 @@ def _limits(name: str, given: Any) -> dict[str, float]:
 def _limit(name: str, given: Any, where: str) -> float:
     """Return the number of a limit in the unit of its output; a life in years is refused."""
     unit = unit_of(name)
-    if unit == "h" and (parts := split_quantity(given)) and parts[1].strip() not in ("h", "hour", "hours"):
-        raise InputError(where, given, "hours of travel, h", "Multiply years by the hours of a year of the duty.")
+    if parts := split_quantity(given):
+        check_hours(given, parts[1], unit or "", where)
     number = number_or_nan(given, unit, where)
     if not math.isfinite(number):
         raise InputError(where, given, "a number", f"It may have a unit that can be converted to {unit or 'its own'}.")
