@@ -93,7 +93,8 @@ def life_error(results: Results) -> Sentence | None:
         return None
     best, rival = ranked.best[0], ranked.next
     lead = rival is not None and rival.high * (1 + 2 * best.error) < best.low
-    decided = ranked.kind == "build" and lead and not ranked.target  # a target counts the error itself
+    met = not ranked.target or best.low > ranked.required * (1 + 2 * best.error)
+    decided = ranked.kind == "build" and lead and met
     return say("accuracy", "life", error=best.error, many=len(ranked.candidates) > 1, decided=decided)
 
 
