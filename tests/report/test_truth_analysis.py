@@ -127,9 +127,13 @@ def check_indices(sens, output, index):
     assert said.text.lower().startswith(names[first])
     agrees(re.split("accounts for |explains ", said.text)[1], value[first], low[first], high[first], 100.0)
     more, _, small = said.text.split("index", 1)[1].partition("; ")
+    unsure, small = small.rpartition("; ")[::2] if "known from 0" in small and "less than" in small else ("", small)
+    unsure, small = (small, "") if small.startswith("not known from 0") else (unsure, small)
     for i, name in enumerate(names):
         if i != first and name in more:
             agrees(more.split(f"{name} ")[1], value[i], low[i], high[i], 100.0)
+        if name in unsure:  # the interval holds 0
+            assert low[i] < 0.005 and f"{name} (0 to {100 * high[i]:.0f} %)" in unsure
         if i != first and name in small:
             assert (high[i] if np.isfinite(high[i]) else value[i]) < 0.02
     kinds.add(check_interaction(sens, output))

@@ -241,10 +241,17 @@ def of_strata(pooled: Effect, parts: list[tuple[str, Any, Effect]]) -> tuple[Eff
     return replace(pooled, ratio=float(np.exp(mean)), interval=interval, size=size), own
 
 
+def stands_alone(results: Results, column: str, effect: Effect, rows: np.ndarray) -> bool:
+    """Say whether the other factors leave an effect of classes within its interval, for some of the rows."""
+    ends = effect.low, effect.high
+    return _alone(results, column, effect.factor, rows, ends, FEWEST_STRATUM) is not None
+
+
 def _repeated(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:
     """Return the effect between the same levels or classes for other rows."""
     if np.isfinite(effect.interval[0]):
-        return _alone(results, column, effect.factor, rows, (effect.low, effect.high), FEWEST_STRATUM)
+        x, logs = _logarithms(results, column, effect.factor, rows)
+        return _between(effect.factor, x, logs, (effect.low, effect.high), FEWEST_STRATUM)
     matrix, levels = pair_matrix(results, column, effect.factor, rows)
     if not len(matrix):
         return None

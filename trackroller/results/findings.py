@@ -46,6 +46,7 @@ WORTH = 0.05  # of the variance: a smaller interaction changes no decision
 APART = 2.0  # ratio of the effects within two levels of a category, from which on each is told
 EVEN = 0.1  # difference of the shares of cases that constraints leave, up to which they cut evenly
 ALIKE = 1e-6  # relative difference of two indices that count as equal
+NOTHING = 0.005  # of the variance: the low end of an interval below it is told as 0 %
 ROUNDING = 1e-9  # of the margin to slip
 STRAIGHT, BENT = 0.1, 0.5  # standard deviation over mean of elementary effects, up to which they are alike or scatter
 NEGLIGIBLE = 0.02  # share of the variance below which a factor does not matter
@@ -251,6 +252,8 @@ def index_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
     ties = [r for r in ranks[1:] if abs(r.value - ranks[0].value) <= ALIKE * abs(ranks[0].value)]
     small = [r for r in ranks[1:] if _small(r, ranks[0], sized)]
     values = {"output": output, "index": index, "sized": sized, "ranks": ranks, "ties": ties, "small": small}
+    # an interval that holds 0 neither ranks a factor nor says that it is small
+    values["unsure"] = [r for r in ranks[1:] if not sized and r not in [*ties, *small] and r.low < NOTHING]
     return values | {"correlated": correlated, "used": used_share(sens, output)}
 
 
@@ -429,6 +432,8 @@ def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray,
     effect, within = effects.of_strata(effect, values["parts"])
     folds = [np.log(e.ratio) for _, _, e in within]
     apart = bool(folds) and max(folds) - min(folds) > np.log(APART)
+    inside = [(part, rows & (results.table[name] == level).to_numpy()) for name, level, part in within]
+    apart = apart and all(effects.stands_alone(results, column, part, own) for part, own in inside)
     values |= {"effect": effect, "within": within, "apart": within if apart else []}
     against = [p for p in values["parts"] if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
     opposed = [p for p in values["parts"] if p[2].interval[0] > 1 or p[2].interval[1] < 1]

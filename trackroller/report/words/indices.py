@@ -89,7 +89,7 @@ def index_words(
     values, output = finding.values, finding.values["output"]
     ranks, sized, index = values["ranks"], values["sized"], values["index"]
     together = [ranks[0].name, *(r.name for r in values["ties"])]
-    large = [r for r in ranks[1:] if r not in values["small"] and r not in values["ties"]]
+    large = [r for r in ranks[1:] if r not in [*values["small"], *values["ties"], *values["unsure"]]]
     unit = f" {effect_unit(sens, output)}".replace(" –", "") if sized else ""
     shares = [f"{r.name} {percent(r.value, r.low, r.high)}" for r in large]
     coded = {r.name: f" (from {levels[r.factor]})" for r in ranks if levels and r.factor in levels}
@@ -99,6 +99,7 @@ def index_words(
     words |= {
         "idle": [r.name for r in values["small"] if r.factor in idle],
         "small": [r.name for r in values["small"] if r.factor not in idle],
+        "unsure": [f"{r.name} (0 to {percent(r.high)})" for r in values["unsure"]],
         "words": INDEX_WORDS[index],
         "further": sizes if sized else shares,
     }
