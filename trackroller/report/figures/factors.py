@@ -70,7 +70,8 @@ def by_factor(results: Results) -> style.Drawn:
     if apart:
         looks = [{"color": c, "marker": m} for c, m in zip(colours, style.MARKERS, strict=False)]
         legend(figure, [(text, look) for (text, _), look in zip(levels, looks, strict=True)])
-    each = f" for each level of {long_name(lead)}" if apart else ""
+    kinds = "level" if len(results.levels(lead)) == len(levels) else "class"
+    each = f" for each {kinds} of {long_name(lead)}" if apart else ""
     style.head(figure, f"{capital(words)} against each factor")
     own = f" of {results.held_level('contact_model')}" if "contact_model" in results.factors else ""
     caption = (

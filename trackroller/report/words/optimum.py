@@ -261,9 +261,11 @@ def _edges(results: Results, number: int) -> list[str]:
     """Return the choices of a design that stand at an end of the range that the search may take."""
     found = []
     for name, value in choices_of(results, number).items():
-        ends = results.design.factors[name].numbers[:2]
-        width = ends[1] - ends[0] if len(ends) == 2 else 0.0
-        if width and min(abs(value - end) for end in ends) <= AT_END * abs(width):
+        factor = results.design.factors[name]
+        tried = list(factor.levels if factor.discrete and factor.ordered and len(factor.levels) > 2 else factor.numbers)
+        ends = (min(map(float, tried)), max(map(float, tried))) if tried else (0.0, 0.0)
+        width = ends[1] - ends[0]
+        if width and min(abs(float(value) - end) for end in ends) <= AT_END * width:
             found.append(name)
     return found
 
