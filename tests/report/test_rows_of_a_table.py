@@ -76,7 +76,7 @@ def test_a_coarse_life_states_its_error():
     worst = int(np.argmin(shortest.values))
     assert error == pytest.approx(float(own.sel(body=coarse.verdict.best[0].body).values[worst])) and error > 0.1
     assert (
-        said == [{"error": error, "many": True, "decided": said[0]["decided"]}]
+        said == [{"error": error, "many": True, "decided": said[0]["decided"], "worst": True}]
         and sure(contact_model="sliding")[1] == []
     )
 

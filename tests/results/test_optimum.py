@@ -418,3 +418,12 @@ def test_a_target_on_a_force_decides_a_search_without_lives_and_stresses():
             assert ((shortfall(results) == 0) == (worst >= least)).all() and 0 < (worst >= least).sum() < len(worst)
         forces[least] = worst[optimum_of(results)["recommended"]]
     assert forces[None] < 8.0 <= forces[8.0]
+
+
+def test_of_equal_goals_the_longer_life_is_recommended():
+    from trackroller.results.judging import Judged, recommended
+
+    nothing = np.zeros(3)
+    lives = np.array([1790.0, 18600.0, 4000.0])
+    tied = Judged(np.zeros((3, 1)), np.full((3, 1), 9.0), np.full((3, 1), 9.0), nothing, nothing, lives)
+    assert recommended(tied) == 1

@@ -39,6 +39,7 @@ class Judged:
     reasons : cases by what they break, of all designs together
     short : how far a design is from the target of the study, see `shortfall`; shape (n,),
         0 everywhere without a target
+    life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere without lives
     """
 
     genes: np.ndarray
@@ -46,6 +47,7 @@ class Judged:
     costs: np.ndarray
     violation: np.ndarray
     short: np.ndarray
+    life: np.ndarray
     reasons: Mapping[str, int] = field(default_factory=dict)
 
     @property
@@ -67,7 +69,7 @@ class Judged:
         return replace(self, **both, reasons=counts)
 
 
-_BY_DESIGN = ("genes", "values", "costs", "violation", "short")
+_BY_DESIGN = ("genes", "values", "costs", "violation", "short", "life")
 
 
 def goals_of_search(results: Results) -> dict[str, str]:
@@ -94,7 +96,17 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
     costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
     violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
     short = shortfall(results, any(judged_by(goal)[0] == "b10" for goal in goals))
-    return Judged(genes, table, costs, violation.astype(float), short, _reasons(results, known.ravel()))
+    return Judged(
+        genes, table, costs, violation.astype(float), short, _shortest(results), _reasons(results, known.ravel())
+    )
+
+
+def _shortest(results: Results) -> np.ndarray:
+    """Return the shortest life of each design over its conditions, of a range its low end, shape (designs,)."""
+    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
+    if results.life is None:
+        return np.zeros(shape[0])
+    return np.asarray(Cases(Candidates.grouped(results, results.life)).ends[0].reshape(shape).min(axis=1))
 
 
 def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
@@ -189,10 +201,10 @@ def recommended(best: Judged) -> int:
     """Return the design of a front that is nearest to the best of all goals, each normalised over the front.
 
     Only the designs that miss least count. Lives count by their logarithm, because they span decades. Of equal designs,
-    the first goal decides.
+    the first goal decides, then the longer life.
     """
     shares = _normalised(best.costs)
-    return int(np.lexsort((shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0])
+    return int(np.lexsort((-best.life, shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0])
 
 
 def _normalised(costs: np.ndarray) -> np.ndarray:

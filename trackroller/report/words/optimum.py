@@ -23,6 +23,7 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
+from trackroller.report.words.accuracy import LARGE_ERROR
 from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
 from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
@@ -97,7 +98,11 @@ def searched(results: Results) -> list[Sentence]:
     facts = ("designs", "generations", "model", "valid", "stopped")
     how = say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts})
     checked = _checked(results, search) if search["optima"] and least_violation(search) < 1 else None
-    return [*([] if checked is None else [checked]), how]
+    best = _best(results, search)
+    found = None if best is None else _first_life(results, search, best)
+    error = 0.0 if found is None else float(found[0].error[found[1]])
+    rough = [say("accuracy", "life", error=error, many=False, decided=False, worst=True)] if error > LARGE_ERROR else []
+    return [*([] if checked is None else [checked]), *rough, how]
 
 
 def _best(results: Results, search: dict[str, Any]) -> dict[str, Any] | None:
