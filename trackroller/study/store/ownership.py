@@ -324,7 +324,13 @@ def note(root: Path, scratch: Path) -> None:
     if number and number == _number(notes) and line in lines:
         return
     if not number or number != _number(notes):
-        make_way(notes, root)
+        for part in _within(root, notes):
+            refuse_link(part, "results folder")
+        try:
+            make_way(notes, root)
+        except InputError:  # another process may have added a line between the two looks at the file
+            if not _proved_alone(root, notes):
+                raise
         lines = set()
     with disk_errors(notes):
         notes.parent.mkdir(exist_ok=True)
