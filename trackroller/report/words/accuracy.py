@@ -12,8 +12,6 @@ from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import capital, level_text, number, percent
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.results.candidates import Candidates
-from trackroller.results.intervals import Cases
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.record import friction_records
@@ -85,29 +83,6 @@ def accuracy(results: Results) -> list[Sentence]:
     if cases := int((results.flagged("split_pole") & results.rolling).sum()):
         said.append(say("accuracy", "singular", count=cases))
     return said
-
-
-def life_error(results: Results) -> Sentence | None:
-    """State the error by the solution of the life that the verdict names first, where it exceeds `LARGE_ERROR`.
-
-    Of its conditions the one counts in which the life may be shortest within its error.
-    """
-    found = results.verdict
-    ranked = None if found is None else found.ranked
-    if ranked is None or not ranked.best or not ranked.goal_rises:
-        return None
-    best, rival = ranked.best[0], ranked.next
-    cases = Cases(Candidates.grouped(results, ranked.goal))
-    rows = np.flatnonzero((cases.candidates.place == best.number) & (cases.reason == ""))
-    least = int(rows[np.argmin(cases.ends[0][rows] / (1 + cases.error[rows]))]) if len(rows) else best.case
-    worst = ranked.sampled or best.error >= float(cases.error[least]) - LARGE_ERROR
-    error = best.error if worst else float(cases.error[least])
-    if error <= LARGE_ERROR:
-        return None
-    lead = rival is not None and rival.high * (1 + 2 * error) < best.low
-    met = not ranked.target or best.low > ranked.required * (1 + 2 * error)
-    decided = ranked.kind == "build" and lead and met
-    return say("accuracy", "life", error=error, many=len(ranked.candidates) > 1, decided=decided, worst=worst)
 
 
 _ROLLING = REGIMES.index("rolling")

@@ -31,6 +31,7 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
+from trackroller.report.words.accuracy import LARGE_ERROR
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, UNRANKED, Candidates, mixed
 from trackroller.results.columns import codes
@@ -404,3 +405,26 @@ def first_words(row: pd.Series) -> str:
     """Say which body fails first, and in how many cases if it is not always the same."""
     counts = {word: n for word in FIRST_TO_FAIL if (n := int(row[f"first_{word}"]))}
     return next(iter(counts)) if len(counts) == 1 else ", ".join(f"{word} in {count(n)}" for word, n in counts.items())
+
+
+def life_error(results: Results) -> Sentence | None:
+    """State the error by the solution of the life that the verdict names first, where it exceeds `LARGE_ERROR`.
+
+    Of its conditions the one counts in which the life may be shortest within its error.
+    """
+    found = results.verdict
+    ranked = None if found is None else found.ranked
+    if ranked is None or not ranked.best or not ranked.goal_rises:
+        return None
+    best, rival = ranked.best[0], ranked.next
+    cases = Cases(Candidates.grouped(results, ranked.goal))
+    rows = np.flatnonzero((cases.candidates.place == best.number) & (cases.reason == ""))
+    least = int(rows[np.argmin(cases.ends[0][rows] / (1 + cases.error[rows]))]) if len(rows) else best.case
+    worst = ranked.sampled or best.error >= float(cases.error[least]) - LARGE_ERROR
+    error = best.error if worst else float(cases.error[least])
+    if error <= LARGE_ERROR:
+        return None
+    lead = rival is not None and rival.high * (1 + 2 * error) < best.low
+    met = not ranked.target or best.low > ranked.required * (1 + 2 * error)
+    decided = ranked.kind == "build" and lead and met
+    return say("accuracy", "life", error=error, many=len(ranked.candidates) > 1, decided=decided, worst=worst)

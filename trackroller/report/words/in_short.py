@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors, life_error
+from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
 from trackroller.report.words.cases import silent_drive, valid_cases
-from trackroller.report.words.designs import within_words
+from trackroller.report.words.designs import life_error, within_words
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.limits import guesses, worn
 from trackroller.report.words.optimum import optimum_sentences, searched, tolerances
