@@ -451,7 +451,7 @@ def test_a_sheet_outside_the_half_space_says_so_first():
     assert float(ds["semi_axis_lateral"].max()) > 0.3 * 6.0
     hours = float(ds["life_to_first_limit_hours"].min())
     verdict = collect(ds).verdict
-    assert verdict.startswith("Outside the half-space: not judged. If the model holds all the same, ")
+    assert verdict.startswith("Outside the half-space: not judged. If it holds, ")
     assert float(re.search(r"after ([\d.]+) h", verdict)[1]) == pytest.approx(hours, rel=5e-3)
     assert "Rolls" not in verdict
     closer = tr.solve(dataclasses.replace(case, roller_material="C45"), (*COMPLETE, "limits"), contact_model="sliding")

@@ -333,7 +333,7 @@ class First:
 
 def first_limits(listed: list[Margin], judged: bool = True) -> list[str]:
     """Return one sentence for roller, guide and pair each on what ends its life first; `judged` by the model or not."""
-    out, head = [], "First limit" if judged else "If the model holds all the same, first limit"
+    out, head = [], "First limit" if judged else "If the model holds, first limit"
     for body in BODIES:
         if (own := First.of(m for m in listed if m.body in (body, BOTH))) is not None:
             titles = " or ".join(f"{m.title}{GUESSED * m.guessed}" for m in own.margins)
