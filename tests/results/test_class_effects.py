@@ -28,7 +28,9 @@ def test_what_another_factor_makes_is_no_effect(seed):
     apart = np.median(lives[picked & (x >= high)]) / np.median(lives[picked & (x <= low)])
     assert apart > 1.5  # pooled classes differ by the radial forces
     none = class_effect(results, LIFE, "motor_force", picked)
-    assert none is None or none.interval[0] < 1 < none.interval[1]  # of no sure sign, which no sentence tells
+    assert (
+        none is None or none.interval[0] < 1 < none.interval[1]
+    )  # the interval holds 1: no sentence tells such an effect
     own = class_effect(results, LIFE, "radial_force", picked)
     low, high = np.quantile(y[picked], [1 / 3, 2 / 3])
     between = np.median(lives[picked & (y >= high)]) / np.median(lives[picked & (y <= low)])

@@ -557,10 +557,14 @@ class Results:
         hit = (flat(self.data, "limit_state", self.dims) == words.index(state)).any(axis=2)  # of (n, limit, body)
         return {name: hit[:, i] for i, name in enumerate(self.data["limit"].values.tolist()) if name not in BESIDE}
 
+    def any_limit_in(self, state: str) -> np.ndarray:
+        """Return the cases in which any of these limits is `exceeded` or `open`, shape (n,)."""
+        return np.asarray(np.any([np.zeros(len(self.table), dtype=bool), *self.limits_in(state).values()], axis=0))
+
     @cached_property
     def held(self) -> np.ndarray:
         """Return the valid cases that exceed no limit on values that were given, shape (n,)."""
-        return np.asarray(self.valid & ~np.any([~self.valid, *self.limits_in("exceeded").values()], axis=0))
+        return np.asarray(self.valid & ~self.any_limit_in("exceeded"))
 
     def meets(self, target: str) -> np.ndarray:
         """Return the cases that meet a target of the study, shape (n,), whether they are valid or not.

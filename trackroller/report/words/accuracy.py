@@ -21,7 +21,6 @@ if TYPE_CHECKING:
 
 SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
 SLIDING_WEAR = "Full sliding errs in friction energy, and so in wear, by 41 % in the median of 92 designs."
-LARGE_ERROR = 0.1  # of the life in the verdict, from which on it is stated
 KNOWN_ERROR = 0.05  # a larger median error of the model is stated beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy_per_distance", "friction_energy_balance")
 

@@ -36,8 +36,7 @@ def valid_cases(results: Results) -> Sentence:
     values["unknown"] = int(results.without_fatigue.sum())
     values["chance"] = results.config.failure_probability
     values["exceeded"] = int((results.valid & ~results.held).sum())
-    opened = [rows for rows in results.limits_in("open").values()]
-    values["open"] = int((results.held & np.any([np.zeros(len(results.table), bool), *opened], axis=0)).sum())
+    values["open"] = int((results.held & results.any_limit_in("open")).sum())
     if results.allowed is not None:
         values["constraints"] = [f"`{limit}`" for limit in results.config.constraints]
     values |= {

@@ -31,7 +31,6 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.accuracy import LARGE_ERROR
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, UNRANKED, Candidates, mixed
 from trackroller.results.columns import codes
@@ -43,6 +42,7 @@ from trackroller.results.verdict import Candidate
 from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.output_names import is_life
 
+LARGE_ERROR = 0.1  # of the life in the verdict, from which on it is stated
 MOST_ROWS = 40  # of a table of own cases that are listed one by one
 BEST = 5  # designs that stand side by side
 UNHELD, UNJUDGED = "does not hold", "not judged"  # of a candidate at its worst condition

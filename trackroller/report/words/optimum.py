@@ -23,8 +23,7 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.accuracy import LARGE_ERROR
-from trackroller.report.words.designs import BEST, compared, ended_by, ends_text
+from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text
 from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import (
@@ -38,6 +37,7 @@ from trackroller.report.words.verdict import (
 from trackroller.results.candidates import Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.judging import (
+    Judged,
     beyond_data,
     choices_of,
     ends_of_goal,
@@ -71,10 +71,15 @@ def optimum_sentences(results: Results) -> list[Sentence]:
     search = optimum_of(results)
     if search is None:
         return []
-    least, best = least_violation(search), _best(results, search)
+    judged, least = judge(results), least_violation(search)
+    best = _best(search, judged)
     said = [_invalid(results, search, least) if least else None]
     if best is not None:
-        said += [_recommended(results, search, best), *_turns(results, search, best), _unreached(results, search)]
+        said += [
+            _recommended(results, search, best, judged),
+            *_turns(results, search, best, judged),
+            _unreached(results, search),
+        ]
         said.append(_guessed(results, search, best))
         said.append(bearing_words(results, _limits(results, search, best)))
     said.append(_unchecked(results, search))
@@ -84,10 +89,13 @@ def optimum_sentences(results: Results) -> list[Sentence]:
 def tolerances(results: Results) -> Sentence | None:
     """Say what a small change of each real choice of the recommended design costs; None for another study."""
     search = optimum_of(results)
-    best = None if search is None else _best(results, search)
-    if search is None or best is None or best["design"] != search["recommended"]:
+    if search is None:
         return None
-    return _tolerance(results, search, best)
+    judged = judge(results)
+    best = _best(search, judged)
+    if best is None or best["design"] != search["recommended"]:
+        return None
+    return _tolerance(results, search, best, judged)
 
 
 def searched(results: Results) -> list[Sentence]:
@@ -98,18 +106,18 @@ def searched(results: Results) -> list[Sentence]:
     facts = ("designs", "generations", "model", "valid", "stopped")
     how = say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts})
     checked = _checked(results, search) if search["optima"] and least_violation(search) < 1 else None
-    best = _best(results, search)
+    best = _best(search, judge(results))
     found = None if best is None else _first_life(results, search, best)
     error = 0.0 if found is None else float(found[0].error[found[1]])
     rough = [say("accuracy", "life", error=error, many=False, decided=False, worst=True)] if error > LARGE_ERROR else []
     return [*([] if checked is None else [checked]), *rough, how]
 
 
-def _best(results: Results, search: dict[str, Any]) -> dict[str, Any] | None:
+def _best(search: dict[str, Any], judged: Judged) -> dict[str, Any] | None:
     """Return the recommended optimum: of those that are nearest to the target of the study as it is now."""
     if least_violation(search) == 1:
         return None
-    judged, designs = judge(results), [one["design"] for one in search["optima"]]
+    designs = [one["design"] for one in search["optima"]]
     short = dict(zip(designs, judged.short[designs], strict=True))
     own = search["recommended"]
     if short[own] > min(short.values()):
@@ -158,7 +166,7 @@ def _interval(results: Results, goal: str, number: int) -> str:
     return f" (95 % interval {rounded(low)} to {rounded(high)})"
 
 
-def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence:
+def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence:
     values = {
         "least": least_violation(search),
         "design": design_words(results, best["design"]),
@@ -177,7 +185,6 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any])
     # a range may reach below the certain life of another design
     both = (ends_of_goal(results, goal) for goal in search["goals"])
     values["ranged"] = any(e is not None and bool((e[1] > e[0] * (1 + SAME))[best["design"]]) for e in both)
-    judged = judge(results)
     front = nondominated_ranks(judged.costs, judged.missed) == 0
     values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}
     values["short"] = float(judged.short[best["design"]])
@@ -202,9 +209,9 @@ def _open_values(results: Results, search: dict[str, Any], best: dict[str, Any])
     return open_values(cases, int(cases.candidates.place[row]))
 
 
-def _turns(results: Results, search: dict[str, Any], best: dict[str, Any]) -> list[Sentence | None]:
+def _turns(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> list[Sentence | None]:
     """Say at which values the target is met or missed."""
-    if int(judge(results).short.min()) != 1:  # a design meets it, or all miss it
+    if int(judged.short.min()) != 1:  # a design meets it, or all miss it
         return []
     return [turn_words(turn, targets_in_words(results)) for turn in _open_values(results, search, best)]
 
@@ -327,10 +334,10 @@ def _change(goal: str, before: float, after: float) -> str:
     return f"by {100 * change:+.2g} %".replace("-", "−") if abs(change) > SMALL else ""
 
 
-def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
+def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence | None:
     """Say what a small change of each real choice costs."""
     words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
-    short = float(judge(results).short[best["design"]])
+    short = float(judged.short[best["design"]])
     for near in search["neighbours"]:
         name, step = near["choice"], float(near["step"])
         moved = f"{'+' if step > 0 else ''}{quantity(step, getattr(parameter_of(name), 'unit', '1'))}"
