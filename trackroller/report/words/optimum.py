@@ -162,7 +162,7 @@ def _interval(results: Results, goal: str, number: int) -> str:
     if kind == "probability":
         ends = [percent(float(end)) for end in bounds(goal_column(results, goal)[0][number], many)]
         return f" (95 % interval {' to '.join(ends)})"
-    _, low, high = b10(np.where(results.valid, np.nan_to_num(results.quantity(output)[0].astype(float)), 0.0)[rows])
+    _, low, high = b10(np.where(results.held, np.nan_to_num(results.quantity(output)[0].astype(float)), 0.0)[rows])
     return f" (95 % interval {rounded(low)} to {rounded(high)})"
 
 
