@@ -20,6 +20,7 @@ WORDS = (
     "report/test_truth_analysis.py",
     "report/test_report.py",
 )
+FITTED = ("results/test_fitted_effects.py",)
 DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py", "report/test_truth.py")
 TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py", "report/test_truth_targets.py")
 PACKED = (BORDERS, "report/test_explorer.py")
@@ -136,7 +137,7 @@ FORMULAS = {
 DECISIONS = {
     "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
     "converged": ("report/words/samples.py", "if times <= 1 else", "if times <= 4 else", CONVERGENCE),
-    "interval-of-a-step": ("methods/intervals.py", "a - low_a))", "high_a - a))", WORDS),
+    "interval-of-a-fit": ("results/effects.py", "inverse * (rest @ rest / free)", "inverse * (rest @ rest)", FITTED),
     "rising": ("results/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
     "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("results/candidates.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
@@ -149,7 +150,7 @@ DECISIONS = {
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
     "rounded-outwards": ("results/findings.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
-    "bent": ("results/findings.py", "if share > BENT]", "if share > 10 * BENT]", WORDS),
+    "factors-that-go-together": ("results/effects.py", "> INFLATED:", "> 1e9 * INFLATED:", FITTED),
     "pareto-end": (
         "results/pareto.py",
         '-1.0 if way == "max" else 1.0',

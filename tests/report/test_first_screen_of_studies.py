@@ -85,37 +85,6 @@ def test_no_measurement_is_asked_for_where_the_best_end_misses_the_target():
         assert ("No expected wear coefficient of PA66-dry on C45 is enough." in said) == (not asked)
 
 
-def test_a_factor_that_changes_no_life_is_told_to_change_none():
-    base = {"axis_distance": 25, "guide_profile_radius": 8, "contact_angle": 40, "axial_force": 4, **POLYMER}
-    factors = {"roller_profile_radius": {"values": [-9, -8.3]}, "radial_force": {"values": [-50, -20]}}
-    factors["ambient_temperature"] = {"values": [15, 40, 60]}
-    results = run(factors, base)
-    lives = results.data[LIFE].transpose("ambient_temperature", ...).values
-    assert (lives == lives[:1]).all()
-    said = " ".join(sentence_of(results, one).text for one in why(results))
-    assert "; ambient temperature does not change it at all" in said and "ambient temperature less" not in said
-
-
-def test_effects_that_differ_by_a_third_are_not_told_to_be_nearly_the_same():
-    """Elementary effects of the speed on the logarithm of the life, computed from the rows of the trajectories."""
-    results = run(TRAVEL, {"radial_force": -45, **POLYMER}, design="morris", samples=8)
-    table, lives = results.table, np.log10(results.data[LIFE].values)
-    effects = {"axis_distance": [], "velocity": []}
-    for i in (i for i in range(len(table)) if i % 3 < 2):  # a trajectory has three rows
-        moved = [name for name in effects if table[name][i] != table[name][i + 1]]
-        assert len(moved) == 1
-        low, high = TRAVEL[moved[0]]["uniform"]
-        step = (table[moved[0]][i + 1] - table[moved[0]][i]) / (high - low)
-        effects[moved[0]].append((lives[i + 1] - lives[i]) / step)
-    said = next(sentence_of(results, one) for one in why(results) if one.kind == "morris")
-    for name, words in (("axis_distance", "axis distance"), ("velocity", "mean travel speed")):
-        own = np.array(effects[name])
-        share = own.std(ddof=1) / np.abs(own).mean()
-        assert (words in said.values["straight"]) == (share <= 0.1)
-        assert (words in said.values["spread"]) == (0.1 < share <= 0.5)
-        assert share <= 0.1 or f"{100 * share:.0f} %" in said.text
-
-
 def test_a_wear_coefficient_that_decides_is_named_with_the_target_as_given():
     """Solved again with a coefficient on either side of the value that the verdict names."""
     base = {"axis_distance": 30, "guide_profile_radius": 10, "contact_angle": 42, "velocity": 100, "axial_force": 6}

@@ -7,7 +7,6 @@ import re
 import numpy as np
 import pytest
 import xarray as xr
-from scipy.stats import spearmanr
 from synthetic_results import results_of
 from told import effect_of, of_analysis
 
@@ -227,22 +226,6 @@ def check_levels(part, said):
         agrees(clause.removeprefix(f"{name} "), value[i, best], *bounds_of(one, "conditional_S1"), 100.0)
 
 
-def test_which_factors_act_alike_everywhere_is_told_by_sigma():
-    rng = np.random.default_rng(9)
-    for _ in range(100):
-        sens = analysis(rng, "morris")
-        said = of_analysis(sens, "morris", "friction_power")
-        part = sens.sel(output="friction_power")
-        mu, sigma, names = part["mu_star"].values, part["sigma"].values, part["factor_name"].values
-        strong = mu >= 0.1 * np.nanmax(mu)
-        if said is not None:
-            assert set(said.values["bent"]) == set(names[strong & (sigma > 0.5 * mu)])
-            assert set(said.values["straight"]) == set(names[strong & (sigma <= 0.1 * mu)])
-            between = strong & (0.1 * mu < sigma) & (sigma <= 0.5 * mu)
-            assert set(said.values["spread"]) == set(names[between])
-            assert all(f"{100 * s / m:.0f} %" in said.text for s, m in zip(sigma[between], mu[between], strict=True))
-
-
 def test_every_sentence_on_a_pareto_set_is_true():
     rng = np.random.default_rng(3)
     for _ in range(60):
@@ -341,11 +324,8 @@ def test_sentences_name_the_factors_that_are_correlated_in_the_rows():
     results = results_of(ds)
     # what the radial force makes is no effect of the axial force that goes with it
     assert effect_of(results, "roller_life_hours", "axial_force", np.ones(300, bool)) is None
-    for factor in ("radial_force", "velocity"):
-        said = effect_of(results, "roller_life_hours", factor, np.ones(300, bool))
-        named = [n for n in results.factors if n.replace("_", " ") in said.values["correlated"]]
-        tied = [n for n in results.factors if n != factor and abs(spearmanr(ds[factor], ds[n]).statistic) > 0.3]
-        assert named == tied and ("correlated" in said.text) == bool(tied)
+    said = effect_of(results, "roller_life_hours", "radial_force", np.ones(300, bool)).values["effect"]
+    assert said.ratio == pytest.approx(said.low / said.high, rel=0.02)
     sens = analyse(results_of(ds))
     assert sens["correlated"].values.tolist() == [1, 1, 0]
     said = of_analysis(sens, "index", "roller_life_hours").values

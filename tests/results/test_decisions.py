@@ -11,7 +11,6 @@ import pytest
 import xarray as xr
 
 from trackroller.errors import WorkError
-from trackroller.methods.intervals import difference_of_medians
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
 from trackroller.report.words.samples import samples
@@ -102,17 +101,6 @@ def test_samples_are_enough_until_more_are_needed(times, kind):
     sens = xr.Dataset({name: ("output", [value]) for name, value in columns.items()}, {"output": ["slip"]})
     sens = sens.assign_attrs(method="sobol", samples=64)
     assert samples(sens, 64).kind == kind
-
-
-def test_the_interval_of_a_difference_takes_the_far_end_of_each_median():
-    """Skewed values: the low end takes the high end of the first median and the low end of the second."""
-    first, second = np.arange(1.0, 42.0) ** 2, 1000.0 + np.arange(1.0, 42.0) ** 3
-    found, low, high = difference_of_medians(first, second)
-    (a, a_low, a_high), (b, b_low, b_high) = ((np.sort(v)[20], np.sort(v)[13], np.sort(v)[27]) for v in (first, second))
-    assert found == b - a
-    assert (low, high) == pytest.approx(
-        (b - a - np.hypot(b - b_low, a_high - a), b - a + np.hypot(b_high - b, a - a_low))
-    )
 
 
 def test_a_pair_without_a_change_neither_rises_nor_falls():

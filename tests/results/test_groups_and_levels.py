@@ -197,7 +197,7 @@ def test_groups_reach_analysis_table_and_summary(tmp_path):
     said = [s for _, own in in_short(results_of(ds, sens), []) for s in own]
     kinds = [s.kind for s in said]
     text = said[kinds.index("groups")].text
-    assert text.index("roller material") < text.index("load") and "index" in kinds[kinds.index("groups") :]
+    assert text.index("roller material") < text.index("load") and "fitted" in kinds[kinds.index("groups") :]
 
 
 def test_the_key_exchange_of_earlier_versions_is_ignored_aloud():

@@ -1,54 +1,11 @@
-"""Conclusions that hold for all values within their ranges, against all combinations of values."""
+"""Values that are known within a range only: their names in figures, and the ranges that the notes state."""
 
-import itertools
-
-import numpy as np
 import pytest
-from told import told
 
 import trackroller as tr
 from trackroller.materials import builtin_database
 from trackroller.report.numbers import factor_label
-from trackroller.results.first_limits import reached_hours, settled
 from trackroller.roller.limit_notes import placeholders_of
-from trackroller.study.file.load import parse_study
-
-STUDY = {
-    "name": "unsure",
-    "base": {"radial_force": -60, "axial_force": 5, "guide_overrollings_per_hour": 600, "motor_force": 0}
-    | {"permissible_wear_depth": 0.3},
-    "factors": {
-        "material_pair": {"values": [["1.7225-normalised"] * 2, ["EN AW-7075", "1.7225-normalised"]]},
-        "velocity": {"values": [20, 120]},
-        "friction_coefficient": {"values": [0.05, 0.2, 0.4]},
-        "placeholder_position": {"values": [-1, 0, 1]},
-    },
-    "contact_model": "sliding",
-    "accuracy": "preview",
-    "outputs": ["forces", "contact", "peak_stress", "life", "rating", "limits"],
-}
-
-
-@pytest.mark.slow
-def test_conclusions_that_hold_for_all_combinations_of_the_ranges_are_counted():
-    """Count by trying every combination of the places of each limit, which differ independently."""
-    solved = tr.run(parse_study(STUDY), progress=False)
-    reached = reached_hours(solved).reshape(2, 2, 3, 3, -1)  # pair, speed, friction, place, limit
-    certain = ends = 0
-    for own in reached.reshape(-1, 3, reached.shape[-1]):
-        firsts = set()
-        for places in itertools.product(range(3), repeat=own.shape[1]):
-            hours = own[places, range(own.shape[1])]
-            firsts |= {int(np.argmin(hours))} if np.isfinite(hours).any() else set()
-        ends += bool(firsts)
-        certain += len(firsts) == 1
-    found = solved.candidates()
-    assert settled(found) == (certain, ends) and 0 < certain < ends
-    said = next(told(solved, one) for one in solved.findings["why"] if one.kind == "whichever_first")
-    assert f"in {certain} of {ends} combinations" in said.text and "placeholders of materials" in said.text
-    fixed = STUDY | {"factors": {n: f for n, f in STUDY["factors"].items() if n != "placeholder_position"}}
-    found = tr.run(parse_study(fixed), progress=False).findings["why"]
-    assert not [one for one in found if one.kind == "whichever_first"]
 
 
 def test_factors_with_and_without_a_symbol_have_a_label_that_figures_can_draw():

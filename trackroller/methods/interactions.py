@@ -61,24 +61,67 @@ def pairs(y: np.ndarray, unit: np.ndarray, ordered: np.ndarray, seed: int = 0) -
     if count < 2 or len(y) < 30 or constant(y):
         return out
     y = (y - y.mean()) / y.std()
-    columns = _columns(unit, ordered)
-    if columns is None:
+    fit = best_fit(y, unit, ordered)
+    if fit is None:
         return out
-    missed = held_out(y, columns.table, columns.widths)
-    scores = [-np.inf if one is None else float(1 - (one**2).mean()) for one in missed]
-    if max(scores, default=-np.inf) == -np.inf:
+    out["fit_share"] = np.array(max(0.0, fit.share))
+    if fit.share < TRUSTED:
         return out
-    best = int(np.argmax(scores))
-    out["fit_share"] = np.array(max(0.0, scores[best]))
-    if scores[best] < TRUSTED:
-        return out
-    width = columns.widths[best]
-    share, half = _jackknife(y, columns.table[:, :width], columns.term[:width], seed)
+    share, half = _jackknife(y, fit.table, fit.term, seed)
     out["fit_alone"] = share[:count]
     for (i, j), value, wide in zip(combinations(range(count), 2), share[count:], half[count:], strict=True):
         for name, number in zip(NAMES, (value, value - wide, value + wide), strict=True):
             out[name][i, j] = number
     return out
+
+
+class Fit(NamedTuple):
+    """The columns of a fitted polynomial, and what it predicts.
+
+    Attributes
+    ----------
+    share : share of the variance that it predicts for rows that were held out of the fit
+    table : columns, shape (n, columns); the first one is the constant
+    term : number of the factor or (after the factors) of the pair of each column; -1 for the constant
+    """
+
+    share: float
+    table: np.ndarray
+    term: np.ndarray
+
+
+def best_fit(
+    y: np.ndarray,
+    unit: np.ndarray,
+    ordered: np.ndarray,
+    degrees: Sequence[tuple[int, int]] = DEGREES,
+    *,
+    ranked: bool = True,
+) -> Fit | None:
+    """Return the polynomial that predicts held-out rows best.
+
+    Parameters
+    ----------
+    y : output that varies, shape (n,)
+    unit : values of the factors, shape (n, k)
+    ordered : for which factors more and less mean something, shape (k,)
+    degrees : of a factor alone and in a product; each pair contains the next one
+    ranked : whether the polynomials are those of the ranks of a factor, not of its values
+
+    Returns
+    -------
+    None for too few rows, too many categories, or columns that depend on each other.
+    """
+    columns = _columns(unit, ordered, degrees, ranked)
+    if columns is None:
+        return None
+    missed = held_out(y, columns.table, columns.widths)
+    scores = [-np.inf if one is None else float(1 - (one**2).mean() / y.var()) for one in missed]
+    best = int(np.argmax(scores))
+    if scores[best] == -np.inf:
+        return None
+    width = columns.widths[best]
+    return Fit(scores[best], columns.table[:, :width], columns.term[:width])
 
 
 class _Columns(NamedTuple):
@@ -87,11 +130,14 @@ class _Columns(NamedTuple):
     widths: list[int]  # number of columns of each polynomial of `DEGREES`
 
 
-def _columns(unit: np.ndarray, ordered: np.ndarray) -> _Columns | None:
+def _columns(
+    unit: np.ndarray, ordered: np.ndarray, degrees: Sequence[tuple[int, int]], ranked: bool
+) -> _Columns | None:
     """Return the columns of the largest polynomial; None if a factor has too many categories."""
     rows, count = unit.shape
-    alone, joint = DEGREES[0]
-    bases = [base for j in range(count) if (base := orthonormal(unit[:, j], bool(ordered[j]), alone)) is not None]
+    alone, joint = degrees[0]
+    found = [orthonormal(unit[:, j], bool(ordered[j]), alone, ranked) for j in range(count)]
+    bases = [base for base in found if base is not None]
     if len(bases) < count:
         return None
     degree = [np.arange(base.shape[1]) + 1 if ordered[j] else np.ones(base.shape[1]) for j, base in enumerate(bases)]
@@ -100,9 +146,9 @@ def _columns(unit: np.ndarray, ordered: np.ndarray) -> _Columns | None:
         one, other = (slice(joint if ordered[place] else None) for place in (i, j))
         product = (bases[i][:, one, None] * bases[j][:, None, other]).reshape(rows, -1)
         parts.append((product, np.maximum.outer(degree[i][one], degree[j][other]).ravel()))
-    term = np.repeat(np.arange(len(parts)) - 1, [len(degrees) for _, degrees in parts])
-    limits = np.array(DEGREES)[:, (term >= count).astype(int)]
-    member = np.concatenate([degrees for _, degrees in parts]) <= limits  # shape (polynomials, columns)
+    term = np.repeat(np.arange(len(parts)) - 1, [len(own) for _, own in parts])
+    limits = np.array(degrees)[:, (term >= count).astype(int)]
+    member = np.concatenate([own for _, own in parts]) <= limits  # shape (polynomials, columns)
     order = np.argsort(-member.sum(axis=0), kind="stable")
     table = np.concatenate([columns for columns, _ in parts], axis=1)
     return _Columns(table[:, order], term[order], [int(columns.sum()) for columns in member])
@@ -141,11 +187,16 @@ def held_out(y: np.ndarray, table: np.ndarray, widths: Sequence[int]) -> list[np
     return [residual(width) for width in widths]
 
 
-def orthonormal(x: np.ndarray, ordered: bool, degree: int) -> np.ndarray | None:
-    """Return functions of a factor with mean 0, mean square 1 and no correlation; None for too many categories."""
+def orthonormal(x: np.ndarray, ordered: bool, degree: int, ranked: bool = True) -> np.ndarray | None:
+    """Return functions of a factor with mean 0, mean square 1 and no correlation; None for too many categories.
+
+    They are polynomials of the ranks of the factor, or of its values.
+    """
     values, index = np.unique(x, return_inverse=True)
     if ordered:
         place = (np.cumsum(np.bincount(index)) - 0.5 * np.bincount(index)) / len(x)
+        if not ranked:
+            place = (values - values[0]) / np.ptp(values)
         raw = np.polynomial.legendre.legvander(2 * place[index] - 1, min(degree, len(values) - 1))
     elif len(values) > MAX_KINDS:
         return None

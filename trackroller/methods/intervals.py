@@ -1,4 +1,4 @@
-"""Confidence intervals of 95 %, on plain arrays: bootstrap, shares, medians, and whether an output varies at all."""
+"""Confidence intervals of 95 %, on plain arrays: bootstrap and shares, and whether an output varies at all."""
 
 from __future__ import annotations
 
@@ -38,38 +38,3 @@ def percentile_bounds(drawn: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     drawn = np.where(good | ~enough, drawn, np.nan)
     low, high = np.nanpercentile(np.where(enough, drawn, 0.0), [2.5, 97.5], axis=0)
     return np.where(enough, low, np.nan), np.where(enough, high, np.nan)
-
-
-def median_interval(values: np.ndarray) -> tuple[float, float]:
-    """Return a distribution-free interval of the median with a coverage of at least 95 %.
-
-    Parameters
-    ----------
-    values : independent draws, shape (n,), n >= 6
-
-    Notes
-    -----
-    The order statistics k and n - k + 1 enclose the median with probability 1 - 2 P(B < k), B binomial (n, 1/2).
-    """
-    from scipy.stats import binom  # heavy, and drawing does not need it
-
-    values = np.sort(values)
-    k = int(binom.ppf(0.025, len(values), 0.5))
-    return float(values[max(k - 1, 0)]), float(values[min(len(values) - k, len(values) - 1)])
-
-
-def difference_of_medians(first: np.ndarray, second: np.ndarray) -> tuple[float, float, float]:
-    """Return the difference of two medians, second minus first, with its 95 % interval.
-
-    Notes
-    -----
-    The interval joins the distribution-free intervals of both medians by the method of variance estimates recovery.
-
-    References
-    ----------
-    Zou, Donner (2008): Construction of confidence limits about effect measures. Statistics in Medicine 27, 1693-1702.
-    """
-    a, b = float(np.median(first)), float(np.median(second))
-    (low_a, high_a), (low_b, high_b) = median_interval(first), median_interval(second)
-    low = b - a - np.hypot(b - low_b, high_a - a)
-    return b - a, float(low), float(b - a + np.hypot(high_b - b, a - low_a))

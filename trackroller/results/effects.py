@@ -1,37 +1,41 @@
-"""How an output changes with a factor: between pairs of designs that differ in this factor, or between classes."""
+"""How an output changes with a factor: between pairs of cases that differ in this factor, or by a fit of a sample."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import pandas as pd
 from scipy import stats
 
-from trackroller.methods.intervals import difference_of_medians
+from trackroller.methods.interactions import MAX_ROWS, best_fit
+from trackroller.methods.intervals import constant
 from trackroller.parameters import PARAMETERS
 from trackroller.results.columns import codes
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.results import Results
 
 FEWEST_PAIRS = 3  # fewer pairs of designs state no effect
-FEWEST_ROWS = 20  # smallest number of rows of a class whose median is compared
-FEWEST_STRATUM = 8  # the same within one level of a category
-COVERED = 0.8  # share of a class that must lie in levels with enough rows; otherwise pooling cannot be checked
-UNCHANGED = 0.02  # a ratio of medians between 0.98 and 1.02 counts as no change
+FEWEST_ROWS = 30  # smallest number of cases that are fitted
+TOLD = 0.9  # share of the variance that a fit must predict before its effects are told
+DEGREES = ((3, 0), (2, 0), (1, 0))  # of a factor alone, and none with another one; the best prediction wins
+SPANNED = 2.0, 20.0  # a number that spans so many times its smallest size is fitted by its logarithm
+INFLATED = 3.0  # times the variance of a weight in a sample of independent factors: above it they are not told apart
+UNCHANGED = 0.02  # a ratio between 0.98 and 1.02 counts as no change
 MOST = 0.9  # share of the pairs that must change in the same direction
 
 
 @dataclass(frozen=True)
 class Effect:
-    """How an output changes between two levels or classes of a factor.
+    """How an output changes between two levels of a factor.
 
     Attributes
     ----------
-    low, high : the two levels of pairs; of classes the last value of the low and the first value of the high class
-    ratio : median of the ratios of pairs, or ratio of the medians of the classes, see `of_strata` [1]
-    interval : 95 % interval of that ratio of medians (of classes), NaN for pairs
-    size : number of pairs, or of rows in the smaller class
+    low, high : the two levels
+    ratio : median of the ratios of pairs, or the fitted ratio [1]
+    interval : 95 % interval of a fitted ratio, NaN for pairs
+    size : number of pairs, or of fitted cases
     rising, falling : pairs in which the output rises and falls (of pairs)
     """
 
@@ -120,88 +124,66 @@ def _of_steps(factor: str, low: Any, high: Any, steps: np.ndarray) -> Effect:
     return Effect(factor, low, high, float(10 ** np.median(steps)), (np.nan, np.nan), steps.size, rising, falling)
 
 
-def class_effect(results: Results, column: str, factor: str, rows: np.ndarray) -> Effect | None:
-    """Compare the lowest third of the designs along a factor to the highest third.
+def fitted_effects(results: Results, column: str, rows: np.ndarray) -> tuple[float, list[Effect]]:
+    """Return the effect of each factor at equal other factors, by a fit that multiplies one function of each factor.
 
-    Designs with the same value of the factor stay in one class. None if a class has fewer than 20 rows, or if the other
-    factors, which differ between the classes by chance, make more of the difference than its interval allows for.
-    """
-    if not results.ordered(factor):
-        return None
-    x = _logarithms(results, column, factor, rows)[0]
-    if len(x) < 3 * FEWEST_ROWS:
-        return None
-    ends = np.sort(x)[[len(x) // 3, len(x) - 1 - len(x) // 3]]
-    return _alone(results, column, factor, rows, (float(ends[0]), float(ends[1])), FEWEST_ROWS)
+    Parameters
+    ----------
+    column : column of an output; its positive values count
+    rows : cases to use, shape (n,) bool
 
-
-def _alone(
-    results: Results, column: str, factor: str, rows: np.ndarray, ends: tuple[float, float], fewest: int
-) -> Effect | None:
-    """Compare the classes of a factor; None if the other factors make more of it than its interval allows for."""
-    x, logs = _logarithms(results, column, factor, rows)
-    found = _between(factor, x, logs, ends, fewest)
-    if found is None:
-        return None
-    alone = _between(factor, x, logs - _of_others(results, column, factor, rows), ends, fewest)
-    return found if alone is not None and found.interval[0] <= alone.ratio <= found.interval[1] else None
-
-
-def _of_others(results: Results, column: str, factor: str, rows: np.ndarray) -> np.ndarray:
-    """Return what the other numbers among the factors make of the logarithm of an output, shape (m,).
-
-    By least squares with the rank of each factor and its square, as far as there are three rows for each term.
+    Returns
+    -------
+    Share of the variance of the logarithm that the fit predicts for cases held out of it, and the effects: of a number
+    between the values that a tenth of the cases lie below and above, of a category between its most different levels.
+    There is none where the fit predicts less than `TOLD`, because the effect of a factor then depends on others, nor of
+    a factor that goes with others.
     """
     values = results.table[column].to_numpy(dtype=float)
-    good = rows & np.isfinite(values) & (values > 0)
-    logs = np.log10(values[good])
-
-    def terms(name: str) -> list[np.ndarray]:
-        place = stats.rankdata(results.table[name].to_numpy(dtype=float)[good]) / len(logs) - 0.5
-        return [place, place**2] if np.ptp(place) else []
-
-    names = [name for name in results.factors if name != factor and results.ordered(name)]
-    others = [term for name in names for term in terms(name)][: max(0, len(logs) // 3 - 3)]
-    if not others:
-        return np.zeros(len(logs))
-    matrix = np.stack([*others, np.ones(len(logs)), *terms(factor)], axis=1)
-    weights = np.linalg.lstsq(matrix, logs, rcond=None)[0]
-    return np.asarray(matrix[:, : len(others)] @ weights[: len(others)])
-
-
-def comparable(results: Results, effect: Effect, column: str, rows: np.ndarray) -> bool:
-    """Say whether pooling over the categories can be checked.
-
-    It can where both classes of the factor have enough rows at most levels of each category.
-    """
-    x, values = (results.table[c].to_numpy(dtype=float) for c in (effect.factor, column))
-    good = rows & np.isfinite(values) & (values > 0)
-    ends = good & (x <= effect.low), good & (x >= effect.high)
-    for category in (c for c in results.categories if c != effect.factor):
-        own = results.table[category].to_numpy()
-        cells = np.array([[int((end & (own == level)).sum()) for level in results.levels(category)] for end in ends])
-        enough = (cells >= FEWEST_STRATUM).all(axis=0)
-        if (cells[:, enough].sum(axis=1) < COVERED * cells.sum(axis=1)).any():
-            return False
-    return True
+    good = np.flatnonzero(rows & np.isfinite(values) & (values > 0))
+    if len(good) > MAX_ROWS:
+        good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]
+    table, y = results.table.iloc[good], np.log10(values[good])
+    names = [name for name in results.factors if table[name].nunique() > 1]
+    if len(y) < FEWEST_ROWS or not names or constant(y):
+        return np.nan, []
+    ordered = np.array([results.ordered(name) for name in names])
+    columns = [_scaled(table[n]) if o else codes(table, (n,)) for n, o in zip(names, ordered, strict=True)]
+    fit = best_fit(y, np.stack(columns, axis=1), ordered, DEGREES, ranked=False)
+    if fit is None or fit.share < TOLD:
+        return np.nan, []
+    weights = np.linalg.lstsq(fit.table, y, rcond=None)[0]
+    rest, free = y - fit.table @ weights, len(y) - len(weights)
+    inverse = np.linalg.inv(fit.table.T @ fit.table)
+    spread = inverse * (rest @ rest / free)
+    wide, found = float(stats.t.ppf(0.975, free)), []
+    for j, name in enumerate(names):
+        if (np.diag(inverse)[fit.term == j] * len(y)).max(initial=0.0) > INFLATED:
+            continue
+        own = np.where(fit.term == j, fit.table, 0.0)
+        at = _ends(columns[j], ordered[j], own @ weights)
+        change = own[at[1]] - own[at[0]]
+        step, half = change @ weights, wide * np.sqrt(max(0.0, change @ spread @ change))
+        low, high = table[name].iloc[at[0]], table[name].iloc[at[1]]
+        interval = (float(10 ** (step - half)), float(10 ** (step + half)))
+        found.append(Effect(name, low, high, float(10**step), interval, len(y)))
+    return fit.share, found
 
 
-def _logarithms(results: Results, column: str, factor: str, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Return a factor and the logarithm of an output for the rows whose output is finite and positive, (m,) each."""
-    x, values = (results.table[name].to_numpy(dtype=float)[rows] for name in (factor, column))
-    good = np.isfinite(values) & (values > 0)
-    return x[good], np.log10(values[good])
+def _scaled(values: pd.Series) -> np.ndarray:
+    """Return a number, or its logarithm where it spans its smallest size several times, but not from near 0."""
+    own = values.to_numpy(dtype=float)
+    sizes = np.abs(own)
+    one_sign = (own > 0).all() or (own < 0).all()
+    spans = one_sign and SPANNED[0] < sizes.max() / sizes.min() < SPANNED[1]
+    return np.sign(own) * np.log(sizes / sizes.max()) if spans else own
 
 
-def _between(factor: str, x: np.ndarray, logs: np.ndarray, ends: tuple[float, float], fewest: int) -> Effect | None:
-    """Compare the medians below the first and above the second of two ends; None for fewer rows than `fewest`."""
-    end, start = ends
-    low, high = logs[x <= end], logs[x >= start]
-    if end >= start or min(low.size, high.size) < fewest:
-        return None
-    step, least, most = difference_of_medians(low, high)
-    interval = (float(10**least), float(10**most))
-    return Effect(factor, end, start, float(10**step), interval, min(low.size, high.size))
+def _ends(own: np.ndarray, ordered: bool, part: np.ndarray) -> tuple[int, int]:
+    """Return a row at the low and one at the high end of a factor; of a category those of the lowest and highest."""
+    tenth = len(own) // 10 if ordered else 0
+    order = np.argsort(own if ordered else part, kind="stable")
+    return int(order[tenth]), int(order[len(own) - 1 - tenth])
 
 
 def strata(results: Results, column: str, effect: Effect, rows: np.ndarray) -> list[tuple[str, Any, Effect]]:
@@ -222,36 +204,8 @@ def strata(results: Results, column: str, effect: Effect, rows: np.ndarray) -> l
     return effects
 
 
-def of_strata(pooled: Effect, parts: list[tuple[str, Any, Effect]]) -> tuple[Effect, list[tuple[str, Any, Effect]]]:
-    """Return the mean effect of classes within the levels of a category, and the effects within these.
-
-    Pooled classes hold unequal shares of the levels, whose outputs may lie far apart. Of several categories the one
-    counts within which the effect differs most from the pooled one. Without a category it is the pooled effect.
-    """
-    own: list[tuple[str, Any, Effect]] = []
-    mean, lower, upper = np.log([pooled.ratio, *pooled.interval])
-    for category in dict.fromkeys(name for name, _, _ in parts):
-        inside = [part for part in parts if part[0] == category]
-        logs = np.log([[e.ratio, *e.interval] for _, _, e in inside]).T
-        middle = logs[0].mean()
-        if not own or abs(middle - np.log(pooled.ratio)) > abs(mean - np.log(pooled.ratio)):
-            errors = np.sqrt(((logs - logs[0]) ** 2).sum(axis=1)) / len(inside)
-            own, mean, lower, upper = inside, middle, middle - errors[1], middle + errors[2]
-    interval, size = (float(np.exp(lower)), float(np.exp(upper))), min([e.size for _, _, e in own] or [pooled.size])
-    return replace(pooled, ratio=float(np.exp(mean)), interval=interval, size=size), own
-
-
-def stands_alone(results: Results, column: str, effect: Effect, rows: np.ndarray) -> bool:
-    """Say whether the other factors leave an effect of classes within its interval, for some of the rows."""
-    ends = effect.low, effect.high
-    return _alone(results, column, effect.factor, rows, ends, FEWEST_STRATUM) is not None
-
-
 def _repeated(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Effect | None:
-    """Return the effect between the same levels or classes for other rows."""
-    if np.isfinite(effect.interval[0]):
-        x, logs = _logarithms(results, column, effect.factor, rows)
-        return _between(effect.factor, x, logs, (effect.low, effect.high), FEWEST_STRATUM)
+    """Return the effect between the same levels for other rows."""
     matrix, levels = pair_matrix(results, column, effect.factor, rows)
     if not len(matrix):
         return None

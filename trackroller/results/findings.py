@@ -18,10 +18,10 @@ from scipy.stats import norm, spearmanr
 from trackroller.methods.correlation import CORRELATED
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.results import effects
-from trackroller.results.candidates import Candidates, of_one_model, slip_margin
+from trackroller.results.candidates import of_one_model, slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
-from trackroller.results.first_limits import first_limit, outlasted, settled, turn, varied
+from trackroller.results.first_limits import first_limit, outlasted
 from trackroller.results.groups import MOST_LEVELS, Product, confined
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.ranking import (
@@ -48,7 +48,6 @@ EVEN = 0.1  # difference of the shares of cases that constraints leave, up to wh
 ALIKE = 1e-6  # relative difference of two indices that count as equal
 NOTHING = 0.005  # of the variance: the low end of an interval below it is told as 0 %
 ROUNDING = 1e-9  # of the margin to slip
-STRAIGHT, BENT = 0.1, 0.5  # standard deviation over mean of elementary effects, up to which they are alike or scatter
 NEGLIGIBLE = 0.02  # share of the variance below which a factor does not matter
 
 
@@ -142,17 +141,20 @@ def why(results: Results) -> list[Finding]:
 
     Returns
     -------
-    The most important finding first: which limits end the lives, which factors decide, how the largest effects act, and
-    whether the order of the designs rests on a limit.
+    The most important finding first: which limits end the lives, which factors decide, and the largest effects.
     """
     shown = shown_output(results)
-    found = [*limits_first(results)]
-    sens = results.analysis
+    found, sens = [*limits_first(results)], results.analysis
+    strongest = strongest_effects(results, shown[0]) if shown is not None else []
+    fitted = [i for i, one in enumerate(strongest) if one.kind == "fitted"]
     if sens is not None and not robust_design(sens):
-        found += _of_analysis(results, sens)
-    strongest = strongest_effects(results, shown[0])[:MOST_EFFECTS] if shown is not None else []
-    for i, one in enumerate(strongest[1:], 1):  # that lives lie beyond the data is said once
-        strongest[i] = replace(one, values={**one.values, "beyond": 0})
+        indices = _of_analysis(results, sens)
+        if fitted and headline(sens) == "first":  # a fit tells the same of such a sample, and closer
+            indices = [one for one in indices if one.kind != "index"]
+        found += indices
+    for i, one in enumerate(strongest):  # said once: that lives lie beyond the data, and how well a fit predicts
+        once = {"beyond": one.values["beyond"] if i == 0 else 0} | ({"share": np.nan} if i in fitted[1:] else {})
+        strongest[i] = replace(one, values={**one.values, **once})
     return [*found, *strongest][:MOST]
 
 
@@ -165,7 +167,7 @@ def shown_output(results: Results) -> tuple[str, str, str] | None:
 
 
 def limits_first(results: Results) -> list[Finding]:
-    """Count the limits that end the valid cases first, and say how they turn the order; nothing without limits."""
+    """Count the limits that end the valid cases first; nothing without limits."""
     candidates = results.candidates()
     if candidates is None or candidates.goal != FIRST_LIMIT:
         return []
@@ -178,34 +180,7 @@ def limits_first(results: Results) -> list[Finding]:
         return [finding(results, "first_limits", "valid", rows, **facts)] if beaten else []
     if not counts:
         return []
-    found = [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()), beaten={})]
-    return [*found, *_turned(results, candidates, rows), *_whichever(results, candidates, rows)]
-
-
-def _turned(results: Results, candidates: Candidates, rows: np.ndarray) -> list[Finding]:
-    """Say how many designs change their place from the life by fatigue to the first limit, and which one most."""
-    turned, found = turn(candidates), results.verdict
-    if turned is None or found is None or found.kind in ("measure", "give"):  # there the order is open
-        return []
-    steps = {i: turned.before.index(i) - turned.after.index(i) for i in turned.after}
-    largest = max(abs(step) for step in steps.values())
-    most = [i for i, step in steps.items() if abs(step) == largest]
-    values: dict[str, Any] = {"changed": sum(step != 0 for step in steps.values()), "designs": len(turned.after)}
-    values |= {"best": len(turned.after) < len(candidates.size), "low": results.ranged}
-    values |= {"before": turned.before.index(most[0]) + 1, "after": turned.after.index(most[0]) + 1}
-    values |= {"correlation": turned.correlation}
-    design = candidates.table.loc[most[0]] if len(most) == 1 else None  # of ties none is the first
-    return [finding(results, "turned", "valid", rows, **values, design=design)] if values["changed"] else []
-
-
-def _whichever(results: Results, candidates: Candidates, rows: np.ndarray) -> list[Finding]:
-    """Say in how many conditions the same limit comes first for all values that are known within a range only."""
-    counts = settled(candidates)
-    if counts is None or not counts[1]:
-        return []
-    return [
-        finding(results, "whichever_first", "valid", rows, certain=counts[0], of=counts[1], factors=varied(candidates))
-    ]
+    return [finding(results, "first_limits", "valid", rows, counts=counts, of=int(rows.sum()), beaten={})]
 
 
 def _of_analysis(results: Results, sens: xr.Dataset) -> list[Finding]:
@@ -310,54 +285,36 @@ def interaction_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
     return values | {"value": value, "low": low, "high": high, "fit": fit, "higher": higher}
 
 
-def screening_values(sens: xr.Dataset, output: str) -> dict[str, Any] | None:
-    """Sort the strong factors by how far their elementary effects differ from place to place.
-
-    `straight` are those of nearly the same effect everywhere, `spread` those whose effects scatter by a share of their
-    mean, and `bent` those whose effects scatter by more than half of it.
-    """
-    part, ranks = sens.sel(output=output), order(sens, output)
-    if "sigma" not in part or not ranks:
-        return None
-    sigma = dict(zip(part["factor"].values, part["sigma"].values, strict=True))
-    shares = {r.name: float(sigma[r.factor] / r.value) for r in ranks if r.value >= 0.1 * ranks[0].value > 0}
-    bent = [name for name, share in shares.items() if share > BENT]
-    straight = [name for name, share in shares.items() if share <= STRAIGHT]
-    spread = {name: share for name, share in shares.items() if STRAIGHT < share <= BENT}
-    return {"output": output, "bent": bent, "straight": straight, "spread": spread} if shares else None
-
-
 OF_ANALYSIS = {  # the statements on an output of an analysis, in their order
     "index": index_values,
     "groups": group_values,
     "levels": level_values,
     "interaction": interaction_values,
-    "morris": screening_values,
 }
 
 
 def strongest_effects(results: Results, column: str) -> list[Finding]:
-    """Return the effects of the factors on an output, those in one direction first.
+    """Return the largest effects of the factors on an output, at most `MOST_EFFECTS`, those in one direction first.
 
-    Among them choices of the design come before conditions, larger effects before smaller ones, and the speed last:
-    hours are distance over speed.
+    Among them choices of the design come before conditions, and the speed last: hours are distance over speed.
     """
     found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
-    kinds = ("pairs", "classes", "pairs_both", "classes_both")
+
+    def size(one: Finding) -> tuple[bool, bool, float]:
+        effect = one.values["effect"]
+        return one.kind == "pairs_both", effect.factor == "velocity", -abs(float(np.log(effect.ratio)))
 
     def place(one: Finding) -> tuple[bool, bool, bool, float]:
-        effect = one.values["effect"]
-        given = results.roles.get(effect.factor) != "choice"
-        return one.kind.endswith("_both"), effect.factor == "velocity", given, -abs(float(np.log(effect.ratio)))
+        turning, speed, fold = size(one)
+        return turning, speed, results.roles.get(one.values["effect"].factor) != "choice", fold
 
-    return sorted((one for one in found if one.kind in kinds), key=place)
+    return sorted(sorted(found, key=size)[:MOST_EFFECTS], key=place)
 
 
 def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | None = None) -> Finding | None:
     """Say how an output changes with a factor.
 
-    Cases that differ in nothing else are compared where there are enough of them, otherwise the lowest with the highest
-    third of the cases along the factor.
+    Cases that differ in nothing else are compared where there are enough of them, otherwise a fit of a sample is asked.
 
     Parameters
     ----------
@@ -368,7 +325,8 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
     Returns
     -------
     Finding or None
-        None where too few cases can be compared, the factor goes with another one, or constraints cut unevenly.
+        None where the factor changes nothing, too few cases can be compared, a fit predicts too little, the factor goes
+        with another one, or constraints cut unevenly.
     """
     rows = of_one_model(results, results.valid if rows is None else rows)
     if factor in OPTION_FACTORS or not rows.any():
@@ -376,45 +334,50 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
     effect = effects.paired_effect(results, column, factor, rows)
     if effect is not None:
         return _of_pairs(results, column, effect, rows)
-    if results.config.method.proposes:  # a search prefers good designs: its thirds are no samples
+    if results.config.method.proposes:  # a search prefers good designs: it is no sample
         return None
-    effect = effects.class_effect(results, column, factor, rows)
-    if effect is None or not effects.comparable(results, effect, column, rows) or not cut_evenly(results, factor):
+    share, fitted = effects.fitted_effects(results, column, rows)
+    effect = next((one for one in fitted if one.factor == factor), None)
+    if effect is None or not _beyond_chance(effect, len(results.factors)) or not cut_evenly(results, factor):
         return None
-    asked = [
-        one if other == factor else other
+    asked = {
+        name
         for one, other, r in results.config.rank_correlations
         if factor in (one, other) and r
-    ]
-    if set(confounded_with(results, factor, rows)) - set(asked):
+        for name in (one, other)
+    }
+    if set(confounded_with(results, factor, rows)) - asked:
         return None
-    return _of_classes(results, column, effect, rows, asked)
+    return finding(results, "fitted", "valid", rows, **_values(results, column, effect, rows), share=share)
 
 
 def _values(results: Results, column: str, effect: Effect, rows: np.ndarray) -> dict[str, Any]:
-    parts = effects.strata(results, column, effect, rows)
     beyond = int((rows & results.beyond_data(column)).sum())
-    return {"column": column, "effect": effect, "parts": parts, "beyond": beyond, "of": int(rows.sum())}
+    return {"column": column, "effect": effect, "beyond": beyond, "of": int(rows.sum())}
 
 
-def _of_pairs(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Finding:
-    """Return the median change of cases that differ in one factor only."""
-    values = _values(results, column, effect, rows)
-    parts = [p for p in values["parts"] if p[2].size >= effects.FEWEST_PAIRS]
+def _of_pairs(results: Results, column: str, effect: Effect, rows: np.ndarray) -> Finding | None:
+    """Return the median change of cases that differ in one factor only; None where it changes nothing."""
+    parts = [p for p in effects.strata(results, column, effect, rows) if p[2].size >= effects.FEWEST_PAIRS]
     against = [p for p in parts if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
-    values |= {"parts": parts, "same": effect.rising if effect.ratio > 1 else effect.falling}
+    if not against and not _changes(effect):
+        return None
+    same = effect.rising if effect.ratio > 1 else effect.falling
     folds = [np.log(p[2].ratio) for p in _most_spread(parts)]
     apart = bool(folds) and max(folds) - min(folds) > np.log(APART) and bool(np.isfinite(folds).all())
-    values |= {
+    values = _values(results, column, effect, rows) | {
+        "parts": parts,
+        "same": same,
         "against": bool(against),
         "apart": _most_spread(parts) if against or apart else [],
         "changed": effects.also_changed(results, effect.factor, rows),
     }
-    if max(effect.ratio, 1 / effect.ratio) <= 1 + effects.UNCHANGED and not against:
-        kind = "pairs_same"
-    else:
-        kind = "pairs_both" if against or values["same"] < effects.MOST * effect.size else "pairs"
+    kind = "pairs_both" if against or same < effects.MOST * effect.size else "pairs"
     return finding(results, kind, "valid", rows, **values)
+
+
+def _changes(effect: Effect) -> bool:
+    return max(effect.ratio, 1 / effect.ratio) > 1 + effects.UNCHANGED
 
 
 def _most_spread(parts: list[tuple[str, Any, Effect]]) -> list[tuple[str, Any, Effect]]:
@@ -426,32 +389,14 @@ def _most_spread(parts: list[tuple[str, Any, Effect]]) -> list[tuple[str, Any, E
     return [part for part in parts if part[0] == most]
 
 
-def _of_classes(results: Results, column: str, effect: Effect, rows: np.ndarray, asked: list[str]) -> Finding:
-    """Return the change of the median between the lowest and the highest third of a factor, with its interval."""
-    values = _values(results, column, effect, rows) | {"correlated": asked}
-    effect, within = effects.of_strata(effect, values["parts"])
-    folds = [np.log(e.ratio) for _, _, e in within]
-    apart = bool(folds) and max(folds) - min(folds) > np.log(APART)
-    inside = [(part, rows & (results.table[name] == level).to_numpy()) for name, level, part in within]
-    apart = apart and all(effects.stands_alone(results, column, part, own) for part, own in inside)
-    values |= {"effect": effect, "within": within, "apart": within if apart else []}
-    against = [p for p in values["parts"] if (p[2].ratio - 1) * (effect.ratio - 1) < 0]
-    opposed = [p for p in values["parts"] if p[2].interval[0] > 1 or p[2].interval[1] < 1]
-    if len({e.ratio > 1 for _, _, e in opposed}) == 2:
-        return finding(results, "classes_both", "valid", rows, **values, turns=opposed)
-    none = not _beyond_chance(effect, len(results.factors)) or bool(against)
-    kinds = sorted({category for category, _, _ in against})
-    return finding(results, "classes_none" if none else "classes", "valid", rows, **values, kinds=kinds)
-
-
 def _beyond_chance(effect: Effect, looks: int) -> bool:
-    """Return whether an effect of classes is larger than the largest that chance gives one of `looks` factors.
+    """Return whether a fitted effect is larger than the largest that chance gives one of `looks` factors.
 
     The interval of one factor is widened so that all of them together hold the truth in 95 % of all samples.
     """
     wider = norm.ppf(1.0 - 0.025 / max(looks, 1)) / norm.ppf(0.975)
     low, high = (effect.ratio * (end / effect.ratio) ** wider for end in effect.interval)
-    return bool(low > 1 or high < 1)
+    return bool(low > 1 or high < 1) and _changes(effect)
 
 
 # where rolling and the model end

@@ -1,8 +1,6 @@
-"""Which limit ends the pair first, which factors decide it, and how it turns the order of the designs."""
+"""Which limit ends the pair first, and which factors decide it."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass, replace
 
 import numpy as np
 import pandas as pd
@@ -10,14 +8,10 @@ import pandas as pd
 from trackroller.damage import LIMITS
 from trackroller.damage.verdict import breaking
 from trackroller.parameters import BODIES, FIRST_TO_FAIL
-from trackroller.results.candidates import Candidates
-from trackroller.results.columns import codes
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
 from trackroller.study.outputs import flat
-
-AMONG = 20  # designs whose order is compared, the best by either life
 
 
 def first_limit(results: Results) -> np.ndarray:
@@ -56,50 +50,6 @@ def deciding(results: Results, names: np.ndarray, most: int = 2) -> list[str]:
         with np.errstate(divide="ignore", invalid="ignore"):
             information[factor] = float(np.nansum(share * np.log(share / expected)))
     return sorted((f for f in information if information[f] > 1e-9), key=lambda f: -information[f])[:most]
-
-
-@dataclass(frozen=True)
-class Turn:
-    """How the order of the best designs changes from the life by the S-N curve to the first limit.
-
-    Attributes
-    ----------
-    correlation : rank correlation (Spearman) of the worst cases of the designs [1]
-    before, after : designs (rows of `Candidates.table`), the best first, by the S-N curve, and by the first limit: by
-        the low end of the range of each life, as the verdict counts it
-    """
-
-    correlation: float
-    before: tuple[int, ...]
-    after: tuple[int, ...]
-
-
-def turn(candidates: Candidates) -> Turn | None:
-    """Return how the order of at most `AMONG` designs turns; None with fewer than three designs or without lives.
-
-    Designs without a low end above 0 do not count. Where designs tie, their order says nothing.
-    """
-    results = candidates.results
-    published = next((life for life in results.fatigue_lives if life[0] in results.table), None)
-    if candidates.goal != FIRST_LIMIT or published is None or not candidates.comparable:
-        return None
-    found = results.verdict
-    if found is None or (found.goal, found.choices) != (candidates.goal, candidates.choices):
-        return None
-    low = {one.number: one.low for one in found.candidates if 0 < one.low < np.inf}
-    after = sorted(low, key=lambda i: -low[i])[:AMONG]
-    by_fatigue = replace(candidates, goal=published).by_life
-    by_fatigue = by_fatigue[by_fatigue.index.isin(after)]
-    if len(after) < 3 or len({low[i] for i in after}) < len(after) or by_fatigue["rank"].duplicated().any():
-        return None
-    before = [int(i) for i in by_fatigue.index]
-    places = pd.Series(range(len(before)), index=before)[after]
-    return Turn(float(np.corrcoef(places, range(len(after)))[0, 1]), tuple(before), tuple(after))
-
-
-def reached_hours(results: Results) -> np.ndarray:
-    """Return the hours until each limit of the pair is reached, shape (n, limit) [h]; infinity if it is never known."""
-    return np.asarray(reached_by_body(results).min(axis=2))
 
 
 def reached_by_body(results: Results, end: str = "") -> np.ndarray:
@@ -150,45 +100,3 @@ def outlasted(results: Results, first: str, rows: np.ndarray) -> dict[str, float
 # values that are known within a range only
 COEFFICIENT, POSITION = "wear_coefficient_factor", "placeholder_position"
 UNSURE = (COEFFICIENT, POSITION)
-
-
-def varied(candidates: Candidates) -> list[str]:
-    """Return the conditions of a study that stand for values that are known within a range only."""
-    return [name for name in UNSURE if name in candidates.conditions]
-
-
-def settled(candidates: Candidates) -> tuple[int, int] | None:
-    """Count the conditions of designs whose first limit is the same for all values within their ranges.
-
-    Parameters
-    ----------
-    candidates : Candidates
-        The designs of a study with a condition of `UNSURE`.
-
-    Returns
-    -------
-    tuple of int or None
-        Number of settled conditions, and of all conditions in which a limit is reached and all places of the values
-        are valid cases; None if the study varies no such condition.
-
-    Notes
-    -----
-    Values of different limits differ independently: a limit comes first for certain if its longest life is not longer
-    than the shortest lives of all other limits.
-    """
-    results = candidates.results
-    if not varied(candidates) or not results.limits:
-        return None
-    place = codes(results.table, (name for name in results.factors if name not in UNSURE))
-    reached = reached_hours(results)
-    whole = np.prod([len(results.levels(name)) for name in varied(candidates)])  # places within the ranges
-    groups, first = [place[results.valid] == g for g in np.unique(place[results.valid])], reached[results.valid]
-    groups = [rows for rows in groups if rows.sum() == whole]
-    certain = ends = 0
-    for rows in groups:
-        least, most = first[rows].min(axis=0), first[rows].max(axis=0)
-        if np.isfinite(least).any():
-            ends += 1
-            rule = int(np.argmin(most))
-            certain += bool(np.isfinite(most[rule]) and (most[rule] <= np.delete(least, rule)).all())
-    return certain, ends

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, setting, times
-from trackroller.report.words.levels import at_least, at_most
+from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, rounded, setting, times
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.effects import Effect
 from trackroller.results.findings import Finding
@@ -13,6 +12,7 @@ from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import NAMED
 
+WIDE = 1.1  # an end of an interval so many times as large as the fitted ratio is told
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
 
 
@@ -22,9 +22,9 @@ def effect_words(results: Results, finding: Finding) -> Sentence:
     output = _words(results, column)
     values = {**vars(effect), "words": output, "fold": times(effect.ratio), "verb": _change(column, effect.ratio)[0]}
     values["beyond"] = _beyond(finding)
-    if finding.kind.startswith("pairs"):
-        return say("factors", finding.kind, **{**finding.values, **values, **_of_pairs(results, finding)})
-    return say("factors", finding.kind, **{**finding.values, **values, **_of_classes(results, finding)})
+    values["span"] = _span(results, effect)
+    values |= _of_fit(effect) if finding.kind == "fitted" else _of_pairs(results, finding)
+    return say("factors", finding.kind, **{**finding.values, **values})
 
 
 def _words(results: Results, column: str) -> str:
@@ -66,12 +66,11 @@ def _within(parts: Strata, column: str) -> list[str]:
     return [f"{times(r)} {_change(column, r)[1]} with {at}" if r != 1 else f"unchanged with {at}" for at, r in said]
 
 
-def _stratum(parts: Strata) -> str:
-    """Return where an effect of classes holds: 'at equal material pair', or at the one level that has enough rows."""
-    if not parts:
-        return ""
-    category, level, _ = parts[0]
-    return f" at equal {long_name(category)}" if len(parts) > 1 else f" with {setting(category, level)}"
+def _of_fit(effect: Effect) -> dict[str, Any]:
+    """Return the words of a fitted effect: two digits, and its interval where this is wide."""
+    fold, *ends = (max(r, 1 / r) for r in (effect.ratio, *effect.interval))
+    wide = [rounded(end, 2) for end in sorted(ends)] if max(ends) > WIDE * fold else []
+    return {"fold": f"{rounded(fold, 2)}-fold", "wide": wide}
 
 
 def _of_pairs(results: Results, finding: Finding) -> dict[str, Any]:
@@ -84,21 +83,4 @@ def _of_pairs(results: Results, finding: Finding) -> dict[str, Any]:
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that {follow} from it" if changed else ""
     medians = _within(values["apart"], values["column"])
-    return {"span": _span(results, values["effect"]), "pairs": pairs, "medians": medians}
-
-
-def _of_classes(results: Results, finding: Finding) -> dict[str, Any]:
-    """Return the words of the change of the median between the lowest and the highest third of a factor."""
-    effect, values = finding.values["effect"], finding.values
-    low, high = finding.spans[effect.factor][0], finding.spans[effect.factor][-1]
-    return {
-        "low_class": at_most(effect.factor, effect.low, low),
-        "high_class": at_least(effect.factor, effect.high, high),
-        "name": long_name(effect.factor),
-        "turns": _within(values.get("turns", []), values["column"]),
-        "within": _stratum(values["within"]),
-        "strata": len(values["within"]),
-        "medians": _within(values["apart"], values["column"]),
-        "kinds": [long_name(name) for name in values.get("kinds", ())],
-        "correlated": [long_name(name) for name in values["correlated"]],
-    }
+    return {"pairs": pairs, "medians": medians}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 
 import numpy as np
 import xarray as xr
@@ -11,7 +11,6 @@ from trackroller.report.numbers import capital, count, level_text, percent, plus
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.results.columns import codes
 from trackroller.results.findings import NEGLIGIBLE, Finding
 from trackroller.results.labels import INDEX_WORDS, RELIABLE, factor_name
 from trackroller.results.ranking import SIGNED, estimate, headline, method_of, order
@@ -39,30 +38,6 @@ def effect_unit(sens: xr.Dataset, output: str) -> str:
     return "powers of ten" if str(part["scale"].item()) == "log10" else unit_text(str(part["output_units"].item()))
 
 
-def caveat(sens: xr.Dataset, output: str) -> str:
-    """State rows that were left out, and why first-order indices exceed 100 %; an empty text without either."""
-    part, said = sens.sel(output=output), []
-    if "reliable" in part and not int(part["reliable"]):
-        said.append(f"Rows that could be used: {part['note'].item()}.")
-    if headline(sens) in ("first", "S1") and "first_order_sum_note" in part:
-        said += [why] if (why := str(part["first_order_sum_note"].item())) else []
-    return " ".join(said)
-
-
-def idle_factors(results: Results, finding: Finding) -> list[str]:
-    """Return the small factors of a grid whose levels all give the same output, whatever the other factors are."""
-    output, idle = finding.values["output"], []
-    if not results.grid or output not in results.table:
-        return []
-    values = results.column(output)
-    for name in (r.factor for r in finding.values["small"]):
-        own = codes(results.table, (n for n in results.factors if n != name))
-        first = values[np.unique(own, return_index=True)[1]][own]
-        if np.array_equal(values, first, equal_nan=True):
-            idle.append(name)
-    return idle
-
-
 def coded_levels(results: Results, sens: xr.Dataset) -> dict[str, str]:
     """Return the two levels of each category whose effect has a sign, from the first to the second one, by factor."""
     if headline(sens) not in SIGNED:
@@ -75,15 +50,12 @@ def coded_levels(results: Results, sens: xr.Dataset) -> dict[str, str]:
     }
 
 
-def index_words(
-    sens: xr.Dataset, finding: Finding, idle: Sequence[str] = (), levels: Mapping[str, str] | None = None
-) -> Sentence:
-    """Name the factors that decide an output, by one index with its interval, and those that do not change it.
+def index_words(sens: xr.Dataset, finding: Finding, levels: Mapping[str, str] | None = None) -> Sentence:
+    """Name the factors that decide an output, by one index with its interval.
 
     Parameters
     ----------
     sens, finding : the indices, and the finding on one output
-    idle : factors that do not change the output at all
     levels : words for both levels of a category by factor, where an effect has a sign
     """
     values, output = finding.values, finding.values["output"]
@@ -97,20 +69,17 @@ def index_words(
     together = [name + coded.get(name, "") for name in together] if sized else together
     words = {"what": of_output(sens, output), "first": ranks[0], "together": together, "unit": unit}
     words |= {
-        "idle": [r.name for r in values["small"] if r.factor in idle],
-        "small": [r.name for r in values["small"] if r.factor not in idle],
+        "small": [r.name for r in values["small"]],
         "unsure": [f"{r.name} (0 to {percent(r.high)})" for r in values["unsure"]],
         "words": INDEX_WORDS[index],
         "further": sizes if sized else shares,
     }
-    return say(
-        "indices", "index", **{**values, **words}, negligible=NEGLIGIBLE, reliable=RELIABLE, note=caveat(sens, output)
-    )
+    return say("indices", "index", **{**values, **words}, negligible=NEGLIGIBLE, reliable=RELIABLE)
 
 
-def named_words(sens: xr.Dataset, finding: Finding) -> Sentence:
-    """Say what else an analysis shows of an output: an interaction, or effects that differ from place to place."""
-    return say("indices", finding.kind, **finding.values, what=of_output(sens, finding.values["output"]))
+def interaction_words(sens: xr.Dataset, finding: Finding) -> Sentence:
+    """Name the strongest interaction on an output."""
+    return say("indices", "interaction", **finding.values, what=of_output(sens, finding.values["output"]))
 
 
 def group_words(sens: xr.Dataset, finding: Finding) -> Sentence:

@@ -1,35 +1,26 @@
-"""Sentences and a table on limits: which one comes first, how they change the order of designs, what each costs."""
+"""Sentences and a table on limits: which one comes first, and what they rest on."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.report.numbers import capital, count, level_text, long_name, quantity, rounded
+from trackroller.report.numbers import capital, count, level_text, long_name, quantity
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import design_words, limit_title, within_words
+from trackroller.report.words.designs import limit_title, within_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.findings import Finding
-from trackroller.results.first_limits import COEFFICIENT, POSITION, deciding, first_limit
+from trackroller.results.first_limits import deciding, first_limit
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.results.results import Results
 from trackroller.roller.limit_notes import guessed_lines, placeholders_of
 
 
-def limit_words(results: Results, finding: Finding) -> Sentence:
-    """Say which limits come first, how they turn the order of the designs, or what the unmeasured values decide."""
-    values = finding.values
-    if finding.kind == "first_limits":
-        counts = {limit_title(name): cases for name, cases in values["counts"].items()}
-        beaten = {limit_title(name): quantity(hours, "h") for name, hours in values["beaten"].items()}
-        return say("limits", "first_limits", counts=counts, valid=values["of"], beaten=beaten)
-    if finding.kind == "turned":
-        candidates, design, name = results.candidates(), values["design"], ""
-        if design is not None:
-            assert candidates is not None  # the finding is about their order
-            name = design_words(candidates, design)
-        return say("limits", "turned", **values, name=name)
-    return say("limits", "whichever_first", **values, **_unsure(results, values["factors"]))
+def limit_words(_: Results, finding: Finding) -> Sentence:
+    """Say which limits come first."""
+    counts = {limit_title(name): cases for name, cases in finding.values["counts"].items()}
+    beaten = {limit_title(name): quantity(hours, "h") for name, hours in finding.values["beaten"].items()}
+    return say("limits", "first_limits", counts=counts, valid=finding.values["of"], beaten=beaten)
 
 
 def guesses(results: Results) -> Sentence | None:
@@ -53,17 +44,6 @@ def worn(results: Results) -> Sentence | None:
     km, valid = results.column("run_in_distance")[rows], int(results.valid.sum())
     values = {"count": int(rows.sum()), "valid": valid, "of_limits": results.has(name)}
     return say("limits", "worn", **values, least=km.min(), most=km.max())
-
-
-def _unsure(results: Results, names: list[str]) -> dict[str, str]:
-    """Return words for the values that a study varies within their ranges, and for the ranges."""
-    if names == [POSITION]:
-        return {"what": "placeholders of materials", "span": "each within its range"}
-    if POSITION in names:
-        return {"what": "wear coefficients and other placeholders", "span": "within the ranges of both factors"}
-    factors = results.table[COEFFICIENT]
-    span = f"each from {rounded(factors.min())} to {rounded(factors.max())} times its value"
-    return {"what": "wear coefficients", "span": span}
 
 
 def first_limit_table(results: Results) -> Table | None:

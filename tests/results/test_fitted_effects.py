@@ -1,0 +1,107 @@
+"""Fitted effects of samples: against closed forms and pairs solved anew; left out where a fit predicts little."""
+
+import numpy as np
+import pytest
+import xarray as xr
+import yaml
+from synthetic_results import results_of
+
+import trackroller as tr
+from trackroller.results.effects import fitted_effects
+from trackroller.results.findings import effect_of, strongest_effects, why
+
+STUDY = {
+    "name": "fits", "design": "lhs", "samples": 100, "contact_model": "sliding", "accuracy": "preview",
+    "outputs": ["forces", "peak_stress", "life"],
+    "base": {"axial_force": 5, "guide_curve_radius": "inf", "friction_coefficient": 0.2},
+    "factors": {
+        "radial_force": {"uniform": [-260, -80]}, "axis_distance": {"uniform": [16, 30]},
+        "roller_profile_radius": {"uniform": [-7.4, -6.4]},
+        "roller_material": {"values": ["1.7225-normalised", "1.7225-quenched-tempered"]},
+    },
+}  # fmt: skip
+LIFE = "roller_life_hours"
+
+
+def sample(life, **columns):
+    n = len(life)
+    ds = xr.Dataset({LIFE: ("case", life)}, {name: ("case", own) for name, own in columns.items()})
+    ds.attrs["study"] = yaml.safe_dump({"design": "table", "name": "t", "factors": {name: {} for name in columns}})
+    return results_of(ds.assign_coords(case=np.arange(n)))
+
+
+def test_a_power_law_is_found_again():
+    """Life x^-3 times 5 for the hard material: the ratio between the values at a tenth from both ends, and 5."""
+    rng = np.random.default_rng(3)
+    x, hard = rng.uniform(20, 90, 200), rng.random(200) < 0.4
+    life = 1e9 * x**-3.0 * np.where(hard, 5.0, 1.0)
+    results = sample(life, axial_force=x, roller_material=np.where(hard, "hard", "soft"), velocity=rng.random(200))
+    share, found = fitted_effects(results, LIFE, results.valid)
+    load, material, speed = found
+    low, high = np.sort(x)[[20, 179]]
+    assert share > 0.995 and (load.low, load.high) == (low, high)
+    assert load.ratio == pytest.approx((high / low) ** -3.0, rel=0.03)
+    assert (material.low, material.high) == ("soft", "hard") and material.ratio == pytest.approx(5, rel=0.02)
+    assert speed.ratio == pytest.approx(1, rel=0.02) and effect_of(results, LIFE, "velocity") is None
+
+
+def test_factors_that_go_together_have_no_effect_of_their_own():
+    """Two loads with a correlation of 0.9: the life follows one of them, and the cases do not tell which."""
+    rng = np.random.default_rng(5)
+    x, noise = rng.uniform(1, 2, (2, 300))
+    results = sample(1e5 * x**-4.0, axial_force=x, motor_force=x + 0.4 * noise)
+    assert fitted_effects(results, LIFE, results.valid)[1] == []
+    results = sample(1e5 * x**-4.0, axial_force=x, motor_force=noise)
+    one, other = fitted_effects(results, LIFE, results.valid)[1]
+    assert one.ratio == pytest.approx((one.high / one.low) ** -4.0, rel=0.05) and other.ratio == pytest.approx(
+        1, abs=0.05
+    )
+
+
+def test_noise_carries_no_effect():
+    rng = np.random.default_rng(1)
+    x = rng.uniform(0, 50, 300)
+    results = sample(10 ** (3 - x / 50 + rng.normal(0, 0.3, 300)), axial_force=x)
+    assert np.isnan(fitted_effects(results, LIFE, results.valid)[0]) and effect_of(results, LIFE, "axial_force") is None
+
+
+def test_a_wide_interval_is_told_and_holds_the_truth():
+    """Thirty noisy cases, forty times: the interval of 95 % holds the law, and is no wider than it has to be."""
+    from trackroller.report.words.findings import sentence_of
+
+    held = []
+    for seed in range(40):
+        rng = np.random.default_rng(seed)
+        x = rng.uniform(0, 1, 30)
+        results = sample(10 ** (3 - x + rng.normal(0, 0.05, 30)), axial_force=x)
+        (effect,) = fitted_effects(results, LIFE, results.valid)[1]
+        held.append(effect.interval[0] < 10 ** (effect.low - effect.high) < effect.interval[1])
+        assert effect.interval[1] < 1.4 * effect.ratio
+    assert sum(held) >= 34
+    said = sentence_of(results, effect_of(results, LIFE, "axial_force"))
+    assert said.values["verb"] == "shortens" and "95 % interval" in said.text
+
+
+@pytest.mark.slow
+def test_pairs_solved_anew_give_the_told_effects():
+    """Each told effect against the median of 40 pairs that differ in this factor only, solved for this test."""
+    results = tr.run(STUDY, progress=False)
+    found = strongest_effects(results, LIFE)
+    assert {one.kind for one in found} == {"fitted"} and len(found) == 3
+    table = results.table[results.valid].iloc[:40]
+    for effect in (one.values["effect"] for one in found):
+        cases = [STUDY["base"] | row[list(STUDY["factors"])].to_dict() for _, row in table.iterrows()]
+        both = [
+            np.array([_life(case | {effect.factor: level}) for case in cases]) for level in (effect.low, effect.high)
+        ]
+        assert effect.ratio == pytest.approx(10 ** np.nanmean(np.log10(both[1] / both[0])), rel=0.1)
+
+
+def _life(case):
+    return float(tr.solve(case, contact_model="sliding", accuracy="preview")[LIFE])
+
+
+def test_a_fit_takes_the_place_of_the_index_of_a_sample():
+    results = tr.run(STUDY | {"samples": 64}, progress=False)
+    kinds = [one.kind for one in why(results)]
+    assert kinds == ["fitted"] * 3
