@@ -190,7 +190,7 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     ]
     neighbours = [
         {"choice": name, "step": step, "values": moved.values[i].tolist()}
-        | {"violation": float(moved.violation[i]), "short": float(moved.short[i])}
+        | {name: float(getattr(moved, name)[i]) for name in ("violation", "short", "life")}
         for i, (name, step, _) in enumerate(around)
     ]
     result = facts | {

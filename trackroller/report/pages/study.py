@@ -25,7 +25,7 @@ from trackroller.report.words.designs import best_table, rows_table, size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import index_table, measure_table, part_tables
 from trackroller.report.words.limits import first_limit_table
-from trackroller.report.words.optimum import optima_table
+from trackroller.report.words.optimum import optima_table, steps_table
 from trackroller.report.words.pareto import pareto_table
 from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
@@ -157,8 +157,10 @@ def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     sens, error = results.analysis, friction_error(results)
     summary = in_short(results, models.get("short", []))
     said = {key: [s for head, own in summary if head in one.said for s in own] for key, one in SECTIONS.items()}
-    decide: list[Table | None] = [optima_table(results) or best_table(results), rows_table(results)]
-    decide.append(first_limit_table(results))
+    decide: list[Table | None] = [
+        optima_table(results) or best_table(results),
+        *(steps_table(results), rows_table(results), first_limit_table(results)),
+    ]
     front = given_pareto(results)
     if front is not None:
         decide.append(pareto_table(front, results, error))

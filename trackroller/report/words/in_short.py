@@ -7,11 +7,11 @@ from trackroller.report.words.cases import silent_drive, valid_cases
 from trackroller.report.words.designs import life_error, within_words
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.limits import guesses, worn
-from trackroller.report.words.optimum import optimum_sentences, searched, tolerances
+from trackroller.report.words.optimum import optimum_sentences, searched
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.samples import grown, of_target, samples, undecided
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.targets import b10_by_tests, target
+from trackroller.report.words.targets import b10_by_tests
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.pareto import given_pareto
 from trackroller.results.ranking import main_lives, robust_design
@@ -41,10 +41,8 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
         (
             "Decide",
             [
-                _target(results),
                 None if results.analysis is None else b10_by_tests(results.analysis),
                 None if front is None else pareto_sentence(front, results),
-                tolerances(results),
             ],
         ),
         ("Why", [*told["why"], _within(results, told["why"]), _enough(results)]),
@@ -83,15 +81,6 @@ def _enough(results: Results) -> Sentence | None:
     kinds = ("build", *SETTLED) if found is not None and found.target else ("build",)
     settled = found is not None and found.sampled and found.kind in kinds
     return None if about is None else samples(sens, asked, about, settled)
-
-
-def _target(results: Results) -> Sentence | None:
-    """Say how often all targets of the study are met, where its verdict does not say which candidates meet them."""
-    sens, found = results.analysis, results.verdict
-    if sens is None or "target" not in sens.dims:
-        return None
-    answered = found is not None and found.kind != "cannot_tell" and not found.sampled
-    return None if answered and not robust_design(sens) else target(sens, -1)  # the last target joins several
 
 
 def stopped(results: Results) -> Sentence | None:

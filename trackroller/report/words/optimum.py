@@ -16,6 +16,7 @@ from trackroller.report.numbers import (
     capital,
     lasting,
     long_name,
+    part_of,
     percent,
     quantity,
     rounded,
@@ -58,7 +59,6 @@ from trackroller.study.file.goals import names_in
 from trackroller.study.file.search import judged_by
 
 AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
-SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
 
 
 def optimum_sentences(results: Results) -> list[Sentence]:
@@ -84,18 +84,6 @@ def optimum_sentences(results: Results) -> list[Sentence]:
         said.append(bearing_words(results, _limits(results, search, best)))
     said.append(_unchecked(results, search))
     return [sentence for sentence in said if sentence is not None]
-
-
-def tolerances(results: Results) -> Sentence | None:
-    """Say what a small change of each real choice of the recommended design costs; None for another study."""
-    search = optimum_of(results)
-    if search is None:
-        return None
-    judged = judge(results)
-    best = _best(search, judged)
-    if best is None or best["design"] != search["recommended"]:
-        return None
-    return _tolerance(results, search, best, judged)
 
 
 def searched(results: Results) -> list[Sentence]:
@@ -326,30 +314,6 @@ def _changes(before: list[float], after: list[float]) -> list[float]:
     return [b / a - 1 if a and np.isfinite([a, b]).all() else 0.0 for a, b in zip(before, after, strict=True)]
 
 
-def _change(goal: str, before: float, after: float) -> str:
-    """Write how a goal changes: a probability from one share to another, others by percent; '' if it does not."""
-    if judged_by(goal)[0] == "probability":
-        return f"from {percent(before)} to {percent(after)}" if abs(after - before) > SMALL else ""
-    change = _changes([before], [after])[0]
-    return f"by {100 * change:+.2g} %".replace("-", "−") if abs(change) > SMALL else ""
-
-
-def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence | None:
-    """Say what a small change of each real choice costs."""
-    words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
-    short = float(judged.short[best["design"]])
-    for near in search["neighbours"]:
-        name, step = near["choice"], float(near["step"])
-        moved = f"{'+' if step > 0 else ''}{quantity(step, getattr(parameter_of(name), 'unit', '1'))}"
-        invalid = near["violation"] if near["violation"] > best["violation"][0] else 0.0
-        missed = required(results) and short == 0 < near.get("short", 0.0)
-        changes = zip(search["goals"], words, best["values"], near["values"], strict=True)
-        texts = [(text, _change(goal, *both)) for goal, text, *both in changes if goal != name]
-        changed = [(text, change) for text, change in texts if change]
-        neighbours.append((long_name(name), moved, invalid, missed, changed, name in search["goals"]))
-    return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
-
-
 def optima_table(results: Results) -> Table | None:
     """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
     search = optimum_of(results)
@@ -373,3 +337,38 @@ def optima_table(results: Results) -> Table | None:
     heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
     note = "Each design is judged over all its conditions. Bold: differs from the first design."
     return compared("optima", "Optima of the search", heads, rows, note)
+
+
+def steps_table(results: Results) -> Table | None:
+    """List the recommended design of a search and the designs one step of a real choice away; None without steps."""
+    search = optimum_of(results)
+    if search is None or not search["neighbours"]:
+        return None
+    judged = judge(results)
+    best, many = _best(search, judged), results.design.meta["inner_samples"]
+    if best is None or best["design"] != search["recommended"]:
+        return None  # the steps are those around the design that the search recommended
+    own = {"values": best["values"], "violation": best["violation"][0], "short": judged.short[best["design"]]}
+    own["life"], near = judged.life[best["design"]], search["neighbours"]
+    asked = [judged_by(goal) for goal in search["goals"]]
+    counted = all(kind in ("b10", "probability") for kind, _ in asked)
+    lives = "life" in near[0] and not any(is_life(output) for _, output in asked)
+    rows = []
+    for one in (own, *near):
+        name = "Recommended"
+        if one is not own:
+            step, unit = float(one["step"]), getattr(parameter_of(one["choice"]), "unit", "1")
+            name = f"{capital(long_name(one['choice']))} {'+' * (step > 0)}{quantity(step, unit)}"
+        row: dict[str, Any] = {"Design": name}
+        if required(results) and "short" in near[0]:
+            row["Surely meets the target"] = "no" if one["short"] else "yes"
+        if not counted:
+            row["Valid in"] = part_of(round((1 - one["violation"]) * many), many)
+        for goal, value in zip(search["goals"], one["values"], strict=True):
+            _, units, words = goal_column(results, goal)
+            head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
+            row[head] = percent(value) if judged_by(goal)[0] == "probability" else float(value)
+        if lives and results.life is not None:
+            row[with_unit(f"{capital(results.life[1])}, shortest", results.life[2])] = float(one["life"])
+        rows.append(row)
+    return Table.of("steps", "Steps around the recommended design", rows)
