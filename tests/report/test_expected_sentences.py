@@ -223,7 +223,7 @@ def test_end_points_that_the_sentence_names_stand_in_the_table():
     rng = np.random.default_rng(5)
     goals = {name: ("row", values) for name, values in zip("abc", rng.random((3, 200)), strict=True)}
     front = xr.Dataset(goals | {"optimal": ("row", np.ones(200, np.int8))}, {"row": np.arange(200)})
-    front.attrs = {"objectives": "a max, b min, c max", "excluded": "none", "factors": ""}
+    front.attrs = {"objectives": "a max, b min, c max", "factors": ""}
     results = results_of(grid_study(GRIDS["curves"] | {"axial_force": list(np.arange(8.0))}))
     rows = {row[0] for row in pareto_table(front, results, None).rows}
     a, b, c = (front[name].values for name in "abc")

@@ -159,7 +159,7 @@ def test_a_set_with_designs_outside_the_model_says_how_many():
             "optimal": ("row", [1, 1]),
         },
         coords={"row": [0, 1]},
-        attrs={"objectives": "a max, b min", "excluded": "nothing"},
+        attrs={"objectives": "a max, b min"},
     )
     ds = study({"axial_force": [0.0, 1.0]}, regime=[0, 1])
     assert pareto_sentence(front, results_of(ds)).values["outside"] == 1

@@ -13,7 +13,7 @@ from trackroller.report.words.samples import grown, of_target, samples, undecide
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import b10_by_tests
 from trackroller.report.words.verdict import verdict_sentences
-from trackroller.results.pareto import given_pareto
+from trackroller.results.pareto import given_pareto, goals_of
 from trackroller.results.ranking import main_lives, robust_design
 from trackroller.results.results import Results
 
@@ -34,15 +34,15 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
     models : sentences of the comparison of contact models, if the study has one
     """
     search = optimum_sentences(results)
-    front = given_pareto(results)
+    verdict = search or verdict_sentences(results)
     told = {place: [sentence_of(results, one) for one in found] for place, found in results.findings.items()}
     lines: list[tuple[str, list[Sentence | None]]] = [
-        ("Best" if search else "Verdict", [*(search or verdict_sentences(results))]),
+        ("Best" if search else "Verdict", [*verdict]),
         (
             "Decide",
             [
                 None if results.analysis is None else b10_by_tests(results.analysis),
-                None if front is None else pareto_sentence(front, results),
+                _front(results, verdict),
             ],
         ),
         ("Why", [*told["why"], _within(results, told["why"]), _enough(results)]),
@@ -57,6 +57,15 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
         ),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
+
+
+def _front(results: Results, verdict: list[Sentence]) -> Sentence | None:
+    """State the ends of the Pareto set of the goals that a study gives, where its verdict does not name them."""
+    front = given_pareto(results)
+    if front is None or {"requirement", "tradeoff"} & {one.kind for one in verdict}:
+        return None
+    told = results.config.method.proposes and len(goals_of(front)) == 1
+    return None if told else pareto_sentence(front, results)
 
 
 def _within(results: Results, told: list[Sentence]) -> Sentence | None:

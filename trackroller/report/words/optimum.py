@@ -25,7 +25,6 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text
-from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import (
     bearing_words,
@@ -49,7 +48,6 @@ from trackroller.results.judging import (
     required,
     shortfall,
 )
-from trackroller.results.pareto import pareto_of_search
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Turn, not_checked, open_values
@@ -123,11 +121,11 @@ def design_words(results: Results, number: int) -> str:
     return ", ".join(setting(name, value) for name, value in choices_of(results, number).items())
 
 
-def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
+def goal_values(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
     """Write the goals of an optimum with their units; a life has its range and says whether S-N data end before it."""
     texts = []
     for goal, value in zip(search["goals"], one["values"], strict=True):
-        _, units, words = goal_column(results, goal)
+        units = goal_column(results, goal)[1]
         design, ends = one["design"], ends_of_goal(results, goal)
         beyond = bool(beyond_data(results, goal)[design])
         text = lasting(value, units, beyond) if units == "h" else quantity(value, units)
@@ -136,7 +134,7 @@ def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) ->
             text = ends_text(float(ends[0][design]), float(ends[1][design]), BEYOND * beyond, units)
         else:
             text += _interval(results, goal, design)
-        texts.append(f"{words} {text}")
+        texts.append(text)
     return texts
 
 
@@ -155,21 +153,19 @@ def _interval(results: Results, goal: str, number: int) -> str:
 
 
 def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence:
-    values = {
-        "least": least_violation(search),
-        "design": design_words(results, best["design"]),
-        "front": search["front"],
-        "constraints": [str(one) for one in results.config.constraints],
-    }
-    values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
-    alike = all(one["values"] == best["values"] for one in search["optima"])
-    values["goals"] = goal_texts(results, search, best)
+    words = [goal_column(results, goal)[2] for goal in search["goals"]]
+    told = goal_values(results, search, best)
+    values = {"design": design_words(results, best["design"]), "front": search["front"]}
+    alike, least = all(one["values"] == best["values"] for one in search["optima"]), least_violation(search)
     several = len(search["goals"]) > 1 and search["front"] > 1 and not alike
     named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
-    if several and not values["least"] and not (required(results) or bounded):  # the goals alone do not choose
-        ends = [goal_texts(results, search, one) for one in _ends(search)]
-        return say("optimum", "requirement", ends=ends, holes=holes_words(pareto_of_search(results)), **values)
+    if several and not least and not (required(results) or bounded):  # the goals alone do not choose
+        ends = [goal_values(results, search, one) for one in _ends(search)]
+        return say("optimum", "requirement", ends=ends, words=words, goals=told, **values)
+    values |= {"least": least, "constraints": [str(one) for one in results.config.constraints]}
+    values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
+    values["goals"] = [" ".join(pair) for pair in zip(words, told, strict=True)]
     # a range may reach below the certain life of another design
     both = (ends_of_goal(results, goal) for goal in search["goals"])
     values["ranged"] = any(e is not None and bool((e[1] > e[0] * (1 + SAME))[best["design"]]) for e in both)
