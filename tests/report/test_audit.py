@@ -155,7 +155,7 @@ class Audit:
             if lost := int((frame["regime"] == code).sum()):
                 assert f"{lost:,} {words}" in text
         if 0 < frame["inside"].sum() < frame["rolls"].sum():
-            assert f"{frame['inside'].sum():,} of them stay inside the model" in text
+            assert re.search(rf"; {frame['inside'].sum():,} of them lies? inside the model", text)
         if "constraints" in self.told and frame["inside"].any():
             assert f"{frame['valid'].sum() or 'None'} of the {frame['inside'].sum()} meet" in text
         limits = self.said("Where it ends")

@@ -15,7 +15,7 @@ from trackroller.methods import METHODS
 from trackroller.parameters.example import not_given_text, used_of
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.numbers import capital, count, lives_in_years, long_name, part_of, percent, plain, rounded
+from trackroller.report.numbers import at_most, capital, count, lives_in_years, long_name, part_of, plain, rounded
 from trackroller.report.tables import inputs
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import friction_error
@@ -234,8 +234,7 @@ def solution_facts(results: Results) -> list[inputs.Row]:
     if (known := _finite(ds, "residual")).size:
         rows.append(inputs.Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
     if (known := _finite(ds, "error_estimate")).size:
-        text = f"{percent(float(known.max()))} (median {percent(float(np.median(known)))})"
-        rows.append(inputs.Row("Largest estimated relative error of the peak stress", text))
+        rows.append(inputs.Row("Largest estimated relative error of the peak stress", at_most(float(known.max()))))
     return rows
 
 

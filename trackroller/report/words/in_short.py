@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
+from trackroller.report.words.accuracy import accuracy, friction_error, friction_guess, full_sliding
 from trackroller.report.words.cases import silent_drive, valid_cases
 from trackroller.report.words.designs import life_error, within_words
 from trackroller.report.words.findings import sentence_of
@@ -13,6 +13,7 @@ from trackroller.report.words.samples import grown, of_target, samples, undecide
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.targets import b10_by_tests
 from trackroller.report.words.verdict import verdict_sentences
+from trackroller.results.looks import looks_of
 from trackroller.results.pareto import given_pareto, goals_of
 from trackroller.results.ranking import main_lives, robust_design
 from trackroller.results.results import Results
@@ -51,7 +52,8 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
             "How sure",
             [
                 *(friction_guess(results), guesses(results), worn(results)),
-                *(*known_errors(results), *accuracy(results), life_error(results), *searched(results)),
+                *(friction_error(results), full_sliding(results), *accuracy(results), life_error(results)),
+                *(*searched(results), grown(results)),
                 *(Sentence("models", text) for text in models),
             ],
         ),
@@ -74,11 +76,10 @@ def _within(results: Results, told: list[Sentence]) -> Sentence | None:
 
 
 def _enough(results: Results) -> Sentence | None:
-    """Say whether there are samples enough for what decides; None for an unfinished study, which asks for more."""
+    """Say whether there are samples enough for what decides; None for a sample that grows or is not finished."""
     sens = results.analysis
-    known = grown(results)
-    if known is not None or sens is None or results.unfinished:
-        return known
+    if sens is None or results.unfinished or looks_of(results) is not None:
+        return None
     found, asked, method = results.verdict, results.config.samples, results.config.method
     if found is not None and (found.kind, found.why) == ("cannot_tell", "sample"):
         return undecided(found, len(results.table) if method.observed else asked, method.observed)

@@ -89,14 +89,20 @@ def searched(results: Results) -> list[Sentence]:
     search = optimum_of(results)
     if search is None:
         return []
-    facts = ("designs", "generations", "model", "valid", "stopped")
-    how = say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts})
+    how = say("optimum", "searched", **{name: search[name] for name in ("designs", "model", "stopped")})
     checked = _checked(results, search) if search["optima"] and least_violation(search) < 1 else None
-    best = _best(search, judge(results))
-    found = None if best is None else _first_life(results, search, best)
-    error = 0.0 if found is None else float(found[0].error[found[1]])
-    rough = [say("accuracy", "life", error=error, many=False, decided=False, worst=True)] if error > LARGE_ERROR else []
-    return [*([] if checked is None else [checked]), *rough, how]
+    return [*filter(None, [checked, _life_error(results, _best(search, judge(results)))]), how]
+
+
+def _life_error(results: Results, best: dict[str, Any] | None) -> Sentence | None:
+    """State the largest error by the solution of the lives of a design, where it exceeds `LARGE_ERROR`."""
+    if best is None or results.life is None:
+        return None
+    cases, many = Cases(Candidates.grouped(results, results.life)), results.design.meta["inner_samples"]
+    own = slice(best["design"] * many, (best["design"] + 1) * many)
+    error = float(cases.error[own][cases.reason[own] == ""].max(initial=0.0))
+    name = design_words(results, best["design"])
+    return say("accuracy", "life", name=name, error=error) if error > LARGE_ERROR else None
 
 
 def _best(search: dict[str, Any], judged: Judged) -> dict[str, Any] | None:
