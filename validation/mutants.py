@@ -157,7 +157,6 @@ DECISIONS = {
         '1.0 if way == "max" else -1.0',
         WORDS,
     ),
-    "same-share": ("report/words/targets.py", "np.ptp(share) < SAME", "np.ptp(share) > SAME", TARGETS),
     "told-peaks": ("roller/stages/stress.py", "(peak.error + ", "(0.5 * peak.error + ", ("roller/test_tolerance.py",)),
     "told-forces": (
         "roller/stages/mechanics.py",

@@ -39,7 +39,6 @@ GRIDS = {
 SAMPLES = {"a sample": 300, "a small sample": 60}
 CONSTRAINED = ("axial", "materials")
 NUMBERS = ("friction_coefficient", "roller_profile_radius")
-OUTSIDE = {"static": 4, "conformal": 8}
 
 
 def study_of(name):
@@ -75,9 +74,6 @@ def test_a_sentence_that_should_appear_does(name):
         assert told == [(hit, total)] * (hit > 0), (what, hit)
     inside = (table["regime"] == 0) & (table["validity"] & 15 == 0)
     assert valid.values["inside"] == inside.sum()
-    hits = {flag: int(((table["regime"] == 0) & (table["validity"] & bit > 0)).sum()) for flag, bit in OUTSIDE.items()}
-    assert {flag: cases for flag, _, cases in valid.values["reasons"]} == {f: hit for f, hit in hits.items() if hit}
-    assert all(f"({hit})" in valid.text for hit in hits.values() if hit)
     if grid:
         expect_deciding_factor(table[table["regime"] == 0], list(GRIDS[name]), rolls == total, said)
         expect_largest_effect(table[inside], list(GRIDS[name]), said)
@@ -119,8 +115,7 @@ def expect_largest_effect(rows, factors, said):
 
 
 @pytest.mark.parametrize("name", CONSTRAINED)
-def test_what_a_constraint_removes_is_named(name):
-    """Constraints that leave one level, and one that removes a level, each with its counts."""
+def test_cases_that_meet_a_constraint_are_counted(name):
     ds, table = study_of(name)
     limit = "axial_force < 20" if name == "axial" else f"material_pair != '{PAIRS[2]}'"
     ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": [limit]}, sort_keys=False)
@@ -128,12 +123,6 @@ def test_what_a_constraint_removes_is_named(name):
     kept = inside & (table["axial_force"] < 20 if name == "axial" else table["material_pair"] != PAIRS[2])
     said = dict(contents(results_of(ds))["summary"])["Where it ends"][0].values
     assert (said["valid"], said["inside"], said["constraints"]) == (kept.sum(), inside.sum(), [f"`{limit}`"])
-    (removed,) = said["removed"]
-    assert removed.startswith("Axial force 30 N" if name == "axial" else "EN AW-7075 on 1.7225-normalised")
-    one = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | {"constraints": ["friction_coefficient > 0.35"]})
-    ds.attrs["study"] = one
-    (removed,) = dict(contents(results_of(ds))["summary"])["Where it ends"][0].values["removed"]
-    assert removed.startswith("Only friction coefficient 0.4")
 
 
 def test_pairs_of_materials_say_that_the_friction_of_the_database_changes_too():
@@ -223,7 +212,7 @@ def test_end_points_that_the_sentence_names_stand_in_the_table():
     rng = np.random.default_rng(5)
     goals = {name: ("row", values) for name, values in zip("abc", rng.random((3, 200)), strict=True)}
     front = xr.Dataset(goals | {"optimal": ("row", np.ones(200, np.int8))}, {"row": np.arange(200)})
-    front.attrs = {"objectives": "a max, b min, c max", "excluded": "none", "factors": ""}
+    front.attrs = {"objectives": "a max, b min, c max", "factors": ""}
     results = results_of(grid_study(GRIDS["curves"] | {"axial_force": list(np.arange(8.0))}))
     rows = {row[0] for row in pareto_table(front, results, None).rows}
     a, b, c = (front[name].values for name in "abc")

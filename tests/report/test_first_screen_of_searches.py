@@ -1,4 +1,4 @@
-"""Sentences of the first screen of a search: values that decide, intervals of sampled goals, and tolerances."""
+"""The first screen of a search: values that decide, intervals of sampled goals, and steps around the best design."""
 
 import json
 
@@ -7,8 +7,8 @@ import pytest
 from scipy import stats
 
 import trackroller as tr
-from trackroller.report.numbers import quantity, rounded
-from trackroller.report.words.optimum import optimum_sentences, tolerances
+from trackroller.report.numbers import percent, quantity, rounded
+from trackroller.report.words.optimum import optimum_sentences, steps_table
 
 LIFE = "pair_life_to_first_limit_hours"
 STEEL = dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
@@ -68,7 +68,41 @@ def test_sampled_goals_have_their_interval_beside_them():
         " ".join(one.text for one in optimum_sentences(results))
     )
     best = next(one for one in found["optima"] if one["design"] == found["recommended"])
-    moved = [one["values"][0] for one in found["neighbours"] if abs(one["values"][0] - best["values"][0]) > 0.005]
-    assert moved
-    for value in moved:
-        assert f" from {100 * best['values'][0]:.0f} % to {100 * value:.0f} %" in tolerances(results).text
+    rows = {row[0]: row[2:] for row in steps_table(results).rows}
+    assert rows.pop("Recommended") == [percent(best["values"][0]), best["values"][1]]
+    assert list(rows.values()) == [[percent(one["values"][0]), one["values"][1]] for one in found["neighbours"]]
+
+
+@pytest.mark.slow
+def test_steps_around_a_recommended_design_are_those_of_solved_rollers():
+    """Each neighbour is solved once more as a roller of its own, with the smallest life that is allowed as target."""
+    base = STEEL | {"radial_force": -120, "axis_distance": 22}
+    factors = {"roller_profile_radius": {"uniform": [-7.5, -6.5]}, "friction_coefficient": {"values": [0.05, 0.2]}}
+    keys = {"goals": {"max_pressure": "min"}, "outputs": ["forces", "contact", "peak_stress", "life"]}
+    results = search(factors, base, analysis={"target": {"pair_life_hours": {"min": 1}}}, **keys)
+    table = steps_table(results)
+    assert list(table.heads) == [
+        "Design",
+        "Surely meets the target",
+        "Valid in",
+        "Largest contact pressure at the worst condition [MPa]",
+        "Life of the pair, shortest [h]",
+    ]
+    own = json.loads(results.data.attrs["optimum"])["recommended"]
+    radius = float(results.table["roller_profile_radius"][2 * own])
+    assert table.rows[0][0] == "Recommended" and len(table.rows) > 1
+    for name, met, valid, pressure, life in table.rows:
+        step = 0.0 if name == "Recommended" else float(name.split()[-2].replace("−", "-"))
+        solved = [
+            tr.solve(
+                tr.Case(**BASE | base | {"friction_coefficient": friction, "roller_profile_radius": radius + step}),
+                contact_model="sliding",
+                accuracy="preview",
+                outputs=keys["outputs"],
+            )
+            for friction in (0.05, 0.2)
+        ]
+        assert pressure == pytest.approx(max(float(ds["max_pressure"].max()) for ds in solved), rel=1e-6)
+        least = min(float(ds["pair_life_hours"]) for ds in solved)
+        assert life == pytest.approx(least, rel=1e-6)
+        assert (met, valid) == ("yes" if least >= 1 else "no", "2 of 2")

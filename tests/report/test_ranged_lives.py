@@ -128,4 +128,4 @@ def test_the_known_error_of_wear_by_sliding_is_told_where_wear_is_a_limit(solved
     """The limits hold the life by wear, whether the group wear is an output or not."""
     assert "run_in_distance" not in solved.data
     said = {head: [one.kind for one in sentences] for head, sentences in in_short(solved, [])}
-    assert "wear_of_sliding" in said["How sure"]
+    assert "full_sliding" in said["How sure"]

@@ -4,7 +4,6 @@ import json
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 
 import trackroller as tr
@@ -14,9 +13,7 @@ from trackroller.report.pages.study import contents
 from trackroller.report.words.designs import best_table, unanswered
 from trackroller.report.words.optimum import optimum_sentences
 from trackroller.report.words.pareto import pareto_sentence
-from trackroller.report.words.targets import target
 from trackroller.report.words.verdict import verdict_sentences
-from trackroller.results.sensitivity import analyse
 from trackroller.study.design.levels import short
 
 LIFE = "pair_life_to_first_limit_hours"
@@ -57,15 +54,6 @@ def test_a_design_that_lasts_too_short_somewhere_is_not_told_to_last_there():
     assert ", enough in 1 of 2 conditions." in said
 
 
-def test_designs_that_a_constraint_excludes_are_not_called_invalid():
-    results = search({LIFE: "max", "axis_distance": "min"}, constraints=["max_pressure < 600"])
-    pressure = results.data["max_pressure"].max("contact").values.reshape(-1, 4)
-    assert (results.data["regime"] == 0).all()
-    left = int((pressure >= 600).any(axis=1).sum())
-    said = pareto_sentence(results.pareto(), results).text
-    assert 0 < left < len(pressure) and f"Left out: {left} that are allowed in fewer conditions." in said
-
-
 def test_a_constraint_on_a_goal_is_a_requirement():
     goals = {"max_pressure": "min", "axis_distance": "min"}
     free = optimum_sentences(search(goals))[0].text
@@ -88,18 +76,6 @@ def test_no_design_is_called_worse_than_one_whose_life_is_a_range():
     assert (high > 1.01 * low).all() and "as good" not in said
     told = pareto_sentence(results.pareto(), results).text
     assert f"{lasting(middle.max(), 'h')}" in told and "the wear life at the mean of its bounds." in told
-
-
-def test_of_design_points_that_tie_none_is_named_first():
-    factors = {"roller_profile_radius": {"values": [-8, -6.7, -6.3]}, "radial_force": {"uniform": [-150, -70]}}
-    first = run(factors, design="inner_outer", samples=20)
-    rows = pd.DataFrame({name: first.column(name) for name in ("roller_profile_radius", LIFE)})
-    lives = rows.groupby("roller_profile_radius")[LIFE].agg(["min", "max"])
-    least = float(np.sqrt(lives["max"].iloc[0] * lives["min"].iloc[1]))
-    assert lives["max"].iloc[0] < least < lives["min"].iloc[1]  # two of three points always last long enough
-    results = run(factors, design="inner_outer", samples=20, analysis={"target": {"min": least}})
-    said = target(analyse(results), 0).text
-    assert ") at 2 of the 3 design points. The least, 0 %" in said and "no other" not in said
 
 
 def test_the_table_says_that_conditions_which_no_design_meets_are_left_out():

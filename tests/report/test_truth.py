@@ -92,12 +92,9 @@ def first(pattern, text):
 def check_valid(raw, said):
     rolls, total = first(rf"^{NUMBER} of {NUMBER} cases roll", said.text)
     assert (value(rolls), value(total)) == (raw.rolling.sum(), raw.n)
-    if "stay inside" in said.text:
-        assert value(first(rf"; {NUMBER} of them stay", said.text)[0]) == raw.inside.sum() > 0
-    if "all of them lie inside" in said.text:
-        assert raw.inside.sum() == raw.rolling.sum()
-    if "none of them stays" in said.text:
-        assert raw.inside.sum() == 0
+    if raw.rolling.any() and "no validity flags" not in said.text:
+        count = first(rf"; {NUMBER.replace('(', '(all|none|', 1)} of them lies? inside", said.text)[0]
+        assert {"all": raw.rolling.sum(), "none": 0}.get(count, count) in (raw.inside.sum(), f"{raw.inside.sum():,}")
     if raw.limits and raw.inside.any():
         meet, of = first(rf"{NUMBER.replace('(', '(None|', 1)} of the {NUMBER} meet `{raw.limits[0]}`", said.text)
         assert (0 if meet == "None" else value(meet), value(of)) == (raw.valid.sum(), raw.inside.sum())
@@ -105,13 +102,6 @@ def check_valid(raw, said):
         assert value(first(rf"stress use the {NUMBER} unless", said.text)[0]) == raw.valid.sum() < raw.rolling.sum()
     elif raw.valid.any():
         assert raw.valid.sum() == raw.rolling.sum()
-    for flag, body, cases in said.values["reasons"]:
-        hit = raw.flags[flag] & raw.rolling
-        if body:
-            own = raw.get("validity_body")[:, ("roller", "guide").index(body)]
-            hit = (own >> FLAGS.index(flag)) % 2 == 1
-            hit = hit & raw.rolling
-        assert cases == hit.sum() > 0 and f"({cases:,})" in said.text
     lost = {"full slip": 1, "lift-off": 2, "failed": 3}
     for words, code in lost.items():
         if cases := int((raw.regime == code).sum()):
@@ -289,8 +279,8 @@ def check_others(raw, results):
         else:
             e = raw.get("error_estimate")[:, :, 0]
             own = e[np.arange(raw.n), raw.get("peak_stress")[:, :, 0].argmax(axis=1)][raw.valid]
-            assert sentence.values["median"] == pytest.approx(np.median(own))
             assert sentence.values["largest"] == own.max()
+            assert value(first(rf"{NUMBER} % or better", sentence.text)[0]) >= 100 * own.max() * (1 - 1e-9)
         said.append(sentence)
     return said
 

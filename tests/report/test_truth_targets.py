@@ -1,4 +1,4 @@
-"""The truth test of sentences on targets: random studies with random outputs, each claim recomputed from their rows."""
+"""The truth test of tables of targets: random studies with random outputs, each cell recomputed from their rows."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from synthetic_results import results_of
 
 from trackroller.report.pages.study import contents
-from trackroller.report.words.targets import target, target_tables
+from trackroller.report.words.targets import target_tables
 from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
 
@@ -73,62 +73,43 @@ def agrees(told, exact):
     assert (told == "0") == (exact == 0) and (told == "100") == (exact == 1)
 
 
-def check_levels(ds, met, text):
-    """Check the least and the largest share over the levels of a factor: 'Fit changes it most: from 12 % (..)'."""
-    found = re.search(rf"changes it most: from {CHANCE} at (.+) to {CHANCE} at (.+)\.$", text)
-    if found is None:
-        return 0
-    least, most, ends = found[1], found[5], (found[4], found[8])
-    shares = {}
-    for name in LISTS:
-        if name in ds.variables and ds[name].ndim:
-            for level in np.unique(ds[name].values):
-                words = f"{WORDS[name]} {level:g}" if name in WORDS else str(level)
-                shares[words] = met[ds[name].values == level].mean()
-    named = [[v for words, v in shares.items() if end.startswith(words)] for end in ends]
-    if named[0] and named[1]:
-        agrees(least, named[0][0])
-        agrees(most, named[1][0])
-        assert found[3] is None or float(found[3]) <= float(found[6])  # the intervals lie apart
-    return 1
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("design", ["inner_outer", "lhs", "grid"])
-def test_every_sentence_on_targets_is_true(design):
+def test_every_cell_of_targets_is_true(design):
+    """Recompute each probability over all cases, at each design point and at each level from the rows."""
     levels = 0
     for seed in range(14):
         ds, data = random_aims(seed, design)
-        sens = analyse(results_of(ds))
+        results = results_of(ds)
         rows = hits(ds, data)
-        assert sens.sizes["target"] == len(rows)
-        for number, met in enumerate(rows):
-            said = target(sens, number)
-            if design == "inner_outer":
-                share = met.reshape(-1, 40).mean(axis=1)
-                told = re.search(rf"probability {SHARE} \(95 % interval {SHARE} to {SHARE}\)", said.text)
-                agrees(told[1], share.max())
-                assert float(told[2]) - 0.51 <= 100 * share.max() <= float(told[3]) + 0.51
-                if len(share) > 1 and np.ptp(share) > 0:
-                    ties = int((np.abs(share - share.max()) < 1e-9).sum())  # intervals may differ, too
-                    of_one = f"no other of the {len(share)} design points has more" in said.text
-                    assert of_one or (ties > 1 and f" at {ties} of the {len(share)} design points." in said.text)
-                    agrees(re.search(rf"The least, {SHARE}", said.text)[1], share.min())
-                elif len(share) > 1:
-                    assert f"at all {len(share)} design points" in said.text
-            else:
-                agrees(re.search(rf"(?:probability|met by) {SHARE}", said.text)[1], met.mean())
-                assert ("95 % interval" in said.text) == (design == "lhs")
-            levels += check_levels(ds, met, said.text)
-        cells = [cell for table in target_tables(sens, results_of(ds)) for row in table.rows for cell in row[1:]]
-        assert all(re.fullmatch(rf"{CHANCE}|\d+ of \d+|–", cell) for cell in cells)
-    assert levels >= 3
+        first, *more = target_tables(analyse(results), results)
+        parts = {"All cases": np.ones(ds.sizes["case"], dtype=bool)}
+        for name in (n for n in LISTS if n in ds.variables and ds[n].ndim):
+            for level in np.unique(ds[name].values):
+                words = f"{WORDS[name]} {level:g}" if name in WORDS else str(level)
+                parts[words[0].upper() + words[1:]] = ds[name].values == level
+        points = [tuple(row) for row in np.arange(ds.sizes["case"]).reshape(-1, 40)] if design == "inner_outer" else []
+        for table in (first, *more):
+            for row in table.rows:
+                for cell, met in zip(row[len(row) - len(rows) :], rows, strict=True):
+                    found = re.fullmatch(CHANCE, cell)
+                    assert (found[2] is not None) == (design != "grid")
+                    if table is first and points:
+                        assert any(round(100 * met[list(p)].mean()) == round(float(found[1])) for p in points)
+                        continue
+                    own = [part for words, part in parts.items() if row[0].startswith(words)]
+                    if own:
+                        agrees(found[1], met[own[0]].mean())
+                        levels += 1
+        if points:
+            told = [float(re.match(BOUND, row[-1])[1]) for row in first.rows]
+            shares = [100 * rows[-1][list(p)].mean() for p in points]
+            assert told == sorted(told, reverse=True) and told[0] == pytest.approx(max(shares), abs=0.51)
+    assert levels >= 30
 
 
-def test_targets_stand_in_the_head_and_in_decide_of_the_report():
+def test_targets_stand_in_decide_of_the_report():
     ds, data = random_aims(3, "inner_outer")
     found = contents(results_of(ds, analyse(results_of(ds))))
-    head = dict(found["summary"])["Decide"]
-    assert head[0].kind == "target" and head == found["said"]["decide"]
     table = next(t for t in found["tables"]["decide"] if t.name == "targets")
     assert len(table.heads) == 1 + len(hits(ds, data))

@@ -5,7 +5,7 @@ import yaml
 
 import trackroller as tr
 from trackroller.report.explorer.rows import collect
-from trackroller.report.words.accuracy import wear_of_sliding
+from trackroller.report.words.accuracy import full_sliding
 from trackroller.report.words.designs import condition_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.limits import guesses, worn
@@ -56,7 +56,7 @@ def test_sentences_on_wear(study):
     assert len(results.verdict.candidates) == len(by_design) == 4
     assert min(one.low for one in results.verdict.candidates) == by_design.min()
     said = [sentence.text for _, own in in_short(results, []) for sentence in own]
-    assert {told.text, beyond.text, wear_of_sliding(results).text} <= set(said)
+    assert {told.text, beyond.text, full_sliding(results).text} <= set(said)
 
 
 def test_run_in_and_wear_life_are_axes_goals_and_analysed(study):
@@ -74,7 +74,7 @@ def test_a_study_without_wear_says_nothing_of_it(tmp_path):
     plain["factors"] = {n: f for n, f in plain["factors"].items() if n != "wear_coefficient_factor"}
     plain["base"] = {n: value for n, value in plain["base"].items() if n != "permissible_wear_depth"}
     results = tr.run(plain, progress=False, results=tmp_path)
-    assert guesses(results) is worn(results) is wear_of_sliding(results) is None
+    assert guesses(results) is worn(results) is None and "wear" not in full_sliding(results).text
 
 
 def test_the_worst_condition_names_no_place_of_a_placeholder(study):

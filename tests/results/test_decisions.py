@@ -14,7 +14,6 @@ from trackroller.errors import WorkError
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
 from trackroller.report.words.samples import samples
-from trackroller.report.words.targets import target
 from trackroller.results.candidates import FEWEST, Candidates, lift_off_margin
 from trackroller.results.effects import _of_steps
 from trackroller.results.findings import _outwards
@@ -128,13 +127,3 @@ def test_a_study_with_unsolved_cases_is_not_gathered(tmp_path):
     study = parse_study({"name": "two", "factors": {"friction_coefficient": {"values": [0.1, 0.2]}}})
     with working_ledger(study, tmp_path) as ledger, pytest.raises(WorkError, match=r"^2 of 2 cases are not solved"):
         gather(ledger)
-
-
-@pytest.mark.parametrize(("chances", "same"), [((0.4, 0.4, 0.4), True), ((0.4, 0.4, 0.5), False)])
-def test_design_points_with_the_same_chance_are_told_together(chances, same):
-    words = {"target_name": "slip", "target_units": "1", "target_min": np.nan, "target_max": 0.1}
-    table = xr.Dataset({name: ("target", [value]) for name, value in words.items()}, attrs={"method": "inner_outer"})
-    for name, shift in {"": 0.0, "_low": -0.1, "_high": 0.1}.items():
-        table[f"target_probability{name}"] = (("target", "point"), [np.add(chances, shift)])
-    said = target(table, 0)
-    assert said.values["same"] is same

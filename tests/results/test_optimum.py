@@ -170,7 +170,6 @@ def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     np.testing.assert_allclose(judge(solved).values[found["recommended"]], best["values"])
     assert best["reference"] != best["values"] and np.allclose(best["reference"], best["values"], rtol=0.2)
     said, table = best_of(solved)
-    assert "Beside the budget it solved polished designs (" in said[-1]
     assert said[0].startswith(("Recommended: ", "Give a requirement. ")) and "at `reference`" in " ".join(said)
     assert table.heads[1] == "Recommended" and len(table.heads) <= 6
     page = write_best(solved, tmp_path / "best.html").read_text()
@@ -182,9 +181,8 @@ def test_a_search_without_a_valid_design_solves_its_budget_only_and_says_why(tmp
     none = changed(constraints=["max_pressure < 100", "max_pressure > 200"], budget={"designs": 1})
     solved = tr.open_study(search_designs(none, tmp_path).folder.root)
     assert solved.data.sizes["case"] == 2 and optimum_of(solved)["optima"] == []  # one design at two conditions
-    assert solved.pareto().attrs["excluded"] == "1 that are allowed in no condition"
     said, _ = best_of(solved)
-    assert "budget of 1 design is spent" in said[-1] and "Beside the budget" not in said[-1]
+    assert "budget of 1 design is spent" in said[-1]
 
 
 @pytest.mark.slow
@@ -201,7 +199,7 @@ def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
 @pytest.mark.parametrize(
     ("keys", "says"),
     [
-        ({"base": {"motor_force": 0, "roller_material": "POM", "radial_force": -300}}, "of them stay inside the model"),
+        ({"base": {"motor_force": 0, "roller_material": "POM", "radial_force": -300}}, "of them lie inside the model"),
         ({"outputs": ["forces"], "base": {"motor_force": 0}}, "Add life or peak_stress to its outputs"),
     ],
 )
@@ -362,11 +360,6 @@ def test_no_thirds_of_a_search_are_compared():
     found = results.findings["why"]
     assert {one.kind for one in found} and not any(one.kind == "fitted" for one in found)
     said = [one.text for one in optimum_sentences(results)]
-    best = results.design.columns["profile_ratio"][:: results.design.meta["inner_samples"]][
-        optimum_of(results)["recommended"]
-    ]
-    at_end = min(best - 1.05, 1.3 - best) <= 1e-3 * 0.25
-    assert ("profile ratio stands at the end of the allowed range" in said[0]) == at_end
     assert any(text.startswith("Not checked: bearing, heat, wear and guide") for text in said)
 
 

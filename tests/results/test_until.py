@@ -56,12 +56,6 @@ UNEQUAL = {  # friction 1.5 lifts the force above 0 for sure, friction 0.2 in ha
     "analysis": {"target": {"normal_force_1": {"min": 0.0}}},
     "until": {"half_width": 0.02, "of": ["probability(normal_force_1)"]},
 }
-ASKED = {
-    "sobol": "first-order indices",
-    "saltelli": "first-order and total indices",
-    "morris": "effects mu*, as shares of the output's range,",
-    "inner_outer": "log10 B10 or a probability at each design point",
-}
 DESIGNS = ["sobol", "saltelli", "morris", "inner_outer"]
 
 
@@ -119,8 +113,7 @@ def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
     assert solved.design.samples == solved.config.samples << (len(cases) - 1)
     said = grown(solved)
     assert said.values["cases"] == cases[-1]
-    assert (said.values["what"], said.values["half_width"]) == (ASKED[design], 0.05)
-    assert said.values["stopped"] == found["stopped"]
+    assert said.values["stopped"] == found["stopped"] and said.values["width"] == max(widths[-1].values())
     if design != "inner_outer":
         index = {"saltelli": "ST", "morris": "mu_star"}.get(design, "first")
         part = solved.indices().sel(output="normal_force_1")
@@ -149,8 +142,6 @@ def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
     for end in ("", "_low", "_high"):
         wanted = part[f"target_probability{end}"].values[points].mean()
         assert float(part[f"level_probability{end}"][level].item()) == pytest.approx(wanted)
-    told = grown(whole).text
-    assert f"256 to {sizes[0]:,}" in told
     assert f"up to {sizes[0]:,}" in whole.report(tmp_path / "report.html").read_text(encoding="utf-8")
     monkeypatch.setenv("FAKE_SOLVED", str(tmp_path / "solved.txt"))
     killed(study, tmp_path / "parts", monkeypatch, (600, 1300))

@@ -28,7 +28,6 @@ class InnerOuter(Method):
     }
     sampled = weighted = grows = points = True
     judged = ()
-    known_by = "log10 B10 or a probability at each design point"
 
     def random(self, factor: Factor) -> bool:
         """Return whether the factor scatters in the inner array."""

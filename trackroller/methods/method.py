@@ -125,7 +125,6 @@ class Method:
     needs : what the indices need, in words
     unit, samples_unit : what an index and the key `samples` count, in the plural
     whole : what the rows are where their shares are no probabilities; '' for a random sample
-    known_by : indices of `narrowed`, in words
     uncorrelated : why the design takes no rank correlations, or what to take instead
     reference : subject and paper for the page on methods
     """
@@ -143,7 +142,6 @@ class Method:
     needs = ""
     unit = samples_unit = "rows"
     whole = ""
-    known_by = "first-order indices"
     uncorrelated = "This design has fixed combinations of values. Take design lhs."
     reference: tuple[str, str] | None = None
 

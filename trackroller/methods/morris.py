@@ -23,7 +23,6 @@ class Morris(Method):
     half_width = 0.15  # of mu*, relative to the largest mu*
     needs = "pairs of neighbouring rows of a trajectory"
     unit, samples_unit = "elementary effects", "trajectories"
-    known_by = "effects mu*, as shares of the output's range,"
     uncorrelated = "Elementary effects change one factor at a time. Take design lhs: first and delta allow correlation."
     reference = (
         "Design and indices: elementary effects",

@@ -48,7 +48,6 @@ class Saltelli(Method):
     headline, narrowed, judged = "ST", ("S1", "ST"), ("ST", "S1")
     needs = "whole blocks of the Saltelli design and independent factors"
     unit, samples_unit = "blocks", "base samples"
-    known_by = "first-order and total indices"
     uncorrelated = "Sobol indices need independent factors. Take design lhs: first and delta allow correlation."
     reference = (
         "Design and indices: Sobol indices",

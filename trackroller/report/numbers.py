@@ -212,6 +212,12 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     return f"{exact:.0f} %" if exact == 0 or 1 <= exact <= 99 else f"{exact:.2g} %" if exact < 1 else f"{exact:.4g} %"
 
 
+def at_most(error: float) -> str:
+    """Write an error in percent with two figures, rounded up, so that no error is larger: '1.5 %' for 0.01482."""
+    step = 10.0 ** (math.floor(math.log10(100 * error)) - 1) if error > 0 else 1.0
+    return f"{rounded(math.ceil(100 * error / step - 1e-9) * step, 2)} %"
+
+
 def times(ratio: float) -> str:
     """Write a ratio, or the inverse of one below 1, as '26-fold'; below 10 in three figures: '2.64-fold'."""
     ratio = max(ratio, 1 / ratio)

@@ -175,9 +175,9 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     checked = search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
     around = _neighbours(choices, best.genes[chosen]) if usable else []
     moved = search.judged(study, np.array([genes for *_, genes in around])) if around else best.take(np.empty(0, int))
-    polished = f"polished designs ({len(designs.genes) - len(decided.genes)})"
-    beside = f"{polished}, neighbours of the recommended design ({len(around)}) and optima at reference ({len(shown)})"
-    tell(f"solved beside the budget: {beside}" if usable else "no design is valid, so there is no optimum to check")
+    beside = f"{len(designs.genes) - len(decided.genes)} polished designs, {len(around)} neighbours"
+    beside = f"solved beside the budget: {beside}, {len(shown)} optima at reference"
+    tell(beside if usable else "no design is valid, so there is no optimum to check")
     final = search.of(study, designs.genes)
     optima = [
         {
@@ -190,11 +190,10 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     ]
     neighbours = [
         {"choice": name, "step": step, "values": moved.values[i].tolist()}
-        | {"violation": float(moved.violation[i]), "short": float(moved.short[i])}
+        | {name: float(getattr(moved, name)[i]) for name in ("violation", "short", "life")}
         for i, (name, step, _) in enumerate(around)
     ]
     result = facts | {
-        "beside": beside if usable else "",
         "goals": goals_of_search(solved_results(search.ledger(final))),
         "front": len(front),
         "decided": len(designs.genes),

@@ -161,9 +161,9 @@ def pareto(
         "not_rolling": int((own & (regime != 0)).sum()),
         "study": results.study.merged(),
     }
-    left = "; ".join(f"{n} by {why}" for why, n in excluded.items() if n)
+    attrs["excluded"] = "; ".join(f"{n} by {why}" for why, n in excluded.items() if n) or "nothing"
     kept_columns = {name: (value[allowed], units, words) for name, (value, units, words) in columns.items()}
-    return front_of(shown, kept_columns, objectives, np.flatnonzero(allowed), left, **attrs)
+    return front_of(shown, kept_columns, objectives, np.flatnonzero(allowed), **attrs)
 
 
 def front_of(
@@ -171,7 +171,6 @@ def front_of(
     columns: Mapping[str, Column],
     objectives: Mapping[str, str],
     row: np.ndarray,
-    excluded: str,
     /,
     *,
     further: Mapping[str, str] | None = None,
@@ -184,7 +183,6 @@ def front_of(
     factors, columns : values of the n allowed designs by name; the columns hold the goals
     objectives : goals, each `min` or `max`
     row : number of each design, shape (n,)
-    excluded : how many designs each reason excluded, in words; '' for none
     further : columns that a design must also be beaten in to be left out, each `min` or `max`
     attrs : further attributes of the result
     """
@@ -196,7 +194,7 @@ def front_of(
     optimal = pareto_mask(goals, wanted.values()).astype(np.int8)
     data["optimal"] = ("row", optimal, {"long_name": "in the Pareto set"})
     described = {"objectives": ", ".join(f"{name} {way}" for name, way in objectives.items())}
-    described |= {"factors": ", ".join(factors), "constraints": "", "model": "", "excluded": excluded or "nothing"}
+    described |= {"factors": ", ".join(factors), "constraints": "", "model": ""}
     return xr.Dataset(data, {"row": row}, described | attrs)
 
 
@@ -243,11 +241,10 @@ def pareto_of_points(table: xr.Dataset, objectives: Mapping[str, str]) -> xr.Dat
     columns = {name: _of_points(table, name) for name in objectives}
     known = ~np.isnan(np.stack([column[0].astype(float) for column in columns.values()])).any(axis=0)
     outer = [name for name in str(table.attrs["outer_factors"]).split(", ") if name]
-    left = f"{(~known).sum()} by an undefined goal" if not known.all() else ""
     attrs: dict[str, Any] = {"rows": len(known), "kind": "design point", "study": table.attrs.get("study", "")}
     kept = {name: (values[known], units, words) for name, (values, units, words) in columns.items()}
     factors = {name: readable(table[name].values)[known] for name in outer}
-    return front_of(factors, kept, objectives, np.flatnonzero(known), left, **attrs)
+    return front_of(factors, kept, objectives, np.flatnonzero(known), **attrs)
 
 
 def _of_points(table: xr.Dataset, name: str) -> Column:
@@ -299,8 +296,6 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
     factors = {name: results.table[name].to_numpy()[row] for name in candidates.choices}
     goals = {name: (values[worst[name][kept]], units, words) for name, (values, units, words) in columns.items()}
     goals["valid_in"] = (held[kept].astype(float), "1", "conditions in which it is valid")
-    left = len(held) - len(kept)
-    excluded = f"{left} that are valid in no condition" if left else ""
     attrs = {
         "constraints": "; ".join(results.config.constraints),
         "rows": len(held),
@@ -308,7 +303,7 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),
     }
-    front = front_of(factors, goals, objectives, row, excluded, further={"valid_in": "max"}, **attrs)
+    front = front_of(factors, goals, objectives, row, further={"valid_in": "max"}, **attrs)
     return front.assign(_beyond(results, {name: cases[kept] for name, cases in worst.items()}))
 
 
@@ -331,16 +326,11 @@ def pareto_of_search(results: Results) -> xr.Dataset:
     first = kept * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
-    left = len(judged.violation) - len(kept)
-    why = f"are allowed in {'fewer conditions' if least < 1 else 'no condition'}"
-    if (missed > judged.violation).any():
-        why = "are not allowed, or do not surely meet the target, in some condition"
-    excluded = f"{left} that {why}" if left else ""
     attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
     lives = [name for name in goals if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"]
     beyond = {f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8)) for name in lives}
-    return front_of(factors, columns, goals, kept, excluded, **attrs).assign(beyond)
+    return front_of(factors, columns, goals, kept, **attrs).assign(beyond)
 
 
 def goals_of(front: xr.Dataset) -> list[tuple[str, str]]:

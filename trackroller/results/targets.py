@@ -17,7 +17,6 @@ from trackroller.methods.factor import Factor
 from trackroller.methods.probability import probabilities
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
-from trackroller.results.ranking import estimate
 from trackroller.roller.output_names import body_of, is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.outputs import Output, outputs
@@ -241,21 +240,3 @@ def _coordinates(
         },
         "level_rows": ("target_level", np.array([level.rows.sum() for level in levels], dtype=int)),
     }
-
-
-def most_apart(part: xr.Dataset) -> tuple[int, int] | None:
-    """Return the levels with the least and the largest probability of the factor whose levels differ most.
-
-    None if their intervals meet, so that the difference may be chance.
-    """
-    best: tuple[float, int, int] | None = None
-    if "level_probability" not in part:
-        return None
-    share, low, high = estimate(part, "level_probability")
-    for name in dict.fromkeys(part["level_factor"].values.tolist()):
-        own = np.flatnonzero(part["level_factor"].values == name)
-        least, most = int(own[np.argmin(share[own])]), int(own[np.argmax(share[own])])
-        apart = share[most] - share[least]
-        if apart > 0 and not high[least] >= low[most] and (best is None or apart > best[0]):
-            best = float(apart), least, most
-    return None if best is None else best[1:]

@@ -283,7 +283,7 @@ def test_lines_of_the_diagram_are_those_of_pylife():
 
 
 @pytest.mark.parametrize("rule", ["elementary", "haibach", "unlimited"])
-def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
+def test_the_diagram_shows_cases_and_scatter(rule):
     ds = xr.Dataset(coords={"contact": [1, 2], "body": ["roller", "guide"], "case": np.arange(40)})
     ds["axial_force"] = ("case", np.arange(40.0))
     stress = np.linspace(100, 800, 40)[:, None, None] * np.array([1.0, 0.9])[None, :, None] * np.ones(2)
@@ -299,8 +299,6 @@ def test_the_diagram_shows_cases_scatter_and_lives_beyond_the_axis(rule):
     ds.attrs = {"study": json.dumps(study), "materials": json.dumps({"steel": STEEL | {"scatter_in_cycles": 4.0}})}
     _, info = sn_diagram(results_of(ds))
     assert "10 % have failed at 0.5 times its median life" in info.caption
-    assert "10 cases that do not roll" in info.caption
-    assert "beyond the axis" in info.caption
 
 
 def test_scatter_of_each_material_widens_its_own_cases():

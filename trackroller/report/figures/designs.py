@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 import textwrap
-from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
-from trackroller.parameters import ROLE_OF
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import as_given, capital, count, head_unit, listing, long_name, plain
+from trackroller.report.numbers import as_given, capital, count, head_unit, listing, long_name
 from trackroller.report.words.designs import body_words, design_words, ends_words
 from trackroller.report.words.levels import coloured
 from trackroller.report.words.pareto import goal_heading
@@ -22,7 +20,6 @@ from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 from trackroller.results.verdict import Verdict
 from trackroller.roller.output_names import is_life
-from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.file.goals import statistic
 
@@ -93,14 +90,12 @@ def _bars(axes: Any, place: np.ndarray, ends: np.ndarray, spread: str, sure: str
 
 
 def _caption(found: Verdict, shown: int) -> str:
-    """Say what is drawn, and what is left out."""
+    """Say what is drawn."""
     parts = []
     if shown < len(found.candidates):
         parts.append(f"The best {shown} of {count(len(found.candidates))} candidates.")
     if found.goal_rises:
-        parts.append("Beside each candidate stands what ends it at its worst condition.")
-    if left := sum(not one.judged for one in found.candidates):
-        parts.append(f"Not judged, so not drawn: {count(left)}.")
+        parts.append("Beside each candidate stands what ends it.")
     if found.out_of_reach is not None:
         parts.append("Conditions that no candidate meets are left out.")
     return " ".join(parts) or f"{capital(found.goal[1])} of all candidates."
@@ -109,15 +104,6 @@ def _caption(found: Verdict, shown: int) -> str:
 OTHER = "0.65"  # grey of the designs without a level of their own
 _WAYS = {"max": "up", "min": "down"}
 _ARROWS = {"max": "→", "min": "←"}
-
-
-def _given(front: xr.Dataset, roles: Mapping[str, str]) -> str:
-    """Warn where conditions of use are among the factors: a designer cannot choose their best value."""
-    names = front.attrs["factors"].split(", ")
-    given = [plain(n) for n in names if roles.get(n) == "condition"]
-    warning = f" Factors that the use sets and a designer cannot choose: {listing(given)}." if given else ""
-    models = [long_name(n) for n in names if n in OPTION_FACTORS]
-    return warning + (f" An option of the calculation, not of the design: {listing(models)}." if models else "")
 
 
 def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Drawn:
@@ -146,9 +132,7 @@ def pareto_front(front: xr.Dataset, results: Results | None = None) -> style.Dra
     entries.append(("Pareto set", {"marker": "D", "markerfacecolor": "white", "color": "0.1", "linestyle": "none"}))
     legend(figure, entries)
     wanted = listing([f"{front[n].attrs.get('long_name') or long_name(n)} {_WAYS[w]}" for n, w in goals])
-    roles = ROLE_OF if results is None else results.roles
-    caption = f"Pareto set for {wanted} (arrows on the axes).{_given(front, roles)}"
-    return figure, style.FigureInfo("pareto-front", caption)
+    return figure, style.FigureInfo("pareto-front", f"Pareto set for {wanted} (arrows on the axes).")
 
 
 def _colours(front: xr.Dataset, results: Results | None, goal: str) -> tuple[np.ndarray, Entries]:

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import itertools
+
 import numpy as np
 from matplotlib.axes import Axes
 
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
-from trackroller.report.numbers import capital, factor_label, listing, long_name, setting, with_unit
+from trackroller.report.numbers import capital, factor_label, long_name, with_unit
 from trackroller.report.words.levels import coloured
 from trackroller.results.candidates import of_one_model
-from trackroller.results.columns import codes
 from trackroller.results.findings import shown_output
-from trackroller.results.groups import MOST_LEVELS, Groups, classes, groups
+from trackroller.results.groups import Groups, classes, groups
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
@@ -21,7 +22,6 @@ from trackroller.study.design.levels import OF_MATERIALS
 MAX_PANELS = 9
 BINS = 6
 Series = list[tuple[str, np.ndarray]]
-Compared = dict[str, np.ndarray | None]  # by factor the rows whose medians are compared, None where they are unlike
 PANEL_LETTERS = 33  # letters of 7 pt under the axis of a panel
 MATTERS = 0.1  # of the largest index: a category with a larger one is never pooled
 FEWEST = 3  # a median is drawn from at least this number of rows
@@ -45,8 +45,8 @@ def by_factor(results: Results) -> style.Drawn:
         return None
     lead = _lead(results, column)
     values, top = capped(results.column(column)[rows]) if is_life(column) else (results.column(column)[rows], None)
-    drawable = [name for name in results.factors if _drawable(results, name, rows, np.ones(rows.sum(), bool))]
-    names = drawable[:MAX_PANELS]
+    drawable = (name for name in results.factors if _drawable(results, name, rows, np.ones(rows.sum(), bool)))
+    names = [*itertools.islice(drawable, MAX_PANELS)]
     if not names:
         return None
     columns = min(3, len(names))
@@ -54,13 +54,11 @@ def by_factor(results: Results) -> style.Drawn:
     figure, levels = style.new_figure(26 + 50 * lines), coloured(results, lead, rows)
     colours = style.colours([text for text, _ in levels], lead in OF_MATERIALS)
     series = {name: _series(results, name, rows, levels, lead) for name in names}
-    alike: Compared = {name: _alike(results, name, rows, series[name]) for name in names}
-    compared = {name: np.where(some, values, np.nan) for name, some in alike.items() if some is not None}
     panels = figure.subplots(lines, columns, sharey=True, squeeze=False).ravel()
     for axes in panels[len(names) :]:
         axes.remove()
     for axes, name in zip(panels, names, strict=False):
-        _panel(axes, groups(results.table, name, rows, BINS), compared.get(name, values), series[name], colours)
+        _panel(axes, groups(results.table, name, rows, BINS), values, series[name], colours)
         mark_unlimited(axes, top)
     if is_life(column):
         panels[0].set_yscale("log")
@@ -70,80 +68,17 @@ def by_factor(results: Results) -> style.Drawn:
     if apart:
         looks = [{"color": c, "marker": m} for c, m in zip(colours, style.MARKERS, strict=False)]
         legend(figure, [(text, look) for (text, _), look in zip(levels, looks, strict=True)])
-    kinds = "level" if len(results.levels(lead)) == len(levels) else "class"
-    each = f" for each {kinds} of {long_name(lead)}" if apart else ""
-    style.head(figure, f"{capital(words)} against each factor")
     own = f" of {results.held_level('contact_model')}" if "contact_model" in results.factors else ""
     caption = (
         f"{capital(words)} of the {rows.sum():,} valid cases{own} along each factor, all other factors as they vary. "
-        f"Lines: medians{each}; bands: the middle half of the valid cases."
+        f"Lines: medians{' of each colour' * apart}; bands: the middle half of the cases."
     )
-    caption += _compared_words(alike) + _left_words(_left_out(results, rows, alike, series), drawable[MAX_PANELS:])
     return figure, style.FigureInfo(f"bands-{column}", caption)
-
-
-def _alike(results: Results, name: str, rows: np.ndarray, series: Series) -> np.ndarray | None:
-    """Mark the cases of a grid whose other factors are valid at all levels of a factor, shape (rows.sum(),).
-
-    Medians over unlike cases may rise where every pair of cases falls. None where too few such cases are there; all
-    cases count of a sample, and along a factor with many levels.
-    """
-    everyone = np.ones(rows.sum(), dtype=bool)
-    if not results.grid or len(results.levels(name)) > MOST_LEVELS:
-        return everyone
-    index, key = classes(results.table, name, rows, BINS)[0], codes(results.table[rows], _others(results, name))
-    some = np.asarray(np.bincount(key)[key] == len(np.unique(index)))
-    return some if len(_marked(index, some, series)) > 1 else None
-
-
-def _others(results: Results, name: str) -> list[str]:
-    return [other for other in results.factors if other != name]
 
 
 def _enough(index: np.ndarray) -> np.ndarray:
     """Say which classes have enough rows for a median."""
     return np.asarray(np.bincount(index) >= FEWEST)
-
-
-def _marked(index: np.ndarray, some: np.ndarray, series: Series) -> set[int]:
-    """Return the classes that have a mark: enough rows among `some` in at least one of the series."""
-    return {k for _, own in series for k in np.flatnonzero(_enough(index[own & some])).tolist()}
-
-
-def _left_out(results: Results, rows: np.ndarray, alike: Compared, series: dict[str, Series]) -> list[str]:
-    """Name the factors without a panel for want of rows, and the levels without a mark in the panel of their factor."""
-    left = []
-    for name in results.factors:
-        index, ends = classes(results.table, name, rows, BINS)
-        if len(np.unique(index)) < 2 or isinstance(ends[0], tuple):
-            continue  # of one level nothing is compared, and classes have many rows
-        if name not in series:
-            left += [] if _drawable(results, name, rows, np.ones(len(index), bool)) else [long_name(name)]
-            continue
-        own = alike[name]
-        drawn = _marked(index, np.ones(len(index), bool) if own is None else own, series[name])
-        left += [setting(name, ends[k]) for k in np.unique(index).tolist() if k not in drawn]
-    return left
-
-
-def _compared_words(alike: Compared) -> str:
-    """Say of which panels the medians hold the same cases at all levels, and of which they do not."""
-    some = [f"{long_name(n)} {own.sum():,}" for n, own in alike.items() if own is not None and not own.all()]
-    unlike = [long_name(name) for name, own in alike.items() if own is None]
-    text = (
-        f" Drawn are the cases that are valid at all levels of the factor which have valid cases: {listing(some)}."
-        if some
-        else ""
-    )
-    if unlike:
-        text += f" Other cases are valid at each level of {listing(unlike)}: the medians do not show its effect."
-    return text
-
-
-def _left_words(left: list[str], more: list[str]) -> str:
-    """Say what is not drawn, and why."""
-    text = f" Not drawn, because a median needs {FEWEST} cases: {listing(left)}." if left else ""
-    return text + (f" Without room: {listing([long_name(name) for name in more])}." if more else "")
 
 
 def _lead(results: Results, column: str) -> str:

@@ -15,7 +15,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
-from trackroller.report.numbers import capital, count, factor_label, level_text, long_name, rounded, with_unit
+from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
 from trackroller.report.words.levels import held_words
 from trackroller.results.groups import BINS, classes
 from trackroller.results.ranking import ranked_factors
@@ -51,10 +51,8 @@ def life_map(results: Results) -> style.Drawn:
     style.log_ticks(bar.ax.yaxis, *image.get_clim())
     axes.set(xlabel=factor_label(pair[0]), ylabel=factor_label(pair[1]))
     how = "Grey cells have no life" if results.grid else "Each cell is the median of its cases; grey cells have no life"
-    drawn = results.rolling[rows.index]
-    beyond = int((results.beyond_data(column)[rows.index] & drawn).sum())
-    if beyond:
-        how += f"; {count(beyond)} of the {count(int(drawn.sum()))} lives drawn lie beyond the S-N data (in brackets)"
+    if axes.texts and (results.beyond_data(column)[rows.index] & results.rolling[rows.index]).any():
+        how += "; lives in brackets lie beyond the S-N data"
     return figure, style.FigureInfo("life_map", f"{over}. {how}. {held_words(held)}".strip())
 
 

@@ -131,9 +131,8 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     axes.set(xlim=(0, top), ylim=(0, float(np.nanmax(y)) * 1.15 or 1.0))
     figure.legend(loc="outside right upper")
     caption = (
-        "Elementary effects over each factor's whole range. A factor further to the right matters more. Above the "
-        "lines its effect differs from place to place: it is curved or depends on other factors. Whiskers: 95 % "
-        "intervals."
+        "Elementary effects over each factor's whole range. Above the lines the effect of a factor differs from place "
+        "to place: it is curved or depends on other factors. Whiskers: 95 % intervals."
     )
     return figure, style.FigureInfo(f"morris-{output}", caption)
 

@@ -14,7 +14,7 @@ from trackroller.materials.properties import REQUIRED
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import capital, count, listing, rounded, with_unit
+from trackroller.report.numbers import capital, listing, rounded, with_unit
 from trackroller.report.tables.inputs import as_material, stored_materials
 from trackroller.results.results import Results
 
@@ -55,7 +55,7 @@ def sn_diagram(results: Results) -> style.Drawn:
         style.log_ticks(axes.yaxis, *axes.get_ylim())
     panels[0].set_ylabel(with_unit(capital(_WORDS[_amplitude(results)]), "MPa"))
     legend(figure, _entries(names, colours, known), columns=4)
-    return figure, _info(results, shown, known, rule, ends[1])
+    return figure, _info(results, shown, known, rule)
 
 
 def _known(results: Results) -> dict[str, Material]:
@@ -141,7 +141,7 @@ def _entries(names: list[str], colours: Mapping[str, Any], known: Mapping[str, M
     return entries
 
 
-def _info(results: Results, shown: list, known: Mapping[str, Material], rule: str, top: float) -> style.FigureInfo:
+def _info(results: Results, shown: list, known: Mapping[str, Material], rule: str) -> style.FigureInfo:
     caption = (
         "S-N curves of the materials (failure probability 50 %, and 10 and 90 % where the material gives its scatter) "
         f"with the {_WORDS[_amplitude(results)]} (MPa) and the life in overrollings of the rolling cases at the worse "
@@ -150,10 +150,6 @@ def _info(results: Results, shown: list, known: Mapping[str, Material], rule: st
     )
     if any(known[name].second_exponent is not None for _, points in shown for name in points):
         caption += f" {capital(GIVEN_SLOPE)}."
-    left = int((~results.rolling).sum())
-    caption += f" {count(left)} cases that do not roll are not drawn." if left and results.rolling.any() else ""
-    beyond = sum(int((life > top).sum()) for _, points in shown for _, life in points.values())
-    caption += f" {count(beyond)} lives lie beyond the axis." if beyond else ""
     scatter = [text for _, names in shown[:1] if (text := _scatter_words(known, names))]
     return style.FigureInfo("sn_diagram", " ".join([caption, *scatter]))
 

@@ -9,7 +9,7 @@ from trackroller.report.numbers import lives_in_years
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.cases import valid_cases
 from trackroller.report.words.designs import best_table
-from trackroller.report.words.optimum import optima_table, optimum_sentences, searched, tolerances
+from trackroller.report.words.optimum import optima_table, optimum_sentences, searched
 from trackroller.report.words.verdict import verdict_sentences
 from trackroller.results.results import Results
 
@@ -18,7 +18,7 @@ from trackroller.results.results import Results
 def best_of(results: Results) -> tuple[list[str], Table | None]:
     """Return sentences on the best designs of a study, and a table of up to five of them."""
     optimum = optimum_sentences(results)
-    said = [*optimum, *filter(None, [tolerances(results)]), *searched(results)] or verdict_sentences(results)
+    said = [*optimum, *searched(results)] or verdict_sentences(results)
     ranked = bool(optimum) or results.verdict is not None
     if ranked and not (optimum or results.valid.all()):
         said = [*said, valid_cases(results)]  # a design that is left out may have the longest life

@@ -15,7 +15,7 @@ from trackroller.methods import METHODS
 from trackroller.parameters.example import not_given_text, used_of
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.numbers import capital, count, lives_in_years, long_name, part_of, percent, plain, rounded
+from trackroller.report.numbers import at_most, capital, count, lives_in_years, long_name, part_of, plain, rounded
 from trackroller.report.tables import inputs
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import friction_error
@@ -25,7 +25,7 @@ from trackroller.report.words.designs import best_table, rows_table, size_words
 from trackroller.report.words.in_short import in_short
 from trackroller.report.words.indices import index_table, measure_table, part_tables
 from trackroller.report.words.limits import first_limit_table
-from trackroller.report.words.optimum import optima_table
+from trackroller.report.words.optimum import optima_table, steps_table
 from trackroller.report.words.pareto import pareto_table
 from trackroller.report.words.samples import looks_table
 from trackroller.report.words.targets import robust_tables, target_tables
@@ -157,8 +157,10 @@ def sections(results: Results, models: dict[str, Any]) -> dict[str, Any]:
     sens, error = results.analysis, friction_error(results)
     summary = in_short(results, models.get("short", []))
     said = {key: [s for head, own in summary if head in one.said for s in own] for key, one in SECTIONS.items()}
-    decide: list[Table | None] = [optima_table(results) or best_table(results), rows_table(results)]
-    decide.append(first_limit_table(results))
+    decide: list[Table | None] = [
+        optima_table(results) or best_table(results),
+        *(steps_table(results), rows_table(results), first_limit_table(results)),
+    ]
     front = given_pareto(results)
     if front is not None:
         decide.append(pareto_table(front, results, error))
@@ -232,8 +234,7 @@ def solution_facts(results: Results) -> list[inputs.Row]:
     if (known := _finite(ds, "residual")).size:
         rows.append(inputs.Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
     if (known := _finite(ds, "error_estimate")).size:
-        text = f"{percent(float(known.max()))} (median {percent(float(np.median(known)))})"
-        rows.append(inputs.Row("Largest estimated relative error of the peak stress", text))
+        rows.append(inputs.Row("Largest estimated relative error of the peak stress", at_most(float(known.max()))))
     return rows
 
 

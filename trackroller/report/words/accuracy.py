@@ -19,8 +19,8 @@ from trackroller.roller.record import friction_records
 if TYPE_CHECKING:
     from trackroller.results.results import Results
 
-SLIDING_ERROR = "Its friction forces differ from those of kalker by 38 % of mu F_N (median of 492 rollers)."
-SLIDING_WEAR = "Full sliding errs in friction energy, and so in wear, by 41 % in the median of 92 designs."
+SLIDING_ERROR = "38 % of mu F_N in friction forces against kalker (median of 492 rollers)"
+SLIDING_WEAR = "41 % in friction energy and wear (median of 92 designs)"
 KNOWN_ERROR = 0.05  # a larger median error of the model is stated beside every use of the quantity
 FRICTION_OUTPUTS = ("friction_power", "friction_energy_per_distance", "friction_energy_balance")
 
@@ -39,7 +39,7 @@ def friction_error(results: Results) -> Sentence | None:
     if not residual.size or np.median(residual) <= KNOWN_ERROR:
         return None
     values = {"median": float(np.median(residual)), "largest": float(residual.max()), "of": residual.size}
-    return say("accuracy", "friction_error", **values)
+    return say("accuracy", "friction_error", **values, worn=_worn(results))
 
 
 def _slid(results: Results) -> np.ndarray:
@@ -47,29 +47,24 @@ def _slid(results: Results) -> np.ndarray:
     return np.asarray(results.rolling & (results.column("contact_model_used") == CONTACT_MODELS.index("sliding")))
 
 
-def full_sliding(results: Results) -> Sentence | None:
-    """State the known error of full sliding if cases were solved by it.
-
-    Return None if the study holds the friction work: another sentence then states the error measured in this study.
-    """
-    cases = int(_slid(results).sum())
-    compared = "contact_model" in results.factors  # the study measures the errors of its models itself
-    if not cases or compared or np.isfinite(results.column("energy_residual")).any():
-        return None
-    return say("accuracy", "full_sliding", count=cases, known=SLIDING_ERROR)
-
-
-def wear_of_sliding(results: Results) -> Sentence | None:
-    """State the known error of the wear that full sliding computes; None for other models and without wear."""
+def _worn(results: Results) -> bool:
+    """Return whether a result rests on the wear that full sliding computes."""
     found = results.verdict
     checked = found is not None and found.goal == FIRST_LIMIT and "wear" not in found.not_checked
-    worn = (_slid(results) & (checked | np.isfinite(results.column("run_in_distance")))).any()
-    return say("accuracy", "wear_of_sliding", known=SLIDING_WEAR) if worn else None
+    return bool((_slid(results) & (checked | np.isfinite(results.column("run_in_distance")))).any())
 
 
-def known_errors(results: Results) -> list[Sentence | None]:
-    """Return the known errors of the contact models, for friction energy, for forces and for wear."""
-    return [friction_error(results), full_sliding(results), wear_of_sliding(results)]
+def full_sliding(results: Results) -> Sentence | None:
+    """State the known errors of full sliding, in forces and in wear, if cases were solved by it.
+
+    Return None where `friction_error` states the error that was measured in this study.
+    """
+    if friction_error(results) is not None:
+        return None
+    # a study of several models, or one with the friction work, measures the errors of the forces itself
+    measured = "contact_model" in results.factors or np.isfinite(results.column("energy_residual")).any()
+    known = [SLIDING_ERROR] * bool(_slid(results).any() and not measured) + [SLIDING_WEAR] * _worn(results)
+    return say("accuracy", "full_sliding", known=known) if known else None
 
 
 def accuracy(results: Results) -> list[Sentence]:
@@ -77,8 +72,7 @@ def accuracy(results: Results) -> list[Sentence]:
     said = []
     errors = {body: results.column(f"error_estimate_{body}")[results.valid] for body in BODIES}
     for body, error in [(body, own[np.isfinite(own)]) for body, own in errors.items() if np.isfinite(own).any()][:1]:
-        values = {"median": float(np.median(error)), "largest": float(error.max())}
-        said.append(say("accuracy", "resolved", body=body, **values))
+        said.append(say("accuracy", "resolved", body=body, largest=float(error.max())))
     if cases := int((results.flagged("split_pole") & results.rolling).sum()):
         said.append(say("accuracy", "singular", count=cases))
     return said
@@ -144,7 +138,7 @@ def flags_of(ds: xr.Dataset) -> list[Flag]:
         text = f"Friction energy and power differ from the work put in by {percent(residual)}."
         flags.append(Flag("energy_residual", text, exact))
     if {"run_in_distance", "groove_depth"} & set(ds) and ds.attrs.get("contact_model") == "sliding":
-        flags.append(Flag("wear_of_sliding", SLIDING_WEAR, exact))
+        flags.append(Flag("wear_of_sliding", f"Known error of full sliding: {SLIDING_WEAR}.", exact))
     if "energy_residual" not in ds and ds.attrs.get("contact_model") == "sliding" and int(ds["regime"]) == _ROLLING:
-        flags.append(Flag("full_sliding", f"Full sliding solved this roller. {SLIDING_ERROR}", exact))
+        flags.append(Flag("full_sliding", f"Known error of full sliding: {SLIDING_ERROR}.", exact))
     return flags

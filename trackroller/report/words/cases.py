@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -11,15 +10,15 @@ import xarray as xr
 from trackroller.damage import LIMITS
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
-from trackroller.report.numbers import capital, count, level_text, listing, long_name, number, plain, setting, share
+from trackroller.report.numbers import capital, level_text, listing, long_name, number, plain, setting, share
 from trackroller.report.tables.table import Table
-from trackroller.report.words.accuracy import bodies_of, of_body
+from trackroller.report.words.accuracy import bodies_of
 from trackroller.report.words.designs import limit_title
 from trackroller.report.words.levels import at_least, at_most
-from trackroller.report.words.sentence import Sentence, phrase, say
+from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.findings import Finding
 from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.results import OUTSIDE, Results
+from trackroller.results.results import Results
 from trackroller.roller.record import names_not_given
 
 OF_LIVES = ("deep_life",)  # validity flags that say how far a life holds
@@ -27,10 +26,9 @@ EVENTS = {"full_slip": "Full slip", "lift_off": "Lift-off", "failed": "Failure"}
 
 
 def valid_cases(results: Results) -> Sentence:
-    """Say how many cases roll, stay inside the model and meet the constraints, and why the others do not."""
+    """Say how many cases roll, lie inside the model and meet the constraints, and in how many a limit is exceeded."""
     lost = {REGIME_LABELS[c]: int((results.regime == c).sum()) for c in (1, 2, 3)}
     lost["not converged"] = int(((results.regime == 0) & ~results.rolling).sum())
-    reasons = [(flag, body, int(hit.sum())) for flag, body, hit in _outside(results) if hit.any()]
     values: dict[str, Any] = {"total": len(results.table), "lost": {words: n for words, n in lost.items() if n}}
     values |= {name: int(getattr(results, name).sum()) for name in ("rolling", "inside", "valid")}
     values["unknown"] = int(results.without_fatigue.sum())
@@ -39,41 +37,7 @@ def valid_cases(results: Results) -> Sentence:
     values["open"] = int((results.held & results.any_limit_in("open")).sum())
     if results.allowed is not None:
         values["constraints"] = [f"`{limit}`" for limit in results.config.constraints]
-    values |= {
-        "flags": results.flags,
-        "reasons": reasons,
-        "outside": _reason_words(reasons),
-        "removed": _removed(results),
-    }
-    return say("cases", "valid", **{"constraints": [], **values})
-
-
-def _removed(results: Results) -> list[str]:
-    """Name the levels that meet the constraints nowhere, and the factors that have one level left."""
-    said = []
-    for name in results.factors if results.valid.any() else ():
-        own, levels = results.table[name], results.levels(name)
-        before = [v for v in levels if (own[results.inside] == v).any()] if len(levels) <= MOST_LEVELS else []
-        left = [setting(name, v) for v in before if (own[results.valid] == v).any()]
-        if gone := [setting(name, v) for v in before if setting(name, v) not in left]:
-            said.append(phrase("cases", "removed", gone=gone, left=left))
-    return said
-
-
-def _outside(results: Results) -> list[tuple[str, str, np.ndarray]]:
-    """Return the rolling cases outside the model by flag, and by body if the data set has flags of bodies."""
-    hits = []
-    for flag in (f for f in OUTSIDE if f in results.flags):
-        for body in bodies_of(flag, results.by_body):
-            hits.append((flag, body, results.flagged(flag, body) & results.rolling))
-    return hits
-
-
-def _reason_words(reasons: Sequence[tuple[str, str, int]]) -> list[str]:
-    said: dict[str, list[str]] = {}
-    for flag, body, cases in reasons:
-        said.setdefault(flag, []).append(f"{of_body(flag, body)} ({count(cases)})".lstrip())
-    return [f"{VALIDITY[flag].words} {' or '.join(where)}" for flag, where in said.items()]
+    return say("cases", "valid", flags=results.flags, **{"constraints": [], **values})
 
 
 def silent_drive(results: Results) -> Sentence | None:

@@ -408,23 +408,13 @@ def first_words(row: pd.Series) -> str:
 
 
 def life_error(results: Results) -> Sentence | None:
-    """State the error by the solution of the life that the verdict names first, where it exceeds `LARGE_ERROR`.
-
-    Of its conditions the one counts in which the life may be shortest within its error.
-    """
+    """State the largest error by the solution of the lives of the first candidate, where it exceeds `LARGE_ERROR`."""
     found = results.verdict
     ranked = None if found is None else found.ranked
     if ranked is None or not ranked.best or not ranked.goal_rises:
         return None
-    best, rival = ranked.best[0], ranked.next
-    cases = Cases(Candidates.grouped(results, ranked.goal))
-    rows = np.flatnonzero((cases.candidates.place == best.number) & (cases.reason == ""))
-    least = int(rows[np.argmin(cases.ends[0][rows] / (1 + cases.error[rows]))]) if len(rows) else best.case
-    worst = ranked.sampled or best.error >= float(cases.error[least]) - LARGE_ERROR
-    error = best.error if worst else float(cases.error[least])
-    if error <= LARGE_ERROR:
-        return None
-    lead = rival is not None and rival.high * (1 + 2 * error) < best.low
-    met = not ranked.target or best.low > ranked.required * (1 + 2 * error)
-    decided = ranked.kind == "build" and lead and met
-    return say("accuracy", "life", error=error, many=len(ranked.candidates) > 1, decided=decided, worst=worst)
+    candidates, best = Candidates.grouped(results, ranked.goal), ranked.best[0]
+    cases = Cases(candidates)
+    error = float(cases.error[(candidates.design == best.number) & (cases.reason == "")].max(initial=0.0))
+    name = design_words(candidates, best.choices) if len(ranked.candidates) > 1 else ""
+    return say("accuracy", "life", name=name, error=error) if error > LARGE_ERROR else None

@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from trackroller.report.words.accuracy import accuracy, friction_guess, known_errors
+from trackroller.report.words.accuracy import accuracy, friction_error, friction_guess, full_sliding
 from trackroller.report.words.cases import silent_drive, valid_cases
 from trackroller.report.words.designs import life_error, within_words
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.limits import guesses, worn
-from trackroller.report.words.optimum import optimum_sentences, searched, tolerances
+from trackroller.report.words.optimum import optimum_sentences, searched
 from trackroller.report.words.pareto import pareto_sentence
 from trackroller.report.words.samples import grown, of_target, samples, undecided
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.targets import b10_by_tests, target
+from trackroller.report.words.targets import b10_by_tests
 from trackroller.report.words.verdict import verdict_sentences
-from trackroller.results.pareto import given_pareto
+from trackroller.results.looks import looks_of
+from trackroller.results.pareto import given_pareto, goals_of
 from trackroller.results.ranking import main_lives, robust_design
 from trackroller.results.results import Results
 
@@ -34,17 +35,15 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
     models : sentences of the comparison of contact models, if the study has one
     """
     search = optimum_sentences(results)
-    front = given_pareto(results)
+    verdict = search or verdict_sentences(results)
     told = {place: [sentence_of(results, one) for one in found] for place, found in results.findings.items()}
     lines: list[tuple[str, list[Sentence | None]]] = [
-        ("Best" if search else "Verdict", [*(search or verdict_sentences(results))]),
+        ("Best" if search else "Verdict", [*verdict]),
         (
             "Decide",
             [
-                _target(results),
                 None if results.analysis is None else b10_by_tests(results.analysis),
-                None if front is None else pareto_sentence(front, results),
-                tolerances(results),
+                _front(results, verdict),
             ],
         ),
         ("Why", [*told["why"], _within(results, told["why"]), _enough(results)]),
@@ -53,12 +52,22 @@ def in_short(results: Results, models: list[str]) -> list[Line]:
             "How sure",
             [
                 *(friction_guess(results), guesses(results), worn(results)),
-                *(*known_errors(results), *accuracy(results), life_error(results), *searched(results)),
+                *(friction_error(results), full_sliding(results), *accuracy(results), life_error(results)),
+                *(*searched(results), grown(results)),
                 *(Sentence("models", text) for text in models),
             ],
         ),
     ]
     return [(head, kept) for head, said in lines if (kept := [s for s in said if s is not None])]
+
+
+def _front(results: Results, verdict: list[Sentence]) -> Sentence | None:
+    """State the ends of the Pareto set of the goals that a study gives, where its verdict does not name them."""
+    front = given_pareto(results)
+    if front is None or {"requirement", "tradeoff"} & {one.kind for one in verdict}:
+        return None
+    told = results.config.method.proposes and len(goals_of(front)) == 1
+    return None if told else pareto_sentence(front, results)
 
 
 def _within(results: Results, told: list[Sentence]) -> Sentence | None:
@@ -67,11 +76,10 @@ def _within(results: Results, told: list[Sentence]) -> Sentence | None:
 
 
 def _enough(results: Results) -> Sentence | None:
-    """Say whether there are samples enough for what decides; None for an unfinished study, which asks for more."""
+    """Say whether there are samples enough for what decides; None for a sample that grows or is not finished."""
     sens = results.analysis
-    known = grown(results)
-    if known is not None or sens is None or results.unfinished:
-        return known
+    if sens is None or results.unfinished or looks_of(results) is not None:
+        return None
     found, asked, method = results.verdict, results.config.samples, results.config.method
     if found is not None and (found.kind, found.why) == ("cannot_tell", "sample"):
         return undecided(found, len(results.table) if method.observed else asked, method.observed)
@@ -83,15 +91,6 @@ def _enough(results: Results) -> Sentence | None:
     kinds = ("build", *SETTLED) if found is not None and found.target else ("build",)
     settled = found is not None and found.sampled and found.kind in kinds
     return None if about is None else samples(sens, asked, about, settled)
-
-
-def _target(results: Results) -> Sentence | None:
-    """Say how often all targets of the study are met, where its verdict does not say which candidates meet them."""
-    sens, found = results.analysis, results.verdict
-    if sens is None or "target" not in sens.dims:
-        return None
-    answered = found is not None and found.kind != "cannot_tell" and not found.sampled
-    return None if answered and not robust_design(sens) else target(sens, -1)  # the last target joins several
 
 
 def stopped(results: Results) -> Sentence | None:

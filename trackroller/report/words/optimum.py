@@ -16,6 +16,7 @@ from trackroller.report.numbers import (
     capital,
     lasting,
     long_name,
+    part_of,
     percent,
     quantity,
     rounded,
@@ -24,7 +25,6 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text
-from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import (
     bearing_words,
@@ -48,7 +48,6 @@ from trackroller.results.judging import (
     required,
     shortfall,
 )
-from trackroller.results.pareto import pareto_of_search
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
 from trackroller.results.verdict import Turn, not_checked, open_values
@@ -58,7 +57,6 @@ from trackroller.study.file.goals import names_in
 from trackroller.study.file.search import judged_by
 
 AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
-SMALL = 5e-4  # relative change of a goal below which it counts as unchanged
 
 
 def optimum_sentences(results: Results) -> list[Sentence]:
@@ -86,31 +84,25 @@ def optimum_sentences(results: Results) -> list[Sentence]:
     return [sentence for sentence in said if sentence is not None]
 
 
-def tolerances(results: Results) -> Sentence | None:
-    """Say what a small change of each real choice of the recommended design costs; None for another study."""
-    search = optimum_of(results)
-    if search is None:
-        return None
-    judged = judge(results)
-    best = _best(search, judged)
-    if best is None or best["design"] != search["recommended"]:
-        return None
-    return _tolerance(results, search, best, judged)
-
-
 def searched(results: Results) -> list[Sentence]:
     """Say how a search went, and how much its optima change at `reference`; nothing for another study."""
     search = optimum_of(results)
     if search is None:
         return []
-    facts = ("designs", "generations", "model", "valid", "stopped")
-    how = say("optimum", "searched", beside=search.get("beside"), **{name: search[name] for name in facts})
+    how = say("optimum", "searched", **{name: search[name] for name in ("designs", "model", "stopped")})
     checked = _checked(results, search) if search["optima"] and least_violation(search) < 1 else None
-    best = _best(search, judge(results))
-    found = None if best is None else _first_life(results, search, best)
-    error = 0.0 if found is None else float(found[0].error[found[1]])
-    rough = [say("accuracy", "life", error=error, many=False, decided=False, worst=True)] if error > LARGE_ERROR else []
-    return [*([] if checked is None else [checked]), *rough, how]
+    return [*filter(None, [checked, _life_error(results, _best(search, judge(results)))]), how]
+
+
+def _life_error(results: Results, best: dict[str, Any] | None) -> Sentence | None:
+    """State the largest error by the solution of the lives of a design, where it exceeds `LARGE_ERROR`."""
+    if best is None or results.life is None:
+        return None
+    cases, many = Cases(Candidates.grouped(results, results.life)), results.design.meta["inner_samples"]
+    own = slice(best["design"] * many, (best["design"] + 1) * many)
+    error = float(cases.error[own][cases.reason[own] == ""].max(initial=0.0))
+    name = design_words(results, best["design"])
+    return say("accuracy", "life", name=name, error=error) if error > LARGE_ERROR else None
 
 
 def _best(search: dict[str, Any], judged: Judged) -> dict[str, Any] | None:
@@ -135,11 +127,11 @@ def design_words(results: Results, number: int) -> str:
     return ", ".join(setting(name, value) for name, value in choices_of(results, number).items())
 
 
-def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
+def goal_values(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
     """Write the goals of an optimum with their units; a life has its range and says whether S-N data end before it."""
     texts = []
     for goal, value in zip(search["goals"], one["values"], strict=True):
-        _, units, words = goal_column(results, goal)
+        units = goal_column(results, goal)[1]
         design, ends = one["design"], ends_of_goal(results, goal)
         beyond = bool(beyond_data(results, goal)[design])
         text = lasting(value, units, beyond) if units == "h" else quantity(value, units)
@@ -148,7 +140,7 @@ def goal_texts(results: Results, search: dict[str, Any], one: dict[str, Any]) ->
             text = ends_text(float(ends[0][design]), float(ends[1][design]), BEYOND * beyond, units)
         else:
             text += _interval(results, goal, design)
-        texts.append(f"{words} {text}")
+        texts.append(text)
     return texts
 
 
@@ -167,21 +159,19 @@ def _interval(results: Results, goal: str, number: int) -> str:
 
 
 def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence:
-    values = {
-        "least": least_violation(search),
-        "design": design_words(results, best["design"]),
-        "front": search["front"],
-        "constraints": [str(one) for one in results.config.constraints],
-    }
-    values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
-    alike = all(one["values"] == best["values"] for one in search["optima"])
-    values["goals"] = goal_texts(results, search, best)
+    words = [goal_column(results, goal)[2] for goal in search["goals"]]
+    told = goal_values(results, search, best)
+    values = {"design": design_words(results, best["design"]), "front": search["front"]}
+    alike, least = all(one["values"] == best["values"] for one in search["optima"]), least_violation(search)
     several = len(search["goals"]) > 1 and search["front"] > 1 and not alike
     named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
-    if several and not values["least"] and not (required(results) or bounded):  # the goals alone do not choose
-        ends = [goal_texts(results, search, one) for one in _ends(search)]
-        return say("optimum", "requirement", ends=ends, holes=holes_words(pareto_of_search(results)), **values)
+    if several and not least and not (required(results) or bounded):  # the goals alone do not choose
+        ends = [goal_values(results, search, one) for one in _ends(search)]
+        return say("optimum", "requirement", ends=ends, words=words, goals=told, **values)
+    values |= {"least": least, "constraints": [str(one) for one in results.config.constraints]}
+    values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
+    values["goals"] = [" ".join(pair) for pair in zip(words, told, strict=True)]
     # a range may reach below the certain life of another design
     both = (ends_of_goal(results, goal) for goal in search["goals"])
     values["ranged"] = any(e is not None and bool((e[1] > e[0] * (1 + SAME))[best["design"]]) for e in both)
@@ -326,30 +316,6 @@ def _changes(before: list[float], after: list[float]) -> list[float]:
     return [b / a - 1 if a and np.isfinite([a, b]).all() else 0.0 for a, b in zip(before, after, strict=True)]
 
 
-def _change(goal: str, before: float, after: float) -> str:
-    """Write how a goal changes: a probability from one share to another, others by percent; '' if it does not."""
-    if judged_by(goal)[0] == "probability":
-        return f"from {percent(before)} to {percent(after)}" if abs(after - before) > SMALL else ""
-    change = _changes([before], [after])[0]
-    return f"by {100 * change:+.2g} %".replace("-", "−") if abs(change) > SMALL else ""
-
-
-def _tolerance(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence | None:
-    """Say what a small change of each real choice costs."""
-    words, neighbours = [goal_column(results, goal)[2] for goal in search["goals"]], []
-    short = float(judged.short[best["design"]])
-    for near in search["neighbours"]:
-        name, step = near["choice"], float(near["step"])
-        moved = f"{'+' if step > 0 else ''}{quantity(step, getattr(parameter_of(name), 'unit', '1'))}"
-        invalid = near["violation"] if near["violation"] > best["violation"][0] else 0.0
-        missed = required(results) and short == 0 < near.get("short", 0.0)
-        changes = zip(search["goals"], words, best["values"], near["values"], strict=True)
-        texts = [(text, _change(goal, *both)) for goal, text, *both in changes if goal != name]
-        changed = [(text, change) for text, change in texts if change]
-        neighbours.append((long_name(name), moved, invalid, missed, changed, name in search["goals"]))
-    return say("optimum", "tolerance", neighbours=neighbours) if neighbours else None
-
-
 def optima_table(results: Results) -> Table | None:
     """Compare the recommended design and further optima, as columns: choices, goals, goals at reference."""
     search = optimum_of(results)
@@ -373,3 +339,38 @@ def optima_table(results: Results) -> Table | None:
     heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
     note = "Each design is judged over all its conditions. Bold: differs from the first design."
     return compared("optima", "Optima of the search", heads, rows, note)
+
+
+def steps_table(results: Results) -> Table | None:
+    """List the recommended design of a search and the designs one step of a real choice away; None without steps."""
+    search = optimum_of(results)
+    if search is None or not search["neighbours"]:
+        return None
+    judged = judge(results)
+    best, many = _best(search, judged), results.design.meta["inner_samples"]
+    if best is None or best["design"] != search["recommended"]:
+        return None  # the steps are those around the design that the search recommended
+    own = {"values": best["values"], "violation": best["violation"][0], "short": judged.short[best["design"]]}
+    own["life"], near = judged.life[best["design"]], search["neighbours"]
+    asked = [judged_by(goal) for goal in search["goals"]]
+    counted = all(kind in ("b10", "probability") for kind, _ in asked)
+    lives = "life" in near[0] and not any(is_life(output) for _, output in asked)
+    rows = []
+    for one in (own, *near):
+        name = "Recommended"
+        if one is not own:
+            step, unit = float(one["step"]), getattr(parameter_of(one["choice"]), "unit", "1")
+            name = f"{capital(long_name(one['choice']))} {'+' * (step > 0)}{quantity(step, unit)}"
+        row: dict[str, Any] = {"Design": name}
+        if required(results) and "short" in near[0]:
+            row["Surely meets the target"] = "no" if one["short"] else "yes"
+        if not counted:
+            row["Valid in"] = part_of(round((1 - one["violation"]) * many), many)
+        for goal, value in zip(search["goals"], one["values"], strict=True):
+            _, units, words = goal_column(results, goal)
+            head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
+            row[head] = percent(value) if judged_by(goal)[0] == "probability" else float(value)
+        if lives and results.life is not None:
+            row[with_unit(f"{capital(results.life[1])}, shortest", results.life[2])] = float(one["life"])
+        rows.append(row)
+    return Table.of("steps", "Steps around the recommended design", rows)

@@ -30,7 +30,7 @@ def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Senten
     """
     best, goals = np.flatnonzero(front["optimal"].values == 1), [name for name, _ in goals_of(front)]
     kind, rows = str(front.attrs.get("kind", "design")), front["row"].values[best]
-    values: dict[str, Any] = {name: front.attrs.get(name, "") for name in ("excluded", "model", "judged")}
+    values: dict[str, Any] = {name: front.attrs.get(name, "") for name in ("model", "judged")}
     values |= {"count": len(best), "of": front.sizes["row"], "kind": kind}
     if len(best):
         table = np.stack([front[name].values.astype(float) for name in goals], axis=1)

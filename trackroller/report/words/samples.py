@@ -15,7 +15,7 @@ from trackroller.report.numbers import capital, plain, rounded
 from trackroller.report.tables.table import Table
 from trackroller.report.words.indices import of_output
 from trackroller.report.words.sentence import Sentence, say
-from trackroller.report.words.targets import samples_of_points, target_words
+from trackroller.report.words.targets import target_words
 from trackroller.results.looks import looks_of
 from trackroller.results.ranking import best_points, estimate
 from trackroller.results.results import Results
@@ -155,17 +155,16 @@ def quantity_words(name: str, method: Method) -> str:
 
 
 def grown(results: Results) -> Sentence | None:
-    """Say what a growing sample was to reach, why it stopped, and what it reached; None for other studies."""
+    """Say why a growing sample stopped, and its widest interval; None for other studies."""
     growth = looks_of(results)
     if growth is None:
         return None
-    last, method = growth["looks"][-1], results.design.method
-    widths = [(quantity_words(n, method), width, last["at"][n]) for n, width in last["half_width"].items()]
-    sens = results.analysis
-    points = samples_of_points(sens) if sens is not None and "point_samples" in sens else ""
-    facts = {name: growth[name] for name in ("half_width", "stopped", "replicates")}
-    values = {"what": method.known_by, "cases": last["cases"], "widths": widths, "points": points}
-    return say("samples", "grown", **values, **facts)
+    last = growth["looks"][-1]
+    widths = {name: width for name, width in last["half_width"].items() if width is not None}
+    name = max(widths, key=lambda name: widths[name], default="")
+    words = quantity_words(name, results.design.method) if name else ""
+    values = {"width": widths.get(name), "words": words, "at": last["at"].get(name, "")}
+    return say("samples", "grown", cases=last["cases"], stopped=growth["stopped"], **values)
 
 
 def looks_table(results: Results) -> Table | None:
@@ -181,4 +180,4 @@ def looks_table(results: Results) -> Table | None:
             row[capital(quantity_words(name, results.design.method))] = text
         rows.append(row)
     note = f"Widest 95 % interval at each look and where; wanted: ± {growth['half_width']:g}."
-    return Table.of("looks", "Intervals as the sample grew", rows, f"{note} Stopped: {growth['stopped']}.")
+    return Table.of("looks", "Intervals as the sample grew", rows, note)

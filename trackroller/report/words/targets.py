@@ -14,7 +14,6 @@ from trackroller.report.numbers import (
     chance,
     head_unit,
     level_text,
-    listing,
     long_name,
     number,
     part_of,
@@ -28,13 +27,9 @@ from trackroller.report.words.accuracy import FRICTION_OUTPUTS
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.ranking import best_points, estimate, main_lives, method_of
 from trackroller.results.results import Results
-from trackroller.results.targets import most_apart
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import in_words
-
-SAME = 1e-6  # probabilities that differ by less are called the same
-INTERVAL = "95 % interval "
 
 
 def target_words(table: xr.Dataset, target: int) -> str:
@@ -55,53 +50,14 @@ def _whole(table: xr.Dataset) -> str:
     return "" if method is None else method.whole
 
 
-def target(table: xr.Dataset, number: int) -> Sentence:
-    """State how probable it is to meet a target at the best and the worst design point, or in all cases.
-
-    Then name the factor whose levels differ most, where their intervals lie apart.
-
-    Parameters
-    ----------
-    table : analysis with the variables of `trackroller.results.targets.targets`
-    number : of the target
-    """
-    part = table.isel(target=number)
-    all_of = np.atleast_2d(estimate(part, "target_probability").T)
-    share, low, high = all_of.T
-    order = [int(np.argmax(share)), int(np.argmin(share))]
-    robust = "point" in part["target_probability"].dims
-    method = method_of(table)
-    most = None if method is not None and method.observed else most_apart(part)  # columns of a table go together
-    return say(
-        "targets",
-        "target",
-        what=target_words(table, number),
-        whole="" if robust or np.isfinite(low).all() else _whole(table) or "cases",
-        many=len(share) if robust else None,
-        same=bool(np.ptp(share) < SAME),
-        chances=[chance(share[i], low[i], high[i], INTERVAL) for i in order],
-        ties=[sum(np.allclose(own, all_of[i], rtol=0.0, atol=SAME) for own in all_of) for i in order],
-        points=[point_words(table, i) for i in order] if robust else [],
-        tests=_by_tests(table, number),
-        changes=long_name(str(part["level_factor"][most[0]].item())) if most else "",
-        ends=[f"{_cell(part, 'level', i)} at {_alike(part, i)}" for i in most or ()],
-    )
-
-
-def _alike(part: xr.Dataset, place: int) -> str:
-    """Name the levels of a factor that have the same probability as one of them."""
-    share, names = part["level_probability"].values, part["level_factor"].values
-    same = np.flatnonzero((names == names[place]) & (np.abs(share - share[place]) < SAME))
-    return listing([_level_words(part, int(i)) for i in same], "or")
-
-
 def _by_tests(table: xr.Dataset, number: int) -> str:
-    """Return the band of a probability over all cases by the tests of fitted materials; '' without one."""
+    """Say how far the tests of fitted materials leave a probability over all cases open; '' without tests."""
     if "tests_low" not in table or np.isnan(float(table["tests_low"][number])):
         return ""
     low, high = (percent(float(table[f"tests_{end}"][number])).removesuffix(" %") for end in ("low", "high"))
     words = table["tests_low"].attrs
-    return f"over all cases {low} to {high} % by the {words['tests']} tests of {words['materials']}"
+    over = f"over all cases {low} to {high} % by the {words['tests']} tests of {words['materials']}"
+    return f"{capital(target_words(table, number))}: {over}."
 
 
 def b10_by_tests(table: xr.Dataset) -> Sentence | None:
@@ -166,6 +122,7 @@ def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
         said.append("A life that is a range counts by its low end.")
     if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
         said.append("Lives hold the material's own scatter.")
+    said += filter(None, (_by_tests(table, t) for t in targets))
     apart = not results.config.method.observed and not set(OPTION_FACTORS) & set(results.factors)
     places = range(table.sizes.get("target_level", 0) if apart else 0)
     levels = [[capital(_level_words(table, i)), *_cells(table, "level", i)] for i in places]
