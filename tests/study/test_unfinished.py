@@ -171,7 +171,7 @@ def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monke
 
 @pytest.mark.slow
 def test_an_unfinished_study_asks_for_no_more_samples_than_its_file(tmp_path):
-    basis = {"name": "part", "design": "lhs", "samples": 100, "contact_model": "sliding", "accuracy": "preview"}
+    basis = {"name": "part", "design": "saltelli", "samples": 32, "contact_model": "sliding", "accuracy": "preview"}
     solved = tr.run(basis | {"outputs": ["forces", "life"], "factors": NUMBERS}, progress=False, results=tmp_path)
     part = dataclasses.replace(solved, data=solved.data.assign_attrs(missing_cases=900))
     kinds = [[one.kind for one in dict(in_short(results, []))["Why"]] for results in (solved, part)]

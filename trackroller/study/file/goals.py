@@ -16,6 +16,7 @@ These keys are not part of the identity of a case, so changing them solves no ca
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Annotated, Any, Literal
 
@@ -35,6 +36,7 @@ from trackroller.study.design.entries import choice
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
 DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
+FIRST_LIMIT = "pair_life_to_first_limit_hours"
 STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
 STATISTICS_OF = {  # by the key of a study file
     "pareto": STATISTICS,
@@ -147,6 +149,23 @@ def directions(value: Any, key: str = "pareto", least: int = 2) -> Any:
         allowed = "two or more outputs or factors, each with max or min"
         raise InputError(key, value, allowed, "For example {pair_life_hours: max, friction_power: min}.")
     return collected(without_spaces(value), lambda name, way: choice(way, f"{key}.{name}", DIRECTIONS))
+
+
+def to_first_limit(config: Any) -> dict[str, Any]:
+    """Return goals and constraints on the life of the pair, which count it to its first limit, as targets do.
+
+    A study without the limits, or one that names the life to the first limit beside the life by fatigue, means what it
+    writes.
+    """
+    keys: dict[str, Any] = {key: getattr(config, key) for key in ("goals", "pareto", "constraints")}
+    if not {"life", "limits"} <= set(config.outputs) or FIRST_LIMIT in str(keys):
+        return {}
+
+    def first(text: str) -> str:
+        return re.sub(rf"(?<!probability\()\b{DEFAULT_TARGET}\b", FIRST_LIMIT, text)  # a target is counted so already
+
+    named = {key: {first(name): way for name, way in keys[key].items()} for key in ("goals", "pareto")}
+    return named | {"constraints": tuple(map(first, config.constraints))}
 
 
 def comparisons(texts: Sequence[str]) -> tuple[str, ...]:

@@ -26,7 +26,7 @@ from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
-from trackroller.study.file.goals import Analysis, check_analysed
+from trackroller.study.file.goals import Analysis, check_analysed, to_first_limit
 from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
@@ -185,6 +185,7 @@ def complete(study: Study, former: Collection[str] = ()) -> Study:
         update, values = _on_carriage(study, study.carriage, names)
     if config.until is not None and "samples" not in config.model_fields_set:
         update["samples"] = config.until.replicates * config.method.first_look
+    update |= to_first_limit(config)
     return replace(study, config=config.model_copy(update=update), not_given=(*former, *values))
 
 
