@@ -105,3 +105,12 @@ def test_what_a_condition_does_not_count_is_told():
     assert "give guide_overrollings_per_hour" in alone.text
     whole = tr.find(case | {"guide_overrollings_per_hour": 60}, "axial_force", "pair_life_hours > 10", **options)
     assert whole.notes == ()
+
+
+@pytest.mark.parametrize(
+    ("name", "condition", "said"),
+    [("outer_radius", "slip < 0.1", "Find axis_distance"), ("axial_force", "slip < 10,000 h", "without a comma")],
+)
+def test_what_cannot_be_found_says_what_to_write(name, condition, said):
+    with pytest.raises(tr.InputError, match=said):
+        tr.find({}, name, condition, contact_model="sliding")

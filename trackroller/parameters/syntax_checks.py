@@ -13,10 +13,11 @@ MAX_DEPTH = 60  # of the syntax tree
 TRIGONOMETRIC = ("sin", "cos", "tan")
 DEGREES = frozenset(name for name, parameter in PARAMETERS.items() if parameter.unit == "deg")
 
-_COMMA = "Write decimals with a point, such as 0.5."
+_COMMA = "Write decimals with a point, such as 0.5, and thousands without a comma."
 _MULTIPLY = "Write * for a product."
 _POWER = "Write ** for a power, such as x ** 2."
 _SYNTAX = {  # what a person writes who expects another language -> what to write
+    r"\d,\d{3}(?!\d)": _COMMA,
     r"[²³]": _POWER,
     r"[×·⋅]|\d\s*[^\W\d]|\)\s*[\w(]": _MULTIPLY,
     "[\u2010-\u2013\u2212]": "Write - for a minus; the text has another dash.",

@@ -18,7 +18,7 @@ from trackroller.numerics.units import without_units
 from trackroller.parameters import PARAMETERS, REGIMES, Parameter
 from trackroller.parameters.expressions import condition as meets
 from trackroller.parameters.expressions import names
-from trackroller.roller.aliases import ALIASES
+from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.case import Case
 from trackroller.roller.output_names import PARTS, unit_of
 from trackroller.roller.solver import solve
@@ -154,6 +154,9 @@ def find(
     """
     given = case if isinstance(case, Case) else Case(**case)
     name = ALIASES.get(name, name)
+    if name in RADII:
+        remedy = "Find axis_distance: with the groove it gives the outer radius."
+        raise InputError("find", name, "a parameter that the case keeps", remedy)
     if name not in PARAMETERS:
         raise unknown_name("find", name, PARAMETERS)
     start = getattr(given, name)

@@ -370,3 +370,19 @@ def test_correlated_columns_of_a_table_are_told(tmp_path):
     ds["roller_life_hours"] = ("case", ds["friction_coefficient"].values)
     assert results_of(ds).design.method.name == "table"
     assert "are correlated (rank correlation -1.00)" in analyse(results_of(ds)).attrs["treatment"]
+
+
+def test_the_life_of_the_pair_counts_to_its_first_limit_in_constraints_and_goals():
+    """Unless the limits are left out, or the study names both lives: then each of them means what it says."""
+    first, fatigue = "pair_life_to_first_limit_hours", "pair_life_hours"
+    study = {"name": "s", "factors": {"axial_force": {"values": [5, 10]}}, "contact_model": "sliding"}
+    asked = {"pareto": {fatigue: "max", "max_pressure": "min"}, "constraints": [f"{fatigue} > 2 * axial_force"]}
+    config = parse_study(study | asked).config
+    assert list(config.pareto) == [first, "max_pressure"] and config.constraints == (f"{first} > 2 * axial_force",)
+    config = parse_study(study | asked | {"outputs": ["life", "contact"]}).config
+    assert list(config.pareto) == [fatigue, "max_pressure"]
+    config = parse_study(study | asked | {"constraints": [f"{first} < {fatigue}"]}).config
+    assert list(config.pareto) == [fatigue, "max_pressure"] and config.constraints == (f"{first} < {fatigue}",)
+    search = {"design": "optimise", "goals": {f"mean({fatigue})": "max", f"probability({fatigue})": "max"}}
+    config = parse_study(study | search | {"analysis": {"target": {"min": 9}}, "pareto": {}}).config
+    assert list(config.goals) == [f"mean({first})", f"probability({fatigue})"]
