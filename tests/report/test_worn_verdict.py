@@ -47,12 +47,12 @@ def sampled(material):
 
 
 def test_a_sample_says_whether_the_scatter_of_its_material_is_known(tmp_path, monkeypatch):
-    assert sampled("C45") == "The scatter of C45 itself is not counted: the database has no T_N of it."
+    assert sampled("C45") == "The scatter of C45 itself is not counted."
     monkeypatch.chdir(tmp_path)
     (tmp_path / "config").mkdir()
     text = "materials:\n  mine:\n    like: C45\n    scatter_in_cycles: {value: 4, unit: '-', source: own tests}\n"
     (tmp_path / "config" / "materials.yaml").write_text(text)
-    assert "`material_scatter: true` under `analysis` adds it" in sampled("mine")
+    assert "`material_scatter: true` adds it" in sampled("mine")
 
 
 def test_a_value_under_base_that_no_limit_uses_is_named():

@@ -29,16 +29,11 @@ UNRANKED = ("converged", "conditions met", "")  # without lives and stresses: 1 
 TIED = 1e-9  # relative difference of lives that count as equal
 
 
-def of_one_model(results: Results, rows: np.ndarray, model: str = "") -> np.ndarray:
-    """Leave out the rows that another contact model solved, or with another level of an option; shape (n,) bool.
-
-    Unless `model` names it, the contact model is the most exact one; other options have the level of
-    `Results.held_level`.
-    """
+def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:
+    """Leave out the rows with another level of an option than `Results.held_level`, shape (n,) bool."""
     kept = rows.copy()
     for option in (n for n in results.factors if n in OPTION_FACTORS):
-        level = model if model and option == "contact_model" else results.held_level(option)
-        kept &= (results.table[option] == level).to_numpy()
+        kept &= (results.table[option] == results.held_level(option)).to_numpy()
     return kept
 
 
@@ -149,9 +144,7 @@ class Candidates:
         return cls.grouped(results, goal, free)
 
     @classmethod
-    def grouped(
-        cls, results: Results, goal: tuple[str, str, str], free: tuple[str, ...] = (), model: str = ""
-    ) -> Candidates:
+    def grouped(cls, results: Results, goal: tuple[str, str, str], free: tuple[str, ...] = ()) -> Candidates:
         """Return the designs of a study, whether a case is valid or not.
 
         Parameters
@@ -159,11 +152,10 @@ class Candidates:
         results : the solved study
         goal : column, words and unit of what is compared
         free : conditions that count as choices here
-        model : contact model whose cases are compared, the most exact one if it is not named
         """
         roles = results.roles | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
-        own = of_one_model(results, np.ones(len(results.table), dtype=bool), model)
+        own = of_one_model(results, np.ones(len(results.table), dtype=bool))
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)

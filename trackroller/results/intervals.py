@@ -43,11 +43,9 @@ class Cases:
     Attributes
     ----------
     candidates : the designs of the study
-    constrained : whether a case that misses a constraint of the study is not met
     """
 
     candidates: Candidates
-    constrained: bool = True
 
     @property
     def results(self) -> Results:
@@ -93,7 +91,7 @@ class Cases:
         life = self._column("")
         out = np.full(len(life), "", dtype=object)
         missed = np.zeros(len(life), dtype=bool)
-        if self.constrained and results.allowed is not None:
+        if results.allowed is not None:
             missed = ~results.allowed
         masks = [
             ("life not known", np.isnan(life)),

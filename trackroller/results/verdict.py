@@ -188,8 +188,6 @@ class Verdict:
     tried : number of candidates of a study whose candidates do not repeat; 0 otherwise
     sampled : whether a life is the one that nine of ten sampled conditions reach
     not_checked : limits that were not checked, and `guide` if its hours are not known
-    unconstrained : candidate that would be named without the constraints of the study; None if that is the same one
-    by_model : candidate that each other contact model of the study would name
     longest : row with the longest life, where no row meets the target and designs do not repeat; otherwise -1
     within_error : row of the first candidate whose error leaves the target open, otherwise -1
     not_given : inputs that were not given, and with whose values a candidate lifts off or skids somewhere
@@ -211,8 +209,6 @@ class Verdict:
     tried: int = 0
     sampled: bool = False
     not_checked: tuple[str, ...] = ()
-    unconstrained: Candidate | None = None
-    by_model: Mapping[str, Candidate] = field(default_factory=dict)
     longest: int = -1
     within_error: int = -1
     not_given: Mapping[str, float] = field(default_factory=dict)
@@ -295,7 +291,7 @@ def verdict_of(results: Results) -> Verdict | None:
     found = _decided(cases, cases.own, reach)
     if traded is not None and found.kind in ("build", "a_or_b", "measure"):
         found = replace(found, kind="give", turns=(Turn("requirement"),), rest=found, tradeoff=traded)
-    return replace(found, unconstrained=_unconstrained(cases, found), by_model=_by_model(cases))
+    return found
 
 
 def _longest(candidates: Candidates) -> int:
@@ -304,36 +300,6 @@ def _longest(candidates: Candidates) -> int:
     if not (candidates.rising and known.any()):
         return -1
     return int(np.argmax(np.where(known, candidates.results.column(candidates.goal[0]), -np.inf)))
-
-
-NAMES = ("build", "lasts", "a_or_b", "measure", "none")  # kinds of verdicts whose first candidate is named
-
-
-def _first(cases: Cases) -> Candidate | None:
-    """Return the first candidate of a verdict over some cases, None where it names none."""
-    found = _decided(cases, cases.own, cases.out_of_reach)
-    return found.candidates[0] if found.kind in NAMES and found.candidates else None
-
-
-def _unconstrained(cases: Cases, found: Verdict) -> Candidate | None:
-    """Return the candidate that a study would name without its constraints; None if it is among those named."""
-    if cases.results.allowed is None or not (cases.reason == "misses a constraint").any():
-        return None
-    first = _first(replace(cases, constrained=False))
-    same = {one.number for one in found.ranked.best}
-    return None if first is None or first.number in same else first
-
-
-def _by_model(cases: Cases) -> dict[str, Candidate]:
-    """Return the candidate that each other contact model of a study would name, as far as it can name one."""
-    results, goal, out = cases.results, cases.candidates.goal, {}
-    held = results.held_level("contact_model") if "contact_model" in results.factors else ""
-    for model in results.levels("contact_model") if held else ():
-        if model != held and (others := Candidates.grouped(results, goal, model=str(model))).comparable:
-            first = _first(Cases(others))
-            if first is not None:
-                out[str(model)] = first
-    return out
 
 
 @dataclass(frozen=True)

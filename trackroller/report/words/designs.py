@@ -54,11 +54,10 @@ def design_words(candidates: Candidates, row: Mapping[Any, Any] | pd.Series) -> 
     return ", ".join(setting(name, row[name]) for name in names)
 
 
-def condition_words(candidates: Candidates, case: int, ties: bool = False) -> str:
+def condition_words(candidates: Candidates, case: int) -> str:
     """Name the conditions of a case, without those that do not change what its design does there.
 
-    Its design has the same goal there, or does not hold for the same reason. With `ties` the words count the other
-    conditions of which the same is true.
+    Its design has the same goal there, or does not hold for the same reason.
     """
     table, names = candidates.results.table, [n for n in candidates.conditions if n not in UNSURE]
     own, alike = _same(candidates, case)
@@ -68,10 +67,7 @@ def condition_words(candidates: Candidates, case: int, ties: bool = False) -> st
         everywhere = table[name][there].nunique() == max(table[name][own].nunique(), 2)
         if everywhere and alike[there].all():
             kept.remove(name)
-    text = ", ".join(setting(name, table[name].iloc[case]) for name in kept or names)
-    told = np.all([own, *(_at(table, n, case) for n in kept)], axis=0)
-    more = len(np.unique(codes(table, names)[alike & ~told]))
-    return f"{text}; the same in {more} more" if ties and more else text
+    return ", ".join(setting(name, table[name].iloc[case]) for name in kept or names)
 
 
 def _at(table: pd.DataFrame, name: str, case: int) -> np.ndarray:
@@ -94,7 +90,7 @@ def _same(candidates: Candidates, case: int) -> tuple[np.ndarray, np.ndarray]:
 
 def worst_words(candidates: Candidates, one: Candidate) -> str:
     """Name the condition in which a candidate lasts shortest; of a range that of each end, where they differ."""
-    low, high = (condition_words(candidates, case, ties=True) for case in (one.case, one.case_high))
+    low, high = (condition_words(candidates, case) for case in (one.case, one.case_high))
     return low if low == high else f"{low} at the low end, {high} at the high end"
 
 
@@ -198,7 +194,6 @@ def best_table(results: Results) -> Table | None:
         "shown": {row[0] for row in rows},
         "many": len(best),
     }
-    facts["materials"] = not candidates.ranks and candidates.goal != UNRANKED
     facts["mixed"] = bool(candidates.conditions) and bool(mixed(results).any())
     facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
     facts["hopeless"] = not candidates.reached.all()
@@ -296,10 +291,7 @@ def _judged(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     if known:
         rows.append(["Ends it", *(_end_cell(candidates, one) for one in known)])
     if candidates.conditions:
-        named = [
-            "–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"]), ties=True)
-            for row in best
-        ]
+        named = ["–" if np.isinf(row["worst"]) else condition_words(candidates, int(row["worst_case"])) for row in best]
         if worst:
             pairs = zip(named, known, strict=True)
             named = [text if one is None or text == "–" else worst_words(candidates, one) for text, one in pairs]
@@ -329,7 +321,7 @@ def _end_cell(candidates: Candidates, one: Candidate | None) -> str:
         return "–"
     if one.ends in LIMITS:
         return f"{ends_words(one)}, {body_words(candidates, one)}"
-    where = condition_words(candidates, one.case, ties=True)
+    where = condition_words(candidates, one.case)
     text = plain_reason(one.ends) + f" at {where}" * bool(where)
     return ", ".join(filter(None, (text, roller_words(candidates.results, one.case))))
 

@@ -68,9 +68,8 @@ def first_limit_table(results: Results) -> Table | None:
         own = (results.table[first] == level).to_numpy()
         counts = {head: _counts(names[own & rows_there]) for head, rows_there in across.items()}
         rows.append({heading(first): factor_cell(first, level)} | counts)
-    note = "Number of valid cases that each limit of the pair ends first."
-    if results.ranged:
-        note += f" Counted with {within_words(results)}; at the ends of the ranges another limit may come first."
+    note = "Number of valid cases that each limit of the pair ends first"
+    note += f", with {within_words(results)}." if results.ranged else "."
     if others:
         note += f" {capital(long_name(others[0]))} across."
     return Table.of("first_limits", "Which limit comes first", rows, note)

@@ -337,7 +337,7 @@ def optima_table(results: Results) -> Table | None:
         rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
     first = "Closest to valid" if least_violation(search) else "Recommended"
     heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
-    note = "Each design is judged over all its conditions. Bold: differs from the first design."
+    note = "Bold: differs from the first design."
     return compared("optima", "Optima of the search", heads, rows, note)
 
 

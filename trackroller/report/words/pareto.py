@@ -101,9 +101,8 @@ def pareto_table(front: xr.Dataset, results: Results, error: Sentence | None) ->
         columns[goal_heading(front, name) + arrows.get(name, "")] = _column(front, name, shown)
     if kind != "design point":
         columns["Model"] = ["inside" if results.valid[row] else "outside" for row in columns[head]]
-    wishes = [f"{goal_words(front, n)} as {'high' if w == 'max' else 'low'} as possible" for n, w in goals]
     remark = error.text if error and any(statistic(n)[1] in FRICTION_OUTPUTS for n, _ in goals) else ""
-    values = {"wishes": wishes, "constraints": front.attrs.get("constraints"), "kind": kind, "error": remark}
+    values = {"constraints": front.attrs.get("constraints"), "kind": kind, "error": remark}
     note = phrase("pareto", "note", **values, shown=len(shown), of=len(best))
     rows = list(zip(*columns.values(), strict=True))
     return Table("pareto", f"Pareto-optimal {kind}s", list(columns), rows, note)

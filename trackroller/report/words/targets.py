@@ -89,12 +89,6 @@ def _level_words(part: xr.Dataset, level: int) -> str:
     return f"{long_name(name)} {number(low)} to {level_text(name, high, words=False)}"
 
 
-def samples_of_points(table: xr.Dataset) -> str:
-    """Say how many samples the design points have."""
-    low, high = (int(end(table["point_samples"])) for end in (np.min, np.max))
-    return phrase("targets", "samples_of_points", low=low, high=high)
-
-
 def point_words(table: xr.Dataset, point: int) -> str:
     """Name a design point: 'profile ratio 1.1, contact angle 30°'."""
     names = [n for n in str(table.attrs.get("outer_factors", "")).split(", ") if n]
@@ -135,7 +129,6 @@ def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
         return [Table("targets", title, ["Level", *heads], rows, " ".join(said))]
     order = np.argsort(-table["target_probability"].values[-1], kind="stable")
     rows = [[capital(point_words(table, int(p))), *_cells(table, "target", int(p))] for p in order[:MAX_POINTS]]
-    said.append(samples_of_points(table))
     if len(order) > len(rows):
         said.append(f"{len(order) - len(rows)} more design points are in sensitivity.nc.")
     tables = [Table("targets", "Targets: probability by design point", ["Design point", *heads], rows, " ".join(said))]
@@ -211,14 +204,10 @@ def _life_tables(table: xr.Dataset, output: str) -> list[Table | None]:
             chances = estimate(table.sel(regime=regime), "probability")[:, p]
             row[f"{capital(OTHERS[regime])} (95 % interval)"] = chance(*chances)
         rows.append(row)
-    never = [r for r in OTHERS if r not in seen]
-    highest = float(table["probability_high"].sel(regime=never).max()) if never else 0.0
     least = float(table.attrs.get("least_log_life_scatter", scatter))
     values = {
         "spread": 10 ** (DEVIATES_10_TO_90 * scatter),
         "least": 10 ** (DEVIATES_10_TO_90 * least),
-        "never": [OTHERS[r] for r in never],
-        "highest": highest,
     }
     note = phrase("targets", "b10_note", **values, left=table.sizes["point"] - MAX_POINTS)
     name, unit = capital(str(part["output_name"].item())), head_unit(str(part["output_units"].item()))

@@ -56,7 +56,6 @@ MOST = 3  # candidates that a sentence names
 WORDS = 120  # of a verdict
 LEAST_NEEDED = (
     "scatter",
-    "models",
     "next",
     "not_judged",
     "turn",
@@ -93,8 +92,6 @@ def verdict_sentences(results: Results) -> list[Sentence]:
         *words.reasons(),
         words.tested(),
         words.not_held(),
-        words.without(),
-        words.models(),
         words.aside(),
         words.untried(),
         words.open_limits(),
@@ -473,27 +470,8 @@ class _Words:
         if not len(rows):
             return None
         named = list(dict.fromkeys(condition_words(self.candidates, int(row)) for row in rows))
-        values = {"shared": int(self.candidates.size[0]), "rows": len(rows), "named": named[:MOST]}
-        values["there"] = self.untried_life(self.found.best[0]) if self.found.best else ""
-        return say("verdict", "untried", **values, left=len(named) - MOST)
-
-    def without(self) -> Sentence | None:
-        """Name the candidate that only a constraint of the study keeps out."""
-        one, constraints = self.found.unconstrained, self.results.config.constraints
-        if one is None:
-            return None
-        values = {"candidate": one, "name": self.name(one), "lives": self.span(one), "many": len(constraints)}
-        return say("verdict", "without", **values, rises=self.found.goal_rises)
-
-    def models(self) -> Sentence | None:
-        """Say whether the other contact models of a study name the same candidate."""
-        found, others = self.found, self.found.by_model
-        named = found.ranked.best
-        if not others or len(self.candidates.size) < 2 or len(named) != 1 or found.kind == "cannot_tell":
-            return None
-        agree = [model for model, one in others.items() if one.choices == named[0].choices]
-        apart = [(model, self.name(one)) for model, one in others.items() if model not in agree]
-        return say("verdict", "models", agree=agree, apart=apart, own=self.results.held_level("contact_model"))
+        there = self.untried_life(self.found.best[0]) if self.found.best else ""
+        return say("verdict", "untried", shared=int(self.candidates.size[0]), named=named, there=there)
 
     def open_limits(self) -> Sentence | None:
         """Name the limits of the first candidate that are exceeded at one end of the range of a placeholder."""
@@ -543,9 +521,8 @@ class _Words:
         flags = int(results.column(f"validity_{worn_body}", missing=0)[case])
         worn = bool(flags & validity_bit("worn"))
         guessed &= found.kind != "measure"
-        hopeless = found.kind == "none" and bool(found.target)  # a measurement decides nothing
-        values = {"material": own, "on": on, "guessed": guessed, "worn": worn, "hopeless": hopeless}
-        return say("verdict", "worn", **values) if guessed or worn else None
+        guessed &= not (found.kind == "none" and found.target)  # a measurement decides nothing
+        return say("verdict", "worn", material=own, on=on, guessed=guessed, worn=worn) if guessed or worn else None
 
     def unchecked(self) -> Sentence | None:
         """Name what was not checked."""
@@ -596,13 +573,17 @@ def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
 
 def turn_words(turn: Turn, target: str, name: str = "", others: Sequence[str] = ()) -> Sentence | None:
     """Say at which value a decision turns, None where it is not known; `name` and `others` are candidates."""
-    wear = turn.what == "wear_coefficient"
-    bounds = wear and bool(target) and math.isfinite(turn.low)  # of the wear life, which may decide, too
-    if not (math.isfinite(turn.value) or math.isfinite(turn.until) or bounds):
+    if not (math.isfinite(turn.value) or math.isfinite(turn.until)):
         return None
     texts = {key: quantity(getattr(turn, key), turn.units) for key in ("value", "until", "high")}
     texts["low"] = rounded(turn.low)
-    values = {"turn": turn, "name": name, "others": list(others), "target": target, "wear": wear}
+    values = {
+        "turn": turn,
+        "name": name,
+        "others": list(others),
+        "target": target,
+        "wear": turn.what == "wear_coefficient",
+    }
     return say("verdict", "turn", **values, texts=texts)
 
 
