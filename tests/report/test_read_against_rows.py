@@ -67,13 +67,11 @@ def test_a_constraint_on_a_goal_is_a_requirement():
     assert f"Of {len(cost) - sum(beaten)} Pareto-optimal designs it is nearest" in said
 
 
-def test_no_design_is_called_worse_than_one_whose_life_is_a_range():
-    """The longest life between the bounds of wear may have a lower bound below the sure life of another design."""
+def test_a_set_of_lives_that_are_ranges_says_which_number_it_takes():
     results = search({LIFE: "max"}, base={"permissible_wear_depth": 0.02})
     low, high = (results.data[f"{LIFE}_{end}"].values.reshape(-1, 4).min(axis=1) for end in ("low", "high"))
     middle = results.data[LIFE].values.reshape(-1, 4).min(axis=1)
-    said = optimum_sentences(results)[0].text
-    assert (high > 1.01 * low).all() and "as good" not in said
+    assert (high > 1.01 * low).all()
     told = pareto_sentence(results.pareto(), results).text
     assert f"{lasting(middle.max(), 'h')}" in told and "the wear life at the mean of its bounds." in told
 

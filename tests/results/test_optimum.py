@@ -367,7 +367,7 @@ def test_a_recommended_design_names_the_constraints_that_it_keeps():
     from trackroller.report.words.sentence import say
 
     values = {"least": 0.0, "design": "outer radius 14 mm", "goals": ["outer radius 14 mm"], "edges": [], "front": 1}
-    values |= {"short": 0.0, "target": "", "limits": [], "meeting": 1, "designs": 4, "conditions": 1, "ranged": False}
+    values |= {"short": 0.0, "target": "", "limits": [], "meeting": 1, "designs": 4, "conditions": 1}
     values |= {"others": 0, "life": ""}
     kept = say("optimum", "recommended", alike=True, constraints=["pair_life_hours >= 10000"], **values).text
     assert "Its goal: outer radius 14 mm; it keeps `pair_life_hours >= 10000`." in kept

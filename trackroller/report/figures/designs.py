@@ -93,7 +93,7 @@ def _caption(found: Verdict, shown: int) -> str:
     """Say what is drawn."""
     parts = []
     if shown < len(found.candidates):
-        parts.append(f"The best {shown} of {count(len(found.candidates))} candidates.")
+        parts.append(f"{shown} of {count(len(found.candidates))} candidates.")
     if found.goal_rises:
         parts.append("Beside each candidate stands what ends it.")
     if found.out_of_reach is not None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -15,7 +14,6 @@ from trackroller.report.figures.loads import forces_against_axial, stress_agains
 from trackroller.report.figures.maps import life_map, regime_map
 from trackroller.report.figures.sn_diagram import sn_diagram
 from trackroller.report.numbers import lives_in_years
-from trackroller.report.words.accuracy import FRICTION_OUTPUTS, friction_error
 from trackroller.results.pareto import given_pareto
 from trackroller.results.ranking import robust_design
 from trackroller.results.results import Results
@@ -24,7 +22,6 @@ OF_CASES = (
     *(model_errors, candidates_side_by_side, by_factor, life_map, stress_against_fit),
     *(sn_diagram, forces_against_axial, regime_map),
 )
-FRICTION_WORDS = ("friction power", "friction work", "friction energy")
 
 
 @lives_in_years
@@ -44,15 +41,8 @@ def draw_all(results: Results, out_dir: Path) -> list[style.FigureInfo]:
         The figures drawn, in the order of the report.
     """
     infos = style.draw_all(_jobs(results), Path(out_dir))
-    if error := friction_error(results):
-        infos = [replace(i, caption=f"{i.caption} {error.text}") if _is_about_friction(i) else i for i in infos]
     style.write_index(infos, Path(out_dir))
     return infos
-
-
-def _is_about_friction(info: style.FigureInfo) -> bool:
-    text = f"{info.name} {info.caption}"
-    return any(name in text for name in (*FRICTION_WORDS, *FRICTION_OUTPUTS))
 
 
 def _jobs(results: Results) -> Iterator[Callable[[], style.Drawn]]:

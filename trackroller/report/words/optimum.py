@@ -42,6 +42,7 @@ from trackroller.results.judging import (
     choices_of,
     ends_of_goal,
     goal_column,
+    goals_of_search,
     judge,
     optimum_of,
     recommended,
@@ -95,8 +96,11 @@ def searched(results: Results) -> list[Sentence]:
 
 
 def _life_error(results: Results, best: dict[str, Any] | None) -> Sentence | None:
-    """State the largest error by the solution of the lives of a design, where it exceeds `LARGE_ERROR`."""
-    if best is None or results.life is None:
+    """State the largest error by the solution of the lives of a design, where it exceeds `LARGE_ERROR`.
+
+    None where a life is a goal: its error was found at `reference`.
+    """
+    if best is None or results.life is None or any(is_life(judged_by(goal)[1]) for goal in goals_of_search(results)):
         return None
     cases, many = Cases(Candidates.grouped(results, results.life)), results.design.meta["inner_samples"]
     own = slice(best["design"] * many, (best["design"] + 1) * many)
@@ -172,9 +176,6 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any],
     values |= {"least": least, "constraints": [str(one) for one in results.config.constraints]}
     values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
     values["goals"] = [" ".join(pair) for pair in zip(words, told, strict=True)]
-    # a range may reach below the certain life of another design
-    both = (ends_of_goal(results, goal) for goal in search["goals"])
-    values["ranged"] = any(e is not None and bool((e[1] > e[0] * (1 + SAME))[best["design"]]) for e in both)
     front = nondominated_ranks(judged.costs, judged.missed) == 0
     values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}
     values["short"] = float(judged.short[best["design"]])
@@ -325,6 +326,8 @@ def optima_table(results: Results) -> Table | None:
     choices = [choices_of(results, one["design"]) for one in shown]
     rows: list[list[Any]] = [[heading(n), *(factor_cell(n, own[n]) for own in choices)] for n in choices[0]]
     for i, (goal, way) in enumerate(search["goals"].items()):
+        if goal in choices[0]:
+            continue
         _, units, words = goal_column(results, goal)
         head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
         for key, mark in (("values", " ↑" if way == "max" else " ↓"), ("reference", ", at reference")):
