@@ -38,7 +38,7 @@ from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
-from trackroller.results.verdict import Candidate
+from trackroller.results.verdict import Candidate, not_checked
 from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.output_names import is_life
 
@@ -99,7 +99,7 @@ def within_words(results: Results) -> str:
     parts = []
     if not set(UNSURE) & set(results.factors) and any(p.low < p.high for p in placeholders_of(results.data)):
         parts.append("placeholders at their values")
-    if "wear" not in (results.verdict.not_checked if results.verdict is not None else ()):
+    if "wear" not in not_checked(results):
         parts.append("the wear life at the mean of its bounds")
     return " and ".join(parts)
 
