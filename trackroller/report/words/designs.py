@@ -24,7 +24,6 @@ from trackroller.report.numbers import (
     long_name,
     part_of,
     percent,
-    plain,
     quantity,
     rounded,
     setting,
@@ -128,17 +127,17 @@ def size_words(results: Results) -> str:
 
 
 def unanswered(candidates: Candidates) -> Sentence:
-    """Say why a study cannot compare designs, and which design of experiments can."""
+    """Say why the designs of a study cannot be compared, and which design of experiments can compare them."""
     labels = candidates.results.labels  # which no distribution can draw
     roles = {name: role for name, role in candidates.results.roles.items() if name not in labels}
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
-    method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
+    factors = candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
     values |= {"weighted": candidates.weighted} | _sharing(candidates)
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     values |= {"cases": len(candidates.results.table), "independent": int((~mixed(candidates.results)).sum())}
-    return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
+    return say("designs", "unanswered", fewest=FEWEST, **values, **named)
 
 
 def _sharing(candidates: Candidates) -> dict[str, int]:
