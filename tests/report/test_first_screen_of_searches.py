@@ -84,7 +84,7 @@ def test_steps_around_a_recommended_design_are_those_of_solved_rollers():
     assert list(table.heads) == [
         "Design",
         "Surely meets the target",
-        "Valid in",
+        "Holds in",
         "Largest contact pressure at the worst condition [MPa]",
         "Life of the pair, shortest [h]",
     ]

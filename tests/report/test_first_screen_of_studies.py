@@ -43,7 +43,7 @@ def test_designs_that_share_their_conditions_are_not_told_to_differ():
         r"The (\d+) designs have (\d) to (\d) conditions each, and at most (\d+) of them share the same", said
     )
     assert [int(text) for text in found.groups()] == [len(rows), sizes[0], sizes[-1], most]
-    assert most < len(rows) and "needs" not in said and "; they are no random sample of the use, so this" in said
+    assert most < len(rows) and "needs" not in said and "; they are no random sample of the use." in said
 
 
 POLYMER = {"roller_material": "POM-C", "guide_material": "C45"}

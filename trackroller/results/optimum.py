@@ -154,8 +154,7 @@ def _evolve(search: _Search, study: Study, tell: Tell) -> tuple[Judged, dict[str
         many = min(budget.generation, budget.designs - len(known.genes))
         drawn = next_generation(genes, known.genes, known.costs, known.missed, many, (study.config.seed, number))
     assert known is not None
-    facts = {"model": study.config.contact_model, "designs": len(known.genes), "generations": number, "stopped": why}
-    return known, facts | {"valid": int((known.violation == 0).sum())}
+    return known, {"model": study.config.contact_model, "designs": len(known.genes), "stopped": why}
 
 
 def _choices(study: Study) -> dict[str, Factor]:
@@ -196,7 +195,6 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     result = facts | {
         "goals": goals_of_search(solved_results(search.ledger(final))),
         "front": len(front),
-        "decided": len(designs.genes),
         "recommended": int(front[chosen]),
         "optima": optima,
         "neighbours": neighbours,

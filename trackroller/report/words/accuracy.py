@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 SLIDING_ERROR = "38 % of mu F_N in friction forces against kalker (median of 492 rollers)"
 SLIDING_WEAR = "41 % in friction energy and wear (median of 92 designs)"
-KNOWN_ERROR = 0.05  # a larger median error of the model is stated beside every use of the quantity
+KNOWN_ERROR = 0.05  # a larger median error of the model is stated
 FRICTION_OUTPUTS = ("friction_power", "friction_energy_per_distance", "friction_energy_balance")
 
 

@@ -24,7 +24,6 @@ from trackroller.report.numbers import (
     long_name,
     part_of,
     percent,
-    plain,
     quantity,
     rounded,
     setting,
@@ -38,7 +37,7 @@ from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.results.results import Results
-from trackroller.results.verdict import Candidate
+from trackroller.results.verdict import Candidate, not_checked
 from trackroller.roller.limit_notes import placeholders_of
 from trackroller.roller.output_names import is_life
 
@@ -99,7 +98,7 @@ def within_words(results: Results) -> str:
     parts = []
     if not set(UNSURE) & set(results.factors) and any(p.low < p.high for p in placeholders_of(results.data)):
         parts.append("placeholders at their values")
-    if "wear" not in (results.verdict.not_checked if results.verdict is not None else ()):
+    if "wear" not in not_checked(results):
         parts.append("the wear life at the mean of its bounds")
     return " and ".join(parts)
 
@@ -128,17 +127,17 @@ def size_words(results: Results) -> str:
 
 
 def unanswered(candidates: Candidates) -> Sentence:
-    """Say why a study cannot compare designs, and which design of experiments can."""
+    """Say why the designs of a study cannot be compared, and which design of experiments can compare them."""
     labels = candidates.results.labels  # which no distribution can draw
     roles = {name: role for name, role in candidates.results.roles.items() if name not in labels}
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
-    method, factors = plain(candidates.results.config.design), candidates.results.study.parsed
+    factors = candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
     values |= {"weighted": candidates.weighted} | _sharing(candidates)
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     values |= {"cases": len(candidates.results.table), "independent": int((~mixed(candidates.results)).sum())}
-    return say("designs", "unanswered", method=method, fewest=FEWEST, **values, **named)
+    return say("designs", "unanswered", fewest=FEWEST, **values, **named)
 
 
 def _sharing(candidates: Candidates) -> dict[str, int]:

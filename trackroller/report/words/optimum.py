@@ -24,7 +24,7 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text
+from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text, within_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import (
     bearing_words,
@@ -337,11 +337,16 @@ def optima_table(results: Results) -> Table | None:
                 numbers = [Life(v, bool(marked[one["design"]])) for v, one in zip(numbers, shown, strict=True)]
             rows.append([f"{head}{mark}", *numbers])
     if any(one["violation"][0] for one in shown):
-        rows.append(["Not valid in", *(percent(one["violation"][0]) for one in shown)])
+        rows.append(["Does not hold in", *(percent(one["violation"][0]) for one in shown)])
     first = "Closest to valid" if least_violation(search) else "Recommended"
     heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
-    note = "Bold: differs from the first design."
+    note = f"{_within(results)} Bold: differs from the first design.".strip()
     return compared("optima", "Optima of the search", heads, rows, note)
+
+
+def _within(results: Results) -> str:
+    """Say where in the ranges of lives the numbers of a table stand; '' without ranges."""
+    return f"Within the ranges: {within_words(results)}." if results.ranged else ""
 
 
 def steps_table(results: Results) -> Table | None:
@@ -368,7 +373,7 @@ def steps_table(results: Results) -> Table | None:
         if required(results) and "short" in near[0]:
             row["Surely meets the target"] = "no" if one["short"] else "yes"
         if not counted:
-            row["Valid in"] = part_of(round((1 - one["violation"]) * many), many)
+            row["Holds in"] = part_of(round((1 - one["violation"]) * many), many)
         for goal, value in zip(search["goals"], one["values"], strict=True):
             _, units, words = goal_column(results, goal)
             head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
@@ -376,4 +381,4 @@ def steps_table(results: Results) -> Table | None:
         if lives and results.life is not None:
             row[with_unit(f"{capital(results.life[1])}, shortest", results.life[2])] = float(one["life"])
         rows.append(row)
-    return Table.of("steps", "Steps around the recommended design", rows)
+    return Table.of("steps", "Steps around the recommended design", rows, _within(results))
