@@ -46,7 +46,7 @@ def test_tables_count_what_the_verdict_counts(grid):
         assert rows["Meets the targets in"][place].removesuffix(" (open)") == f"{met[mine].sum()} of 9"
     assert tables["targets"].rows[0][-1] == f"{100 * met.mean():.0f} %"
     text = next(one.text for one in dict(page["summary"])["Where it ends"] if one.kind == "valid")
-    assert f"{(rolls & ~held).sum()} of" in text
+    assert f", {(rolls & ~held).sum()} exceed" in text
     for one in grid.verdict.candidates:
         assert one.met == met[radius == one.choices["roller_profile_radius"]].sum()
 

@@ -66,8 +66,8 @@ def _front(results: Results, verdict: list[Sentence]) -> Sentence | None:
     front = given_pareto(results)
     if front is None or {"requirement", "tradeoff"} & {one.kind for one in verdict}:
         return None
-    told = results.config.method.proposes and len(goals_of(front)) == 1
-    return None if told else pareto_sentence(front, results)
+    several = min(len(goals_of(front)), int(front["optimal"].sum())) > 1  # one design is the verdict of a search
+    return pareto_sentence(front, results) if several or not results.config.method.proposes else None
 
 
 def _within(results: Results, told: list[Sentence]) -> Sentence | None:

@@ -86,7 +86,7 @@ def pareto_table(front: xr.Dataset, results: Results, error: Sentence | None) ->
     """List Pareto-optimal designs along the first goal, with a column that says which lie outside the model."""
     goals = goals_of(front)
     best = np.flatnonzero(front["optimal"].values == 1)
-    if not len(best) or min(len(goals), front.sizes["row"]) < 2:
+    if min(len(goals), len(best)) < 2:
         return None
     first, way = goals[0]
     best = best[np.argsort(front[first].values[best] * (-1 if way == "max" else 1), kind="stable")]
