@@ -511,9 +511,13 @@ class Results:
         texts = self.config.constraints
         if not texts:
             return None
-        values = {name: self.quantity(name)[0] for name in sorted({name for text in texts for name in names_in(text)})}
+        values = {name: self.constrained(name) for name in sorted({name for text in texts for name in names_in(text)})}
         rows = int(np.prod([self.data.sizes[d] for d in self.dims]))
         return np.asarray(np.all(list(meeting(texts, values, rows).values()), axis=0))
+
+    def constrained(self, name: str) -> np.ndarray:
+        """Return the values of a quantity that a constraint compares, shape (n,): of a life in a range the low end."""
+        return self.quantity(name)[0] if name != FIRST_LIMIT[0] or name not in self.data else self.sure_life
 
     @cached_property
     def counted(self) -> np.ndarray:
@@ -583,13 +587,18 @@ class Results:
         another limit comes first. Other targets are judged by the result that they name, and so are all of a study
         without the life to the first limit.
         """
-        name = FIRST_LIMIT[0]
         if self.life != FIRST_LIMIT:
             return {}
+        named = [n for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}]
+        return dict.fromkeys(named, self.sure_life)
+
+    @cached_property
+    def sure_life(self) -> np.ndarray:
+        """Return the low end of the life to the first limit, shape (n,) [h]; the life itself where it has no range."""
+        name = FIRST_LIMIT[0]
         value = self.column(name)
         low = self.quantity(f"{name}_low")[0].astype(float) if f"{name}_low" in self.data else value
-        judged = np.where(np.isnan(low), value, low)
-        return {n: judged for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}}
+        return np.where(np.isnan(low), value, low)
 
     def ended_by_fatigue(self, body: str = "roller") -> np.ndarray:
         """Return the cases in which fatigue is the first limit of a body, shape (n,), so that its material scatters."""

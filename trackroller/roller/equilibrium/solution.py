@@ -178,7 +178,7 @@ def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, n
         return bounds, beyond & ~unsure, unsure
     # a locked roller has the complete friction along the track and no other, as in full slip
     complete = roller.friction * np.sum(roller.without_friction(), axis=0)
-    beyond = roller.motor_force > COMPLETE * complete
+    beyond = np.abs(roller.motor_force) > COMPLETE * complete
     # a law by interpolation or by elements reaches the complete friction within its error only
     locks = np.flatnonzero(~beyond & (roller.motor_force > NEARLY * complete))
     if locks.size:
@@ -186,7 +186,7 @@ def _transmissible(roller: Roller, whole: Bounds) -> tuple[Bounds, np.ndarray, n
         beyond[locks] = brakes.torque(_forces_at(brakes, whole.high[locks])) > 0
     # a roller that spins without travel has nearly the complete friction along the track, unless its patch is large
     sure = (-roller.motor_force < SURELY * complete) & (roller.slip_scale < SMALL_PATCH * roller.radius)
-    drives = np.flatnonzero((roller.motor_force < 0) & ~sure)
+    drives = np.flatnonzero((roller.motor_force < 0) & ~sure & ~beyond)
     if drives.size:
         spins = Roller(roller.loads, roller.law, roller.rows[drives])
         torque = spins.torque(_forces_at(spins, whole.low[drives]))

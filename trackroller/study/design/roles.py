@@ -15,6 +15,9 @@ from trackroller.parameters import ROLE_OF, ROLES, expressions
 from trackroller.study.design.entries import OPTION_FACTORS, choice
 
 
+BELLS = (*UNBOUNDED, "truncnormal", "triangular")
+
+
 def check_words(value: Any) -> Any:
     """Check the key `roles` of a study file: factors, each with `choice` or `condition`."""
     return collected(value, lambda name, role: choice(role, f"roles.{name}", ROLES))
@@ -54,11 +57,10 @@ def check_roles(given: Mapping[str, str], factors: Mapping[str, Any], design: st
 def scattered(factors: Mapping[str, Factor], given: Mapping[str, str]) -> tuple[str, ...]:
     """Return the factors of a search for designs that vary as conditions; the others are its choices.
 
-    A bell-shaped distribution states scatter. Ranges and lists are conditions by their role, see `roles_of`.
+    Factors with a bell-shaped distribution are among them whatever role is given: nobody chooses such a value.
     """
     roles = roles_of(factors, factors, given)
-    bells = (*UNBOUNDED, "truncnormal", "triangular")
-    return tuple(n for n, f in factors.items() if f.varies and (f.kind in bells or roles.get(n) == "condition"))
+    return tuple(n for n, f in factors.items() if f.varies and (f.kind in BELLS or roles.get(n) == "condition"))
 
 
 def roles_of(
@@ -75,7 +77,7 @@ def roles_of(
 
     Returns
     -------
-    Name -> `choice` or `condition`. A factor of the study's own, such as a ratio, has the role of the parameter that is
+    Name -> `choice` or `condition`. A bell-shaped distribution states scatter: a condition. A factor of the study's own, such as a ratio, has the role of the parameter that is
     computed from it, and is a choice if several are and one of them is a choice.
     """
     fed: dict[str, list[str]] = {}
@@ -89,6 +91,8 @@ def roles_of(
         known = factors.get(name)
         if design and METHODS[design].points and known is not None and known.kind != "expression":
             return "condition" if known.scatter else "choice"
+        if known is not None and known.kind in BELLS:
+            return "condition"
         if name in ROLE_OF:
             return ROLE_OF[name]
         return "condition" if name in fed and all(role(other) == "condition" for other in fed[name]) else "choice"
