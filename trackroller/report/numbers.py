@@ -202,14 +202,28 @@ def plus_minus(value: float, low: float, high: float) -> str:
     return f"{value:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
 
 
+LOPSIDED = 0.5  # share of the half of an interval that its shorter side must have to be written as ±
+
+
 def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
-    """Write a share of variance or a probability as '61 ± 3 %', or '61 %' without an interval; never below 0."""
+    """Write a share of variance or a probability as '61 ± 3 %', or '61 %' without an interval; never below 0.
+
+    An interval that reaches much farther on one side is written with its ends: '100 % (98.2 to 100 %)'.
+    """
     if math.isinf(value):
         return "unlimited"
     exact, half = 100 * max(0.0, value), 50 * (high - low)
+    if math.isfinite(half) and min(value - low, high - value) < LOPSIDED * half / 50:
+        return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
     if math.isfinite(half):
         return f"{exact:.0f} ± {max(1.0, half):.0f} %" if half >= 0.5 or exact >= 1 else f"{exact:.1f} ± {half:.1f} %"
-    return f"{exact:.0f} %" if exact == 0 or 1 <= exact <= 99 else f"{exact:.2g} %" if exact < 1 else f"{exact:.4g} %"
+    return (
+        f"{exact:.0f} %"
+        if exact == 0 or 1 <= exact <= 99 or exact > 100
+        else f"{exact:.2g} %"
+        if exact < 1
+        else f"{exact:.4g} %"
+    )
 
 
 def at_most(error: float) -> str:

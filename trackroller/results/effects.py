@@ -34,7 +34,7 @@ class Effect:
     ----------
     low, high : the two levels
     ratio : median of the ratios of pairs, or the fitted ratio [1]
-    interval : 95 % interval of a fitted ratio, NaN for pairs
+    interval : 95 % interval of a fitted ratio; of pairs the smallest and the largest ratio
     size : number of pairs, or of fitted cases
     rising, falling : pairs in which the output rises and falls (of pairs)
     """
@@ -121,7 +121,8 @@ def _steps(matrix: np.ndarray, i: int, j: int) -> np.ndarray:
 
 def _of_steps(factor: str, low: Any, high: Any, steps: np.ndarray) -> Effect:
     rising, falling = int((steps > 0).sum()), int((steps < 0).sum())
-    return Effect(factor, low, high, float(10 ** np.median(steps)), (np.nan, np.nan), steps.size, rising, falling)
+    ends = (float(10 ** steps.min()), float(10 ** steps.max()))
+    return Effect(factor, low, high, float(10 ** np.median(steps)), ends, steps.size, rising, falling)
 
 
 def fitted_effects(results: Results, column: str, rows: np.ndarray) -> tuple[float, list[Effect]]:

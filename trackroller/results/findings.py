@@ -300,13 +300,12 @@ def strongest_effects(results: Results, column: str) -> list[Finding]:
     """
     found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
 
-    def size(one: Finding) -> tuple[bool, bool, float]:
-        effect = one.values["effect"]
-        return one.kind == "pairs_both", effect.factor == "velocity", -abs(float(np.log(effect.ratio)))
+    def size(one: Finding) -> tuple[bool, float]:
+        return one.kind == "pairs_both", -abs(float(np.log(one.values["effect"].ratio)))
 
     def place(one: Finding) -> tuple[bool, bool, bool, float]:
-        turning, speed, fold = size(one)
-        return turning, speed, results.roles.get(one.values["effect"].factor) != "choice", fold
+        name = one.values["effect"].factor
+        return size(one)[0], name == "velocity", results.roles.get(name) != "choice", size(one)[1]
 
     return sorted(sorted(found, key=size)[:MOST_EFFECTS], key=place)
 
@@ -406,7 +405,8 @@ def ends(results: Results) -> list[Finding]:
     """Return a finding for each regime other than rolling that occurs: how often, and at which levels."""
     found = [slip_law(results) or regime_of(results, REGIMES.index("full_slip"))]
     found += [regime_of(results, REGIMES.index(name)) for name in ("lift_off", "failed")]
-    found += [occurrence(results, results.valid & rows, name) for name, rows in results.limits_in("exceeded").items()]
+    valid = results.valid
+    found += [occurrence(results, rows, name, valid) for name, rows in results.limits_in("exceeded").items()]
     return [one for one in found if one is not None]
 
 
@@ -433,7 +433,7 @@ def slip_law(results: Results) -> Finding | None:
     return finding(results, "slip_law", "all", looked, what="full_slip", **values)
 
 
-def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None:
+def occurrence(results: Results, event: np.ndarray, what: str, among: np.ndarray | None = None) -> Finding | None:
     """Say how often an event occurs and at which levels of the factors.
 
     That it occurs only at some levels is said of a grid, in which every combination was tried, and of a sample if one
@@ -443,19 +443,21 @@ def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None
     ----------
     event : whether it occurs, shape (n,) bool
     what : name of the event
+    among : the valid cases, shape (n,) bool, for an event that is known of these only; default: all cases
 
     Returns
     -------
     Finding or None
         None if the event never occurs.
     """
-    looked = of_one_model(results, np.ones(len(event), dtype=bool))
+    looked = of_one_model(results, np.ones(len(event), dtype=bool) if among is None else among)
+    kept = "all" if among is None else "valid"
     hit, whole, cases = event & looked, int(looked.sum()), int((event & looked).sum())
     if not cases:
         return None
     values: dict[str, Any] = {"what": what, "count": cases, "of": whole}
     if cases == whole:
-        return finding(results, "everywhere", "all", looked, **values)
+        return finding(results, "everywhere", kept, looked, **values)
     only = [(name, levels, meets(results, name, levels) & looked) for name, levels in confining(results, hit, looked)]
     # a sample carries no more than a law: one factor decides each of its cases
     only = only if results.grid else [one for one in only if cases >= FEW and (one[2] == hit).all()][:1]
@@ -463,20 +465,20 @@ def occurrence(results: Results, event: np.ndarray, what: str) -> Finding | None
     exact = int(inside.sum()) == cases and all(isinstance(levels, list) for _, levels, _ in only)
     products = [] if only and exact else crossed(results, hit, looked)
     if products:
-        return finding(results, "crossed", "all", looked, **values, products=products)
+        return finding(results, "crossed", kept, looked, **values, products=products)
     if not exact and len(only) > 1 and not _alike(results, hit, inside, [name for name, _, _ in only]):
         only, inside = only[:1], only[0][2]
     # few events may share levels by chance, unless all cases at these levels have the event
     if only and (cases >= FEW or exact):
         conditions = [(name, levels) for name, levels, _ in only]
-        return finding(results, "only", "all", looked, **values, conditions=conditions, inside=int(inside.sum()))
+        return finding(results, "only", kept, looked, **values, conditions=conditions, inside=int(inside.sum()))
     if cases < FEW:
-        return finding(results, "cases", "all", looked, **values)
+        return finding(results, "cases", kept, looked, **values)
     most = most_frequent(results, hit, looked)
     if most is None:
-        return finding(results, "share", "all", looked, **values)
+        return finding(results, "share", kept, looked, **values)
     return finding(
-        results, "frequent", "all", looked, **values, **dict(zip(("factor", "most", "least"), most, strict=True))
+        results, "frequent", kept, looked, **values, **dict(zip(("factor", "most", "least"), most, strict=True))
     )
 
 
@@ -551,6 +553,8 @@ def most_frequent(
         if len(cells) < 2:
             continue
         high, low = max(cells, key=lambda c: c[1] / c[2]), min(cells, key=lambda c: c[1] / c[2])
+        if sum(c[1] * high[2] == high[1] * c[2] for c in cells) > 1:  # of ties none has the most
+            continue
         gap = high[1] / high[2] - low[1] / low[2]
         noise = 3 * np.sqrt(sum(k * (n - k) / n**3 for _, k, n in (high, low)))
         larger = gap > max(noise, 0.1) and (best is None or gap > best[0])

@@ -14,6 +14,7 @@ from trackroller.methods.factor import readable
 from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
 from trackroller.parameters.of_carriage import parameter_of
 from trackroller.results.candidates import Candidates
+from trackroller.results.columns import codes
 from trackroller.results.constraints import Column, meeting
 from trackroller.results.judging import SAFE_B10, beyond_data, goal_column, goals_of_search, judge
 from trackroller.results.results import Results
@@ -323,6 +324,8 @@ def pareto_of_search(results: Results) -> xr.Dataset:
     least = judged.violation.min()
     missed = judged.missed if (judged.missed == 0).any() else judged.violation
     kept = np.flatnonzero((missed == least) & (least < 1))
+    own = codes(results.table.iloc[kept * design.meta["inner_samples"]], design.meta["outer"])
+    kept = kept[np.unique(own, return_index=True)[1]]  # a design that was solved twice counts once
     first = kept * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}

@@ -70,7 +70,7 @@ def by_factor(results: Results) -> style.Drawn:
         legend(figure, [(text, look) for (text, _), look in zip(levels, looks, strict=True)])
     own = f" of {results.held_level('contact_model')}" if "contact_model" in results.factors else ""
     caption = (
-        f"{capital(words)} of the {rows.sum():,} valid cases{own} along each factor, all other factors as they vary. "
+        f"{capital(words)} of valid cases{own} along the factors, all other factors as they vary. "
         f"Lines: medians{' of each colour' * apart}; bands: the middle half of the cases."
     )
     return figure, style.FigureInfo(f"bands-{column}", caption)

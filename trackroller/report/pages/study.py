@@ -15,7 +15,17 @@ from trackroller.methods import METHODS
 from trackroller.parameters.example import not_given_text, used_of
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
-from trackroller.report.numbers import at_most, capital, count, lives_in_years, long_name, part_of, plain, rounded
+from trackroller.report.numbers import (
+    at_most,
+    capital,
+    count,
+    lives_in_years,
+    long_name,
+    part_of,
+    percent,
+    plain,
+    rounded,
+)
 from trackroller.report.tables import inputs
 from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.accuracy import friction_error
@@ -120,7 +130,8 @@ def contents(results: Results) -> dict[str, Any]:
     merged = {name: settings[name] for name in OPTIONS if name in settings} | attrs
     models = report_section(results)
     told = [name for name in OPTIONS if name != "not_checked"]  # the verdict names all limits that were not checked
-    options = [inputs.Row(capital(long_name(k)), text) for k in told if (text := _option_text(merged.get(k, "")))]
+    own = {k: _option_text(_levels(results, k, merged.get(k, ""))) for k in told}
+    options = [inputs.Row(capital(long_name(k)), text) for k, text in own.items() if text]
     return {
         "name": settings["name"],
         "description": settings["description"] or attrs.get("comment", ""),
@@ -200,7 +211,8 @@ def _facts(results: Results, merged: dict[str, Any]) -> str:
             for name in ("contact_model", "accuracy")
         ),
     ]
-    return " · ".join(filter(None, parts))
+    chance = results.config.failure_probability
+    return " · ".join(filter(None, [*parts, f"lives at {percent(chance)} failures" * (chance != 0.5)]))
 
 
 def _levels(results: Results, name: str, value: Any) -> Any:

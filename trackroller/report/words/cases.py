@@ -62,7 +62,7 @@ def event_words(results: Results, finding: Finding) -> Sentence:
             (one.count, one.of, " with ".join(_levels_words(results, *item) for item in one.levels.items()))
             for one in values["products"]
         ]
-    return say("cases", finding.kind, **values)
+    return say("cases", finding.kind, **values, among=finding.among)
 
 
 def _levels_words(results: Results, name: str, levels: Any) -> str:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
 from collections.abc import Mapping
 from typing import Any
 
@@ -32,7 +31,6 @@ from trackroller.report.numbers import (
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, UNRANKED, Candidates, mixed
-from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
@@ -134,18 +132,10 @@ def unanswered(candidates: Candidates) -> Sentence:
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     factors = candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
-    values |= {"weighted": candidates.weighted} | _sharing(candidates)
+    values["weighted"] = candidates.weighted
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     values |= {"cases": len(candidates.results.table), "independent": int((~mixed(candidates.results)).sum())}
     return say("designs", "unanswered", fewest=FEWEST, **values, **named)
-
-
-def _sharing(candidates: Candidates) -> dict[str, int]:
-    """Return how many designs at most have the same conditions, and how many conditions these are."""
-    use, place = codes(candidates.results.table, candidates.conditions), candidates.place
-    own = [frozenset(use[place == i].tolist()) for i in range(len(candidates.size))]
-    same, alike = max(Counter(own).items(), key=lambda found: (found[1], len(found[0])))
-    return {"alike": alike, "common": len(same)}
 
 
 def best_table(results: Results) -> Table | None:
@@ -195,7 +185,7 @@ def best_table(results: Results) -> Table | None:
     }
     facts["mixed"] = bool(candidates.conditions) and bool(mixed(results).any())
     facts["scattered"] = candidates.drawn and Cases(candidates).scatter is not None
-    facts["hopeless"] = not candidates.reached.all()
+    facts["hopeless"] = results.verdict is not None and results.verdict.out_of_reach is not None
     facts["open"] = any("(open)" in str(cell) for cell in rows[-1])
     note = phrase("designs", "note", model=model, **facts)
     return compared("candidates", title, heads if candidates.choices else ["All conditions"], rows, note)

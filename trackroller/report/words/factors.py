@@ -12,6 +12,7 @@ from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import NAMED
 
+SPREAD = 2.0  # ratio of the largest to the smallest effect of pairs from which on both are told
 WIDE = 1.1  # an end of an interval so many times as large as the fitted ratio is told
 Strata = list[tuple[str, Any, Effect]]  # category, its level, and the effect within this level
 
@@ -83,4 +84,6 @@ def _of_pairs(results: Results, finding: Finding) -> dict[str, Any]:
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that {follow} from it" if changed else ""
     medians = _within(values["apart"], values["column"])
-    return {"pairs": pairs, "medians": medians}
+    ends = sorted(max(r, 1 / r) for r in values["effect"].interval)
+    wide = [times(end) for end in ends] if not medians and ends[1] > SPREAD * ends[0] else []
+    return {"pairs": pairs, "medians": medians, "wide": wide}

@@ -81,7 +81,7 @@ def optimum_sentences(results: Results) -> list[Sentence]:
         ]
         said.append(_guessed(results, search, best))
         said.append(bearing_words(results, _limits(results, search, best)))
-    said.append(_unchecked(results, search))
+    said.append(_unchecked(results))
     return [sentence for sentence in said if sentence is not None]
 
 
@@ -165,9 +165,11 @@ def _interval(results: Results, goal: str, number: int) -> str:
 def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any], judged: Judged) -> Sentence:
     words = [goal_column(results, goal)[2] for goal in search["goals"]]
     told = goal_values(results, search, best)
-    values = {"design": design_words(results, best["design"]), "front": search["front"]}
+    found = results.pareto()  # counts a design that was solved twice once
+    assert found is not None  # a search has goals
+    values: dict[str, Any] = {"design": design_words(results, best["design"]), "front": int(found["optimal"].sum())}
     alike, least = all(one["values"] == best["values"] for one in search["optima"]), least_violation(search)
-    several = len(search["goals"]) > 1 and search["front"] > 1 and not alike
+    several = len(search["goals"]) > 1 and values["front"] > 1 and not alike
     named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
     if several and not least and not (required(results) or bounded):  # the goals alone do not choose
@@ -207,22 +209,23 @@ def _turns(results: Results, search: dict[str, Any], best: dict[str, Any], judge
     return [turn_words(turn, targets_in_words(results)) for turn in _open_values(results, search, best)]
 
 
-def _first_life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> tuple[Cases, int] | None:
-    """Return the cases of a search, and the case on which the life of a design rests; None without one.
+def _first_life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> tuple[Cases, int, int] | None:
+    """Return the cases of a search, and those on which both ends of the life of a design rest; None without one.
 
-    It is the case of the life that is a goal, otherwise the one with the shortest life.
+    It is the case of the life that is a goal, otherwise those with the smallest low end and the smallest high end.
     """
     if results.life is None:
         return None
     many, column = results.design.meta["inner_samples"], results.life[0]
     own = slice(best["design"] * many, (best["design"] + 1) * many)
-    lives = np.where(results.held, results.column(column), np.inf)[own]
+    cases, held = Cases(Candidates.grouped(results, results.life)), results.held[own]
+    lives = [np.where(held, end[own], np.inf) for end in cases.ends]
     for goal, value in zip(search["goals"], best["values"], strict=True):
         kind, output = judged_by(goal)
         if output == column and kind in ("worst", "b10") and value > 0:
-            lives = np.abs(lives - value)
-    case = own.start + int(np.argmin(lives))
-    return (Cases(Candidates.grouped(results, results.life)), case) if np.isfinite(lives).any() else None
+            lives = 2 * [np.abs(np.where(held, results.column(column)[own], np.inf) - value)]
+    low, high = (own.start + int(np.argmin(end)) for end in lives)
+    return (cases, low, high) if held.any() else None
 
 
 def _life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> str:
@@ -230,9 +233,9 @@ def _life(results: Results, search: dict[str, Any], best: dict[str, Any]) -> str
     found, goal = _first_life(results, search, best), results.life
     if found is None or goal is None or goal[2] != "h" or any(is_life(judged_by(one)[1]) for one in search["goals"]):
         return ""
-    cases, case = found
-    beyond = BEYOND * bool((cases.beyond | cases.beyond_at_high)[case])
-    return ends_text(float(cases.ends[0][case]), float(cases.ends[1][case]), beyond, "h")
+    cases, low, high = found
+    beyond = BEYOND * bool(cases.beyond[low] or cases.beyond_at_high[high])
+    return ends_text(float(cases.ends[0][low]), float(cases.ends[1][high]), beyond, "h")
 
 
 def _limits(results: Results, search: dict[str, Any], best: dict[str, Any]) -> list[str]:
@@ -240,16 +243,16 @@ def _limits(results: Results, search: dict[str, Any], best: dict[str, Any]) -> l
     found = _first_life(results, search, best)
     if found is None:
         return []
-    cases, case = found
-    return list(dict.fromkeys(ended_by(str(name)) for name in (cases.low_end[0][case], cases.high_end[case]) if name))
+    cases, low, high = found
+    return list(dict.fromkeys(ended_by(str(name)) for name in (cases.low_end[0][low], cases.high_end[high]) if name))
 
 
 def _guessed(results: Results, search: dict[str, Any], best: dict[str, Any]) -> Sentence | None:
     """Say that fatigue ends the recommended design by an S-N line that rests on guesses."""
     found = _first_life(results, search, best)
-    if found is None or "fatigue" not in (found[0].low_end[0][found[1]], found[0].high_end[found[1]]):
+    if found is None or "fatigue" not in (found[0].low_end[0][found[1]], found[0].high_end[found[2]]):
         return None
-    cases, case = found
+    cases, case, _ = found
     material = str(results.material("guide" if cases.low_end[1][case] else "roller")[case])
     return say("verdict", "guessed", material=material) if material in guessed_lines(results.data) else None
 
@@ -273,10 +276,9 @@ def _edges(results: Results, number: int) -> list[str]:
     return found
 
 
-def _unchecked(results: Results, search: dict[str, Any]) -> Sentence | None:
-    """Name the limits that the search did not check, where a goal or the target is a life."""
-    asked = [*(judged_by(goal)[1] for goal in search["goals"]), *results.config.analysis.target]
-    if not any(map(is_life, asked)):
+def _unchecked(results: Results) -> Sentence | None:
+    """Name the limits that a search with lives did not check."""
+    if results.life is None:
         return None
     left_out = not_checked(results)
     names, vain = unchecked_words(results, left_out), vain_in_base(results, left_out)
@@ -379,6 +381,8 @@ def steps_table(results: Results) -> Table | None:
             head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
             row[head] = percent(value) if judged_by(goal)[0] == "probability" else float(value)
         if lives and results.life is not None:
-            row[with_unit(f"{capital(results.life[1])}, shortest", results.life[2])] = float(one["life"])
+            row[with_unit(f"{capital(results.life[1])}, shortest", results.life[2])] = (
+                np.nan if one["violation"] else float(one["life"])
+            )
         rows.append(row)
     return Table.of("steps", "Steps around the recommended design", rows, _within(results))

@@ -114,6 +114,8 @@ def target_tables(table: xr.Dataset, results: Results) -> list[Table]:
     said = ["A case that does not hold, or has no value, misses every target."]
     if results.ranged and results.judged_targets:
         said.append("A life that is a range counts by its low end.")
+    if (results.valid & results.any_limit_in("open")).any():
+        said.append("A limit that a placeholder leaves open counts as kept.")
     if float(table.attrs.get("log_life_scatter", 0.0)) > 0:
         said.append("Lives hold the material's own scatter.")
     said += filter(None, (_by_tests(table, t) for t in targets))

@@ -196,7 +196,8 @@ class _Words:
         }
         limit, guide = ends.pop() if len(ends) == 1 else ("", False)
         values = {"limit": ended_by(limit), "body": BODIES[guide], "cases": int(rows.sum()), "of": int(own.sum())}
-        values["beyond"] = BEYOND * bool((cases.beyond | cases.beyond_at_high)[rows].any())
+        beyond = (cases.beyond | cases.beyond_at_high)[rows]
+        values["beyond"] = ("partly " * (not beyond.all()) + BEYOND) * bool(beyond.any())
         values["ranged"] = bool((high > low * (1 + SAME)).any())
         values["lives"] = ends_text(float(low.min()), float(high.max()), "", self.found.goal[2])
         values["model"] = self.results.held_level("contact_model") if "contact_model" in self.results.factors else ""
@@ -292,6 +293,8 @@ class _Words:
         values |= {"where": _levels(fails), "why": self.causes(fails), "limits": limits, "life": life}
         values |= {"not_given": _values(fails.not_given), "rollers": self.failing(one)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
+        every = found.out_of_reach  # of conditions that the nearest design misses, all are hopeless if as many are
+        values["every"] = every is not None and len(found.candidates) > 1 and every.count == fails.count
         values |= {"scattered": self.scattered, "alone": one.conditions == 1}
         values["ranged"] = bool(found.target) and one.high > one.low * (1 + SAME)
         return say("verdict", "nearest", **values, sampled=found.sampled)
@@ -300,8 +303,9 @@ class _Words:
         """Name the rollers of a carriage that keep a candidate from holding, with their load cases; some at most."""
         cases = Cases(self.candidates)
         good = cases.on_target(scattered=False)[1] if self.found.target else cases.reason == ""
-        rows = (self.candidates.design == one.number) & ~good
-        named = list(dict.fromkeys(roller_words(self.results, int(row)) for row in np.flatnonzero(rows)))
+        rows = np.flatnonzero((self.candidates.design == one.number) & ~good)
+        rows = np.array([one.case]) if one.low > 0 and one.case >= 0 else rows  # a life is told beside: that of one row
+        named = list(dict.fromkeys(roller_words(self.results, int(row)) for row in rows))
         return named if all(named) and len(named) <= MOST else []
 
     def nowhere(self) -> Sentence:
@@ -597,6 +601,8 @@ def what_words(turn: Turn) -> str:
         return f"the {long_name(turn.what)}"
     if turn.what in ("placeholder_position", "placeholder"):
         return f"the placeholders of {turn.of}"
+    if " or " in turn.what:
+        return f"what an open limit rests on, the {plain(turn.what)} of {turn.of}"
     return f"the {plain(turn.what)} of {turn.of}" + f" on {'itself' if turn.on == turn.of else turn.on}" * bool(turn.on)
 
 

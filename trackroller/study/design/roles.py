@@ -14,7 +14,6 @@ from trackroller.methods.factor import UNBOUNDED, Factor
 from trackroller.parameters import ROLE_OF, ROLES, expressions
 from trackroller.study.design.entries import OPTION_FACTORS, choice
 
-
 BELLS = (*UNBOUNDED, "truncnormal", "triangular")
 
 
@@ -77,8 +76,9 @@ def roles_of(
 
     Returns
     -------
-    Name -> `choice` or `condition`. A bell-shaped distribution states scatter: a condition. A factor of the study's own, such as a ratio, has the role of the parameter that is
-    computed from it, and is a choice if several are and one of them is a choice.
+    Name -> `choice` or `condition`. A bell-shaped distribution states scatter: a condition. A factor of the study's
+    own, such as a ratio, has the role of the parameter that is computed from it, and is a choice if several are and one
+    of them is a choice.
     """
     fed: dict[str, list[str]] = {}
     for other, factor in factors.items():
