@@ -185,7 +185,7 @@ def test_a_difference_between_levels_is_named_above_noise_and_a_tenth(rows, low,
     assert (said.values["count"], said.values["of"]) == (hit.sum(), rows)
     if named:
         wanted = [f"contact angle {a}° ({hit[angle == a].sum():,} of {half:,} cases)" for a in (40, 30)]
-        assert f"most often at {wanted[0]} and least at {wanted[1]}." in said.text
+        assert f"most often at {wanted[0]}." in said.text
 
 
 @pytest.mark.parametrize("count", [2, 254, 255, 256, 65_534, 65_535, 65_536])

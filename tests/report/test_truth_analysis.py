@@ -59,12 +59,17 @@ def analysis(rng, method):
 
 
 def agrees(text, value, low, high, unit):
-    """Return whether '61 ± 3 %' is the value and half its 95 % interval."""
+    """Return whether '61 ± 3 %' is the value and half its 95 % interval, or '99 % (90 to 100 %)' both ends of it."""
     found = re.match(r"(−?[\d.,]+)(?: ± ([\d.]+))?", text)
     told = float(found[1].replace(",", "").replace("−", "-"))
     digits = len(found[1].partition(".")[2])
     assert told == pytest.approx(unit * max(value, 0), abs=0.51 * 10.0**-digits, rel=0.006)
-    if np.isfinite(high - low):
+    lopsided = re.match(r"[\d.,]+ % \(([\d.,]+) to ([\d.,]+) %\)", text)
+    if lopsided:  # an end near the value: both ends are told
+        assert min(value - low, high - value) < 0.16 * (high - low)
+        for text, end in zip(lopsided.groups(), (low, high), strict=True):
+            assert float(text.replace(",", "")) == pytest.approx(unit * max(end, 0), abs=0.51, rel=0.006)
+    elif np.isfinite(high - low):
         half = unit * (high - low) / 2
         assert float(found[2]) == pytest.approx(
             half, abs=0.51 * 10.0 ** -len(found[2].partition(".")[2]), rel=0.06

@@ -35,4 +35,4 @@ def test_words_stand_in_one_line_with_the_numbers_as_claims():
 
 def test_a_number_that_is_missing_is_an_error():
     with pytest.raises(jinja2.UndefinedError, match="'what' is undefined"):
-        phrase("indices", "morris", bent=[], straight=["speed"])
+        phrase("indices", "interaction", names=["speed"])

@@ -202,7 +202,7 @@ def plus_minus(value: float, low: float, high: float) -> str:
     return f"{value:.{digits}f} ± {half:.{digits}f}".replace("-", "−")
 
 
-LOPSIDED = 0.5  # share of the half of an interval that its shorter side must have to be written as ±
+LOPSIDED = 0.3  # share of the half of an interval that its shorter side must have to be written as ±
 
 
 def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
@@ -213,7 +213,7 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     if math.isinf(value):
         return "unlimited"
     exact, half = 100 * max(0.0, value), 50 * (high - low)
-    if math.isfinite(half) and min(value - low, high - value) < LOPSIDED * half / 50:
+    if math.isfinite(half) and min(value - low, high - value) < LOPSIDED * half / 100:
         return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
     if math.isfinite(half):
         return f"{exact:.0f} ± {max(1.0, half):.0f} %" if half >= 0.5 or exact >= 1 else f"{exact:.1f} ± {half:.1f} %"

@@ -132,7 +132,7 @@ def unanswered(candidates: Candidates) -> Sentence:
     values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
     factors = candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
-    values["weighted"] = candidates.weighted
+    values |= {"weighted": candidates.weighted, "matched": candidates.matched}
     values["observed"] = candidates.results.config.method.observed and values["most"] > 1
     values |= {"cases": len(candidates.results.table), "independent": int((~mixed(candidates.results)).sum())}
     return say("designs", "unanswered", fewest=FEWEST, **values, **named)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+
 from trackroller.report.numbers import BEYOND, capital, count, level_text, listing, long_name, rounded, setting, times
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.effects import Effect
@@ -84,6 +86,7 @@ def _of_pairs(results: Results, finding: Finding) -> dict[str, Any]:
     pairs = f"{count(values['effect'].size)} pairs of valid cases that differ in nothing else"
     pairs += f" than the {listing(changed)} that {follow} from it" if changed else ""
     medians = _within(values["apart"], values["column"])
-    ends = sorted(max(r, 1 / r) for r in values["effect"].interval)
-    wide = [times(end) for end in ends] if not medians and ends[1] > SPREAD * ends[0] else []
+    ends = sorted(max(r, 1 / r) for r in values["effect"].interval if 0 < r < np.inf)
+    told = len(ends) == 2 and not medians and ends[1] > SPREAD * ends[0]
+    wide = [times(end) for end in ends] if told else []
     return {"pairs": pairs, "medians": medians, "wide": wide}

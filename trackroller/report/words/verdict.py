@@ -291,7 +291,9 @@ class _Words:
         limits = [ended_by(word) for word in fails.reasons if word in LIMITS]
         life = (self.untried_life(one, alone=False) or self.span(one)) if one.low > 0 else ""
         values |= {"where": _levels(fails), "why": self.causes(fails), "limits": limits, "life": life}
-        values |= {"not_given": _values(fails.not_given), "rollers": self.failing(one)}
+        ended = one.low > 0 and one.case >= 0 and not values["why"]  # its life is told: that of one roller
+        of_life = list(filter(None, [roller_words(self.results, one.case)])) if ended else []
+        values |= {"not_given": _values(fails.not_given), "rollers": of_life or self.failing(one)}
         values |= {"many": len(found.candidates), "worst": self.where(one)}
         every = found.out_of_reach  # of conditions that the nearest design misses, all are hopeless if as many are
         values["every"] = every is not None and len(found.candidates) > 1 and every.count == fails.count
@@ -304,7 +306,6 @@ class _Words:
         cases = Cases(self.candidates)
         good = cases.on_target(scattered=False)[1] if self.found.target else cases.reason == ""
         rows = np.flatnonzero((self.candidates.design == one.number) & ~good)
-        rows = np.array([one.case]) if one.low > 0 and one.case >= 0 else rows  # a life is told beside: that of one row
         named = list(dict.fromkeys(roller_words(self.results, int(row)) for row in rows))
         return named if all(named) and len(named) <= MOST else []
 
