@@ -25,7 +25,7 @@ def test_a_life_by_wear_names_its_placeholder_and_the_worn_groove():
     results, texts = said(friction_coefficient=0.3)
     assert results.verdict.best[0].ends == "wear"
     assert "wear coefficient of 100Cr6 on C45 is a placeholder" in texts["worn"]
-    assert "The groove is worn through within this life" in texts["worn"]
+    assert "Within this life the profiles wear beyond their run-in" in texts["worn"]
 
 
 def test_a_life_by_fatigue_says_nothing_of_wear():

@@ -268,6 +268,8 @@ def test_the_pareto_set_is_one_of_designs_at_their_worst_condition():
     said = pareto_sentence(front, results).values
     assert 1 < sum(front["optimal"].values) and len(expected) > 2
     assert (said["count"], said["of"], said["kind"]) == (sum(front["optimal"].values), len(expected), "design")
+    most = frame[frame["valid"]].groupby(["friction_coefficient", "axial_force"]).ngroups
+    assert said["partly"] == sum(o and v < most for o, v in zip(front["optimal"].values, found["valid"], strict=True))
     ds, _ = solved(base={})
     results = results_of(ds)
     assert BEYOND in pareto_sentence(study_pareto(results), results).values["first"][0]

@@ -226,7 +226,7 @@ def test_a_life_beyond_the_data_is_marked(tmp_path):
 @pytest.mark.parametrize(
     ("goal", "way", "says"),
     [
-        ("pair_life_hours", "max", "is best: life of the pair"),
+        ("pair_life_hours", "max", "Recommended: roller profile radius"),
         ("roller_profile_radius", "max", "have the same value of the goal"),
     ],
 )
@@ -244,10 +244,6 @@ def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
     [
         ({"constraints": ["max_pressure < 100", "max_pressure > 200"]}, "No design is valid in any condition"),
         ({"constraints": ["friction_coefficient < 0.15"]}, "No design is valid in all 2 conditions"),
-        (
-            {"factors": {**STUDY["factors"], "roller_profile_radius": {"uniform": [-9, -6.4]}}},
-            "roller profile radius −0.05 mm changes",
-        ),
         ({"goals": {"axial_force": "max"}}, "have the same value of the goal, so the goal does not choose"),
         (
             {

@@ -32,7 +32,7 @@ from trackroller.errors import InputError
 from trackroller.materials import load_database
 from trackroller.parameters import BODIES
 from trackroller.roller.case import Case, to_table
-from trackroller.roller.dataset import file_attributes
+from trackroller.roller.dataset import file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
 from trackroller.roller.duty import with_duty, years
 from trackroller.roller.geometry import contact_geometry
@@ -381,6 +381,14 @@ def _unused_loads(roller: MountedRoller) -> Iterator[str]:
             yield f"{name} = {roller.given[name]} in its file does not count: the carriage gives it. Remove it there."
 
 
+def _flags(solved: xr.Dataset) -> np.ndarray:
+    """Return the validity flags of rollers, shape (n,): `deep_life` of the body alone that ends the life."""
+    deep, lives = validity_bit("deep_life"), solved["life_to_first_limit_hours"].transpose(..., "body").values
+    own = solved["validity_body"].transpose(..., "body").values
+    ends = np.where(lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")], own[..., 1], own[..., 0])
+    return np.asarray((solved["validity"].values & ~deep) | (ends & deep))
+
+
 def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:
     """Return a solved carriage with the life of each roller, its regime, and the worst roller.
 
@@ -421,7 +429,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
         case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
-        flagged[i, j] = solved["validity"].values
+        flagged[i, j] = _flags(solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()

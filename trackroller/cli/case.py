@@ -161,7 +161,7 @@ def _is_ours(path: Path, suffix: str) -> bool:
     """
     content = path.read_bytes()
     if suffix == ".csv":
-        return not content or {b"regime", b"validity"} <= {*content.partition(b"\n")[0].split(b",")}
+        return not content or {b"regime", b"converged"} <= {*content.partition(b"\n")[0].split(b",")}
     head = content[:4096] if suffix in (".html", ".htm") else content
     return not content or (
         content.startswith(KINDS.get(suffix, (b"CDF", b"\x89HDF"))) and MARKS.get(suffix, MADE) in head

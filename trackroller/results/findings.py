@@ -549,8 +549,8 @@ def most_frequent(
             continue
         own = results.table[name].to_numpy()
         cells = [(v, int((hit & (own == v)).sum()), int((among & (own == v)).sum())) for v in levels]
-        cells = [cell for cell in cells if cell[2] >= FEW]
-        if len(cells) < 2:
+        cells = [cell for cell in cells if cell[2]]
+        if len(cells) < 2 or min(cell[2] for cell in cells) < FEW:  # of too few cases a share says nothing
             continue
         high, low = max(cells, key=lambda c: c[1] / c[2]), min(cells, key=lambda c: c[1] / c[2])
         if sum(c[1] * high[2] == high[1] * c[2] for c in cells) > 1:  # of ties none has the most

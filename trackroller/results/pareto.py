@@ -300,6 +300,7 @@ def pareto_of_candidates(candidates: Candidates, objectives: Mapping[str, str]) 
     attrs = {
         "constraints": "; ".join(results.config.constraints),
         "rows": len(held),
+        "conditions": candidates.possible,
         "model": str(results.held_level("contact_model")) if "contact_model" in results.factors else "",
         "judged": "each goal at the worst of the conditions in which the design is valid",
         "study": results.data.attrs.get("study", ""),

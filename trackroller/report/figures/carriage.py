@@ -61,7 +61,7 @@ def views(ds: xr.Dataset) -> style.Drawn:
     looks += [(word, {"color": colour, "lw": 2}) for word, colour in zip(("radial", "axial"), style.PAIR, strict=False)]
     legend(figure, looks, columns=4)
     caption = (
-        f"Carriage from the side and from above in the load case {case}, the worst one of roller {worst}. Arrows are "
+        f"Carriage from the side and from above in the load case {case}, which damages roller {worst} most. Arrows are "
         "the forces of the rollers on their rails, radial and axial ones to scales of their own; both forces (N) stand "
         "beside each roller; diamonds are masses."
     )

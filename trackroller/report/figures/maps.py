@@ -41,7 +41,8 @@ def life_map(results: Results) -> style.Drawn:
         return None
     column, words, unit = results.life
     rows, held = results.hold(pair)
-    if not np.isfinite(rows[column][results.rolling[rows.index]]).any():
+    lives = rows[column][results.rolling[rows.index]]
+    if not (np.isfinite(lives) & (lives > 0)).any():
         return None
     over = capital(f"{words} over {long_name(pair[0])} and {long_name(pair[1])}")
     figure, (axes,) = style.panels(over, 84)

@@ -360,13 +360,15 @@ def what_ends(listed: list[Margin]) -> str:
         return ""
     shorts = list(dict.fromkeys(margin.short for margin in first.margins))
     bodies = {margin.body for margin in first.margins}
+    body = bodies.pop() if len(bodies) == 1 else "pair"
+    body = "pair" if body == BOTH else body
     later: dict[str, str] = {}
     for margin in sorted((margin for margin in listed if margin.ends), key=lambda margin: margin.reached):
         if margin.short not in shorts:
-            later.setdefault(margin.short, f"; {margin.short} would after {margin.life}")
+            other = f" end the {margin.body}" * (margin.body not in (body, BOTH))
+            later.setdefault(margin.short, f"; {margin.short} would{other} after {margin.life}")
     unmeasured = ", by values that nobody has measured" * first.guessed
-    body = bodies.pop() if len(bodies) == 1 else "pair"
-    head = f"{capital(' or '.join(shorts))} ends the {'pair' if body == BOTH else body}"
+    head = f"{capital(' or '.join(shorts))} ends the {body}"
     return f"{head} after {first.life}{unmeasured}{''.join(later.values())}{_guide_alone(listed)}"
 
 

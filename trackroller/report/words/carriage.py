@@ -58,7 +58,10 @@ def _worst(ds: xr.Dataset) -> Sentence:
     low, high = (float(ds[f"life_hours{end}"].sel(roller=roller)) for end in ("_low", "_high"))
     span = [lasting(low, "h"), lasting(high, "h")] if high > low * (1 + SAME) else []
     life = lasting(hours, "h")
-    return say("carriage", "carriage_worst", roller=roller, case=case, km=km, life=life, span=span, unknown=unknown)
+    damage = ds["damage_per_km"].sel(roller=roller)
+    part = float(damage.sel(load_case=case) / damage.sum())
+    values = {"roller": roller, "case": case, "km": km, "life": life, "span": span, "unknown": unknown, "part": part}
+    return say("carriage", "carriage_worst", **values)
 
 
 def _without_life(ds: xr.Dataset) -> Iterator[Sentence]:

@@ -168,7 +168,9 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any],
     found = results.pareto()  # counts a design that was solved twice once
     assert found is not None  # a search has goals
     values: dict[str, Any] = {"design": design_words(results, best["design"]), "front": int(found["optimal"].sum())}
-    alike, least = all(one["values"] == best["values"] for one in search["optima"]), least_violation(search)
+    kept = found["optimal"].values == 1
+    alike = all(len(np.unique(found[goal].values[kept])) == 1 for goal in search["goals"])
+    least = least_violation(search)
     several = len(search["goals"]) > 1 and values["front"] > 1 and not alike
     named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too

@@ -47,7 +47,14 @@ def pareto_sentence(front: xr.Dataset, results: Results | None = None) -> Senten
         values["judged"] = listing([text for text in (values["judged"], within_words(results)) if text])
     values["outside"] = int((~results.valid[rows]).sum()) if results is not None and kind == "design" else 0
     values["alone"] = "pair_life_hours" in goals and results is not None and not results.knows("guide_life_hours")
-    return say("pareto", "pareto", several=len(goals) > 1, **values)
+    return say("pareto", "pareto", several=len(goals) > 1, partly=partly_holding(front), **values)
+
+
+def partly_holding(front: xr.Dataset) -> int:
+    """Count the designs of a Pareto set that do not hold in all conditions in which any design holds."""
+    if "valid_in" not in front or "conditions" not in front.attrs:
+        return 0
+    return int(((front["optimal"] == 1) & (front["valid_in"] < front.attrs["conditions"])).sum())
 
 
 def holes_words(front: xr.Dataset) -> list[str]:

@@ -39,7 +39,7 @@ from trackroller.report.words.designs import (
     unanswered,
     worst_words,
 )
-from trackroller.report.words.pareto import holes_words
+from trackroller.report.words.pareto import holes_words, partly_holding
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
 from trackroller.results.candidates import UNRANKED, Candidates, of_one_model
@@ -425,8 +425,8 @@ class _Words:
             ends.append(f"{' at '.join(lives)} ({', '.join(setting(n, v) for n, v in choices.items())})")
         ends = list(dict.fromkeys(ends))
         front = self.results.pareto()
-        holes = [] if front is None else holes_words(front)
-        return say("verdict", "tradeoff", designs=traded.designs, ends=ends, holes=holes)
+        holes, partly = ([], 0) if front is None else (holes_words(front), partly_holding(front))
+        return say("verdict", "tradeoff", designs=traded.designs, ends=ends, holes=holes, partly=partly)
 
     def rest(self) -> list[Sentence | None]:
         """Say the verdict over the conditions that remain."""
