@@ -105,3 +105,23 @@ def test_a_fit_takes_the_place_of_the_index_of_a_sample():
     results = tr.run(STUDY | {"samples": 64}, progress=False)
     kinds = [one.kind for one in why(results)]
     assert kinds == ["fitted"] * 3
+
+
+def test_a_factor_that_is_even_in_its_logarithm_is_fitted_so():
+    """Hours go as one over the speed, over 60 times the smallest speed; an even sample from near 0 is no such one."""
+    rng = np.random.default_rng(7)
+    speed, load = 5 * 60 ** rng.random(256), 20 * rng.random(256)
+    results = sample(1e5 / speed * np.exp(-load / 10), velocity=speed, axial_force=load)
+    fast, heavy = fitted_effects(results, LIFE, results.valid)[1]
+    assert fast.ratio == pytest.approx(fast.low / fast.high, rel=0.01)
+    assert heavy.ratio == pytest.approx(np.exp((heavy.low - heavy.high) / 10), rel=0.01)
+
+
+def test_a_kink_is_followed():
+    """A life that falls five-fold beyond a friction of 0.28 and hardly before."""
+    rng = np.random.default_rng(8)
+    friction, speed = rng.uniform(0.08, 0.35, 512), rng.uniform(1, 2, 512)
+    bend = lambda x: -0.1 * (x - 0.08) / 0.2 - 0.7 * np.maximum(0, x - 0.28) / 0.07  # noqa: E731
+    results = sample(10 ** (3 + bend(friction)) / speed, friction_coefficient=friction, velocity=speed)
+    effect = fitted_effects(results, LIFE, results.valid)[1][0]
+    assert effect.ratio == pytest.approx(10 ** (bend(effect.high) - bend(effect.low)), rel=0.1)

@@ -19,7 +19,7 @@ from trackroller.results.results import Results
 FEWEST_PAIRS = 3  # fewer pairs of designs state no effect
 FEWEST_ROWS = 30  # smallest number of cases that are fitted
 TOLD = 0.9  # share of the variance that a fit must predict before its effects are told
-DEGREES = ((3, 0), (2, 0), (1, 0))  # of a factor alone, and none with another one; the best prediction wins
+DEGREES = ((8, 0), (5, 0), (3, 0), (2, 0), (1, 0))  # of a factor alone, none with another one; the best one wins
 SPANNED = 2.0, 20.0  # a number that spans so many times its smallest size is fitted by its logarithm
 INFLATED = 3.0  # times the variance of a weight in a sample of independent factors: above it they are not told apart
 UNCHANGED = 0.02  # a ratio between 0.98 and 1.02 counts as no change
@@ -172,12 +172,16 @@ def fitted_effects(results: Results, column: str, rows: np.ndarray) -> tuple[flo
 
 
 def _scaled(values: pd.Series) -> np.ndarray:
-    """Return a number, or its logarithm where it spans its smallest size several times, but not from near 0."""
+    """Return a number, or its logarithm: of a number that spans its smallest size several times, or is spread so."""
     own = values.to_numpy(dtype=float)
     sizes = np.abs(own)
     one_sign = (own > 0).all() or (own < 0).all()
-    spans = one_sign and SPANNED[0] < sizes.max() / sizes.min() < SPANNED[1]
-    return np.sign(own) * np.log(sizes / sizes.max()) if spans else own
+    if not one_sign or sizes.max() <= SPANNED[0] * sizes.min():
+        return own
+    logs = np.sign(own) * np.log(sizes / sizes.max())
+    places = stats.rankdata(own)  # a sample that is even in its logarithm was drawn so
+    even = np.corrcoef(places, logs)[0, 1] > np.corrcoef(places, own)[0, 1]
+    return logs if even or sizes.max() < SPANNED[1] * sizes.min() else own
 
 
 def _ends(own: np.ndarray, ordered: bool, part: np.ndarray) -> tuple[int, int]:

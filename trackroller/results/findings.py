@@ -371,7 +371,7 @@ def _of_pairs(results: Results, column: str, effect: Effect, rows: np.ndarray) -
         "apart": _most_spread(parts) if against or apart else [],
         "changed": effects.also_changed(results, effect.factor, rows),
     }
-    kind = "pairs_both" if against or same < effects.MOST * effect.size else "pairs"
+    kind = "pairs_both" if against or same < effects.MOST * (effect.rising + effect.falling) else "pairs"
     return finding(results, kind, "valid", rows, **values)
 
 

@@ -132,9 +132,10 @@ def design_words(results: Results, number: int) -> str:
 
 
 def goal_values(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
-    """Write the goals of an optimum with their units; a life has its range and says whether S-N data end before it."""
+    """Write the goals of an optimum at `reference`; a life has its range and says whether S-N data end before it."""
     texts = []
-    for goal, value in zip(search["goals"], one["values"], strict=True):
+    for goal, found, exact in zip(search["goals"], one["values"], one["reference"], strict=True):
+        value = exact if np.isfinite(exact) else found
         units = goal_column(results, goal)[1]
         design, ends = one["design"], ends_of_goal(results, goal)
         beyond = bool(beyond_data(results, goal)[design])
@@ -344,7 +345,7 @@ def optima_table(results: Results) -> Table | None:
         rows.append(["Does not hold in", *(percent(one["violation"][0]) for one in shown)])
     first = "Closest to valid" if least_violation(search) else "Recommended"
     heads = [first, *(f"Optimum {i}" for i in range(2, len(shown) + 1))]
-    note = f"{_within(results)} Bold: differs from the first design.".strip()
+    note = f"{_within(results)}{' Bold: differs from the first design.' * (len(shown) > 1)}".strip()
     return compared("optima", "Optima of the search", heads, rows, note)
 
 

@@ -226,7 +226,6 @@ class _Words:
             edges=[long_name(name) for name in one.edges] if found.kind == "build" else [],
             many=len(found.best),
             tie=found.why == "tie",
-            error=one.error,
             repeats=found.kind == "lasts",
             unlimited=math.isinf(one.low),
             scattered=self.scattered,
