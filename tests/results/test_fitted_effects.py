@@ -112,7 +112,8 @@ def test_a_factor_that_is_even_in_its_logarithm_is_fitted_so():
     rng = np.random.default_rng(7)
     speed, load = 5 * 60 ** rng.random(256), 20 * rng.random(256)
     results = sample(1e5 / speed * np.exp(-load / 10), velocity=speed, axial_force=load)
-    fast, heavy = fitted_effects(results, LIFE, results.valid)[1]
+    found = {one.factor: one for one in fitted_effects(results, LIFE, results.valid)[1]}
+    fast, heavy = found["velocity"], found["axial_force"]
     assert fast.ratio == pytest.approx(fast.low / fast.high, rel=0.01)
     assert heavy.ratio == pytest.approx(np.exp((heavy.low - heavy.high) / 10), rel=0.01)
 
@@ -123,5 +124,5 @@ def test_a_kink_is_followed():
     friction, speed = rng.uniform(0.08, 0.35, 512), rng.uniform(1, 2, 512)
     bend = lambda x: -0.1 * (x - 0.08) / 0.2 - 0.7 * np.maximum(0, x - 0.28) / 0.07  # noqa: E731
     results = sample(10 ** (3 + bend(friction)) / speed, friction_coefficient=friction, velocity=speed)
-    effect = fitted_effects(results, LIFE, results.valid)[1][0]
+    effect = next(e for e in fitted_effects(results, LIFE, results.valid)[1] if e.factor == "friction_coefficient")
     assert effect.ratio == pytest.approx(10 ** (bend(effect.high) - bend(effect.low)), rel=0.1)
