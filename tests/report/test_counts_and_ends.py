@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 import trackroller as tr
+from trackroller.report.figures.maps import life_map
 from trackroller.report.numbers import percent
+from trackroller.report.pages.sheet import collect
 from trackroller.report.pages.study import contents
 from trackroller.report.words.findings import sentence_of
 from trackroller.report.words.optimum import optimum_sentences
@@ -143,3 +145,40 @@ def test_a_design_that_was_solved_twice_counts_once(search):
     names = search.design.meta["outer"]
     rows = np.stack([front[name].values for name in names], axis=1)
     assert len(np.unique(rows, axis=0)) == len(rows)
+
+
+def test_what_would_end_the_other_body_is_named_so():
+    """Wear ends the roller first, and fatigue the guide before the roller."""
+    case = {"axis_distance": 34, "guide_profile_radius": 9, "roller_profile_radius": -9.6, "contact_angle": 42}
+    case |= {"guide_curve_radius": np.inf, "radial_force": -650, "axial_force": 90, "motor_force": -12, "velocity": 75}
+    case |= {"roller_material": "42CrMo4+QT-40", "guide_material": "C45", "friction_coefficient": 0.16}
+    solved = tr.solve(case | {"guide_overrollings_per_hour": 220, "permissible_wear_depth": 0.12}, **FAST)
+    hours = solved["life_hours_by_limit"].sel(limit="fatigue")
+    assert hours.sel(body="guide") < hours.sel(body="roller")
+    page = collect(solved).verdict
+    assert re.search(r"Wear ends the roller after [^;]*; rolling-contact fatigue would end the guide after", page)
+
+
+def test_a_map_of_lives_is_left_out_where_every_body_breaks(tmp_path):
+    """Heavy loads: all lives are 0 h, and the report is written."""
+    base = {"axis_distance": 42, "guide_profile_radius": 12, "contact_angle": 42, "guide_curve_radius": "inf"}
+    base |= {"motor_force": 0, "guide_overrollings_per_hour": 90, "guide_material": "C45", "roller_material": "C45"}
+    factors = {"radial_force": {"values": [-60000, -90000]}, "friction_coefficient": {"values": [0.15, 0.3]}}
+    results = run(base=base | {"axial_force": 0, "roller_profile_radius": -13.5}, factors=factors)
+    assert (results.column(FIRST)[results.rolling] == 0).all() and results.rolling.any()
+    assert life_map(results) is None
+    assert results.report(tmp_path / "report.html").is_file()
+
+
+def test_levels_with_few_cases_do_not_hide_the_one_with_most():
+    """Nine valid cases of 27 at the first level, eight of them hits: no other level is told to have most."""
+    factors = {"contact_angle": {"values": [30, 35, 40]}, "radial_force": {"linspace": [-200, -100, 27]}}
+    results = run(base=BASE, factors=factors)
+    angle = results.table["contact_angle"].to_numpy()
+    number = np.concatenate([np.arange(27)[: (angle == level).sum()] for level in (30, 35, 40)])
+    place = np.empty(len(angle), dtype=int)
+    for level, own in zip((30, 35, 40), number.reshape(3, 27), strict=True):
+        place[angle == level] = own
+    among = (angle > 33) | (place < 9)
+    hit = among & np.where(angle < 33, place < 8, np.where(angle < 38, place < 17, place < 3))
+    assert most_frequent(results, hit, among) is None
