@@ -345,3 +345,15 @@ def test_table_in_the_documentation_is_read():
     for key in ("work_rate", "roller", "guide"):
         text = text.replace(f"{key}:", f'"{key}":')
     assert TABLE.canonical(json.loads(text))["work_rate"] == [0, 10.4, 77.2, 100]
+
+
+def test_a_given_factor_replaces_the_range_of_the_wear_coefficients():
+    """At every place of the placeholders the wear is that of the coefficients times the factor, never of both."""
+    case = {"roller_material": "EN AW-7075", "permissible_wear_depth": 0.1, "guide_overrollings_per_hour": 100}
+    keys = {"outputs": ("wear", "shakedown"), "contact_model": "sliding", "accuracy": "preview"}
+    base = tr.solve(case | {"wear_coefficient_factor": 3}, **keys)
+    for place in (-1, 1):
+        moved = tr.solve(case | {"wear_coefficient_factor": 3, "placeholder_position": place}, **keys)
+        np.testing.assert_allclose(moved["wear_volume_per_km"], base["wear_volume_per_km"], rtol=1e-12)
+        alone = tr.solve(case | {"placeholder_position": place}, **keys)
+        assert (abs(3 * alone["wear_volume_per_km"] / base["wear_volume_per_km"] - 1) > 0.1).any()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, field, make_dataclass
 from typing import Any
 
@@ -180,13 +180,15 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
             if r.placeholder and r.range is not None and name in OF_LIMITS
         }
 
-    def moved(self, position: float) -> Material:
+    def moved(self, position: float, held: Collection[str] = ()) -> Material:
         """Return the material with its placeholders of limits at another place in their ranges.
 
         Parameters
         ----------
         position : float
             -1 for the worse end of each range, 0 for the value, 1 for the better end; linear between them.
+        held : collection of str
+            Names of values that stay, because the user gave what replaces their range.
 
         Returns
         -------
@@ -199,6 +201,8 @@ class Material(_OfLimits):  # type: ignore[misc, valid-type]
         """
         values: dict[str, Any] = {}
         for name, (worse, better) in self._ends().items():
+            if name in held:
+                continue
             value = self.records[name].value
             values[name] = value + abs(position) * ((better if position > 0 else worse) - value)
         return dataclasses.replace(self, **values) if position else self

@@ -431,10 +431,12 @@ def to_table(cases: Any, database: MaterialDatabase | None = None) -> CaseTable:
     numbers["friction_coefficient"] = friction
     positions = numbers["placeholder_position"].tolist()
     places = [None if math.isnan(position) else position for position in positions]  # NaN is no key
-    keys = list(zip(map(id, roller), map(id, guide), places, strict=True))
+    factors = ~np.isnan(numbers["wear_coefficient_factor"])  # each replaces the range of the wear coefficients
+    keys = list(zip(map(id, roller), map(id, guide), places, factors.tolist(), strict=True))
     pairs = dict(zip(keys, zip(roller, guide, strict=True), strict=True))  # each combination once
     bodies = {
-        key: [database.on(*way).moved(key[2] or 0.0) for way in (pair, pair[::-1])] for key, pair in pairs.items()
+        key: [database.on(*way).moved(key[2] or 0.0, ("wear_coefficient",) * key[3]) for way in (pair, pair[::-1])]
+        for key, pair in pairs.items()
     }
     roller, guide = ([bodies[key][i] for key in keys] for i in (0, 1))
     texts = {name: _texts(name, columns[name]) for name in MAPPING_FIELDS}
