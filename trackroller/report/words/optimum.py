@@ -25,6 +25,7 @@ from trackroller.report.numbers import (
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text, within_words
+from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import (
     bearing_words,
@@ -177,7 +178,8 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any],
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
     if several and not least and not (required(results) or bounded):  # the goals alone do not choose
         ends = [goal_values(results, search, one) for one in _ends(search)]
-        return say("optimum", "requirement", ends=ends, words=words, goals=told, **values)
+        holes = holes_words(found)
+        return say("optimum", "requirement", ends=ends, words=words, goals=told, holes=holes, **values)
     values |= {"least": least, "constraints": [str(one) for one in results.config.constraints]}
     values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
     values["goals"] = [" ".join(pair) for pair in zip(words, told, strict=True)]

@@ -60,7 +60,7 @@ def partly_holding(front: xr.Dataset) -> int:
 def holes_words(front: xr.Dataset) -> list[str]:
     """Write between which values of a goal a Pareto set has no design."""
     goal, holes = holes_of(front)
-    texts = [" and ".join(_goal_value(front, goal, value) for value in ends) for ends in holes]
+    texts = [" and ".join(_goal_value(front, goal, value, plainly=True) for value in ends) for ends in holes]
     return [f"between {text}" + f" of the {goal_words(front, goal)}" * (text is texts[-1]) for text in texts]
 
 
@@ -76,12 +76,12 @@ def goal_heading(front: xr.Dataset, name: str) -> str:
     return with_unit(text, units) if units and units not in ("1", "-") else text
 
 
-def _goal_value(front: xr.Dataset, name: str, value: float) -> str:
-    """Write a goal's value with its unit; a life beyond the S-N data says so."""
+def _goal_value(front: xr.Dataset, name: str, value: float, plainly: bool = False) -> str:
+    """Write a goal's value with its unit; a life beyond the S-N data says so, unless it is an end of a hole."""
     unit = str(front[name].attrs.get("units", "1") or "1")
     if statistic(name)[0] == "probability":
         return percent(value)
-    if f"beyond_{name}" in front:
+    if f"beyond_{name}" in front and not plainly:
         return lasting(value, unit, bool(front[f"beyond_{name}"].values[front[name].values == value].any()))
     return quantity(value, unit)
 
