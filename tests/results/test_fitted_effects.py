@@ -126,3 +126,16 @@ def test_a_kink_is_followed():
     results = sample(10 ** (3 + bend(friction)) / speed, friction_coefficient=friction, velocity=speed)
     effect = next(e for e in fitted_effects(results, LIFE, results.valid)[1] if e.factor == "friction_coefficient")
     assert effect.ratio == pytest.approx(10 ** (bend(effect.high) - bend(effect.low)), rel=0.1)
+
+
+def test_an_output_that_is_asked_for_has_its_largest_effect_told():
+    """Friction power at equal other values is in proportion to the speed, which changes most: 4-fold."""
+    factors = {"velocity": {"values": [20, 80]}, "radial_force": {"values": [-100, -120, -150]}}
+    keys = {"design": "grid", "outputs": ["forces", "friction_work", "peak_stress", "life"], "factors": factors}
+    asked = {"analysis": {"outputs": [LIFE, "friction_power"]}}
+    base = STUDY["base"] | {"axis_distance": 22, "contact_angle": 35, "motor_force": 0}
+    results = tr.run({**STUDY, **keys, **asked, "base": base}, progress=False)
+    power = results.data["friction_power"].sum("contact").transpose("velocity", ...).values
+    last = why(results)[-1].values
+    assert (last["column"], last["effect"].factor) == ("friction_power", "velocity")
+    assert last["effect"].ratio == pytest.approx(np.median(power[1] / power[0])) == pytest.approx(4, rel=0.01)

@@ -62,15 +62,23 @@ def pair_matrix(results: Results, column: str, factor: str, rows: np.ndarray) ->
     -------
     Matrix of shape (m, levels) and the levels. Only combinations with two levels or more are kept.
     """
-    table, others = results.table[rows & (results.column(column) > 0)], [f for f in results.factors if f != factor]
+    values, others = _values(results, column), [f for f in results.factors if f != factor]
+    used = rows & (values > 0)
+    table = results.table[used]
     levels = results.levels(factor)
     if not len(table) or len(levels) > MOST_LEVELS:
         return np.empty((0, len(levels))), levels
     key = codes(table, others)
     place = {level: i for i, level in enumerate(levels)}
     matrix = np.full((int(key.max()) + 1, len(levels)), np.nan)
-    matrix[key, [place[v] for v in table[factor]]] = np.log10(table[column].to_numpy(dtype=float))
+    matrix[key, [place[v] for v in table[factor]]] = np.log10(values[used])
     return matrix[(~np.isnan(matrix)).sum(axis=1) > 1], levels
+
+
+def _values(results: Results, column: str) -> np.ndarray:
+    """Return a column of the cases, or an output with one number a case, shape (n,)."""
+    own = results.table[column] if column in results.table else results.quantity(column)[0]
+    return np.asarray(own, dtype=float)
 
 
 def also_changed(results: Results, factor: str, rows: np.ndarray) -> list[str]:
@@ -140,7 +148,7 @@ def fitted_effects(results: Results, column: str, rows: np.ndarray) -> tuple[flo
     There is none where the fit predicts less than `TOLD`, because the effect of a factor then depends on others, nor of
     a factor that goes with others.
     """
-    values = results.table[column].to_numpy(dtype=float)
+    values = _values(results, column)
     good = np.flatnonzero(rows & np.isfinite(values) & (values > 0))
     if len(good) > MAX_ROWS:
         good = good[np.linspace(0, len(good) - 1, MAX_ROWS).astype(int)]

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -155,7 +156,9 @@ def why(results: Results) -> list[Finding]:
     for i, one in enumerate(strongest):  # said once: that lives lie beyond the data, and how well a fit predicts
         once = {"beyond": one.values["beyond"] if i == 0 else 0} | ({"share": np.nan} if i in fitted[1:] else {})
         strongest[i] = replace(one, values={**one.values, **once})
-    return [*found, *strongest][:MOST]
+    asked = [name for name in results.config.analysis.outputs or () if not is_life(name) and name not in REGIMES]
+    others = [strongest_effects(results, name)[:1] for name in asked if shown is None or name != shown[0]]
+    return [*found, *strongest, *chain.from_iterable(others)][:MOST]
 
 
 def shown_output(results: Results) -> tuple[str, str, str] | None:
@@ -296,7 +299,8 @@ OF_ANALYSIS = {  # the statements on an output of an analysis, in their order
 def strongest_effects(results: Results, column: str) -> list[Finding]:
     """Return the largest effects of the factors on an output, at most `MOST_EFFECTS`, those in one direction first.
 
-    Among them choices of the design come before conditions, and the speed last: hours are distance over speed.
+    Among those on a life choices of the design come before conditions, and the speed last: hours are distance over
+    speed.
     """
     found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
 
@@ -307,7 +311,8 @@ def strongest_effects(results: Results, column: str) -> list[Finding]:
         name = one.values["effect"].factor
         return size(one)[0], name == "velocity", results.roles.get(name) != "choice", size(one)[1]
 
-    return sorted(sorted(found, key=size)[:MOST_EFFECTS], key=place)
+    found = sorted(found, key=size)[:MOST_EFFECTS]
+    return sorted(found, key=place) if is_life(column) else found
 
 
 def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | None = None) -> Finding | None:

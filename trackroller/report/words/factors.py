@@ -35,7 +35,7 @@ def _words(results: Results, column: str) -> str:
     lives = {name: words for name, words, _ in (results.life or ("", "", ""), *results.fatigue_lives)}
     if column in lives:
         return lives[column]
-    return f"peak stress of the {column.removeprefix('peak_stress_')}"
+    return results.quantity(column)[2]
 
 
 def _beyond(finding: Finding) -> str:
