@@ -19,7 +19,6 @@ from trackroller.results.lives import FIRST_LIMIT, body_lives
 from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
 from trackroller.roller.output_names import is_life
-from trackroller.study.design.entries import OPTION_FACTORS
 from trackroller.study.design.levels import OF_MATERIALS
 
 FEWEST = 20  # sampled conditions of a design below which its life is not stated
@@ -27,14 +26,6 @@ SHARED = 2  # conditions that all designs of a table must have, so that they are
 STRESS = ("peak_stress_roller", "peak stress of the roller", "MPa")  # compared in a study without lives
 UNRANKED = ("converged", "conditions met", "")  # without lives and stresses: 1 in each solved case, so that all tie
 TIED = 1e-9  # relative difference of lives that count as equal
-
-
-def of_one_model(results: Results, rows: np.ndarray) -> np.ndarray:
-    """Leave out the rows with another level of an option than `Results.held_level`, shape (n,) bool."""
-    kept = rows.copy()
-    for option in (n for n in results.factors if n in OPTION_FACTORS):
-        kept &= (results.table[option] == results.held_level(option)).to_numpy()
-    return kept
 
 
 def slip_margin(results: Results) -> np.ndarray:
@@ -155,7 +146,7 @@ class Candidates:
         """
         roles = results.roles | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
-        own = of_one_model(results, np.ones(len(results.table), dtype=bool))
+        own = results.of_one_model(np.ones(len(results.table), dtype=bool))
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)

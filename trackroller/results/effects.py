@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from scipy import stats
 
-from trackroller.methods.interactions import MAX_ROWS, best_fit
+from trackroller.methods.interactions import MAX_ROWS, ROWS_PER_TERM, best_fit
 from trackroller.methods.intervals import constant
 from trackroller.parameters import PARAMETERS
 from trackroller.results.columns import codes
@@ -158,7 +158,10 @@ def fitted_effects(results: Results, column: str, rows: np.ndarray) -> tuple[flo
         return np.nan, []
     ordered = np.array([results.ordered(name) for name in names])
     columns = [_scaled(table[n]) if o else codes(table, (n,)) for n, o in zip(names, ordered, strict=True)]
-    fit = best_fit(y, np.stack(columns, axis=1), ordered, DEGREES, ranked=False)
+    drawn = [name for name, own in zip(names, columns, strict=True) if len(np.unique(own)) > MOST_LEVELS]
+    most = (codes(table, drawn).max() + 1) / ROWS_PER_TERM / len(drawn) if drawn else np.inf  # designs may repeat draws
+    degrees = tuple(one for one in DEGREES if one[0] <= most) or DEGREES[-1:]
+    fit = best_fit(y, np.stack(columns, axis=1), ordered, degrees, ranked=False)
     if fit is None or fit.share < TOLD:
         return np.nan, []
     weights = np.linalg.lstsq(fit.table, y, rcond=None)[0]

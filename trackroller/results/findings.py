@@ -19,7 +19,7 @@ from scipy.stats import norm, spearmanr
 from trackroller.methods.correlation import CORRELATED
 from trackroller.parameters import BODIES, REGIMES
 from trackroller.results import effects
-from trackroller.results.candidates import of_one_model, slip_margin
+from trackroller.results.candidates import slip_margin
 from trackroller.results.columns import codes
 from trackroller.results.effects import Effect
 from trackroller.results.first_limits import first_limit, outlasted
@@ -174,7 +174,7 @@ def limits_first(results: Results) -> list[Finding]:
     candidates = results.candidates()
     if candidates is None or candidates.goal != FIRST_LIMIT:
         return []
-    rows = of_one_model(results, results.valid)
+    rows = results.of_one_model(results.valid)
     names = first_limit(results)[rows]
     counts = {n: int((names == n).sum()) for n in sorted(set(names) - {""}, key=lambda n: -int((names == n).sum()))}
     if len(counts) == 1:
@@ -329,10 +329,10 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
     Returns
     -------
     Finding or None
-        None where the factor changes nothing, too few cases can be compared, a fit predicts too little, the factor goes
-        with another one, or constraints cut unevenly.
+        None where the factor changes nothing, too few cases can be compared, a fit predicts too little or cannot tell
+        the factor from others, or constraints cut unevenly.
     """
-    rows = of_one_model(results, results.valid if rows is None else rows)
+    rows = results.of_one_model(results.valid if rows is None else rows)
     if factor in OPTION_FACTORS or not rows.any():
         return None
     effect = effects.paired_effect(results, column, factor, rows)
@@ -343,14 +343,6 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
     share, fitted = effects.fitted_effects(results, column, rows)
     effect = next((one for one in fitted if one.factor == factor), None)
     if effect is None or not _beyond_chance(effect, len(results.factors)) or not cut_evenly(results, factor):
-        return None
-    asked = {
-        name
-        for one, other, r in results.config.rank_correlations
-        if factor in (one, other) and r
-        for name in (one, other)
-    }
-    if set(confounded_with(results, factor, rows)) - asked:
         return None
     return finding(results, "fitted", "valid", rows, **_values(results, column, effect, rows), share=share)
 
@@ -428,7 +420,7 @@ def slip_law(results: Results) -> Finding | None:
     hit, lifted = (results.regime == REGIMES.index(name) for name in ("full_slip", "lift_off"))
     margin = slip_margin(results)
     margin = np.where(results.column("motor_force", results.config.base.get("motor_force", np.nan)) == 0, 1.0, margin)
-    looked = of_one_model(results, np.ones(len(hit), dtype=bool))
+    looked = results.of_one_model(np.ones(len(hit), dtype=bool))
     hit, over = hit & looked, looked & (margin < -ROUNDING)
     if not hit.any() or np.isnan(margin[looked]).any() or (hit & (margin > ROUNDING)).any():
         return None
@@ -455,7 +447,7 @@ def occurrence(results: Results, event: np.ndarray, what: str, among: np.ndarray
     Finding or None
         None if the event never occurs.
     """
-    looked = of_one_model(results, np.ones(len(event), dtype=bool) if among is None else among)
+    looked = results.of_one_model(np.ones(len(event), dtype=bool) if among is None else among)
     kept = "all" if among is None else "valid"
     hit, whole, cases = event & looked, int(looked.sum()), int((event & looked).sum())
     if not cases:

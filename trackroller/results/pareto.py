@@ -325,12 +325,12 @@ def pareto_of_search(results: Results) -> xr.Dataset:
     least = judged.violation.min()
     missed = judged.missed if (judged.missed == 0).any() else judged.violation
     kept = np.flatnonzero((missed == least) & (least < 1))
-    own = codes(results.table.iloc[kept * design.meta["inner_samples"]], design.meta["outer"])
-    kept = kept[np.unique(own, return_index=True)[1]]  # a design that was solved twice counts once
+    tried = codes(results.table.iloc[:: design.meta["inner_samples"]], design.meta["outer"])
+    kept = kept[np.unique(tried[kept], return_index=True)[1]]  # a design that was solved twice counts once
     first = kept * design.meta["inner_samples"]
     factors = {name: readable(design.columns[name][first]) for name in design.meta["outer"]}
     columns = {n: (values[kept], units, words) for n in goals for values, units, words in [goal_column(results, n)]}
-    attrs: dict[str, Any] = {"rows": len(judged.violation), "kind": "design point", "study": results.study.merged()}
+    attrs: dict[str, Any] = {"rows": int(tried.max()) + 1, "kind": "design point", "study": results.study.merged()}
     attrs["constraints"] = "; ".join(results.config.constraints)
     lives = [name for name in goals if is_life(judged_by(name)[1]) and judged_by(name)[0] != "probability"]
     beyond = {f"beyond_{name}": ("row", beyond_data(results, name)[kept].astype(np.int8)) for name in lives}

@@ -894,7 +894,7 @@ def _of_limit(cases: Cases, one: Candidate, limit: str) -> Turn:
     stored = json.loads(str(results.data.attrs.get("materials", "{}"))).get(of, {}).get(own.name, np.nan)
     known = own.name == "yield_strength" and np.isfinite(use).any()
     value = float(stored) * float(np.nanmax(use)) if known else np.nan
-    return Turn(own.name, of, value=value, low=own.low, high=own.high, units=own.units, candidate=one.number)
+    return Turn(own.name, of, own.on, value, np.nan, own.low, own.high, own.units, one.number)
 
 
 def _placeholders(results: Results, limit: str, material: str) -> list[Placeholder]:

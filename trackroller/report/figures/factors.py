@@ -11,7 +11,6 @@ from trackroller.report.figures import style
 from trackroller.report.figures.panels import band, capped, legend, mark_unlimited, quantiles, set_axis
 from trackroller.report.numbers import capital, factor_label, long_name, with_unit
 from trackroller.report.words.levels import coloured
-from trackroller.results.candidates import of_one_model
 from trackroller.results.findings import shown_output
 from trackroller.results.groups import Groups, classes, groups
 from trackroller.results.ranking import ranked_factors
@@ -40,7 +39,7 @@ def by_factor(results: Results) -> style.Drawn:
     if shown is None or not results.factors:
         return None
     column, words, unit = shown
-    rows = of_one_model(results, results.valid & ~np.isnan(results.column(column)))
+    rows = results.of_one_model(results.valid & ~np.isnan(results.column(column)))
     if rows.sum() < 2:
         return None
     lead = _lead(results, column)

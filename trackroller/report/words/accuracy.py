@@ -34,7 +34,7 @@ def friction_guess(results: Results) -> Sentence | None:
 
 def friction_error(results: Results) -> Sentence | None:
     """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
-    residual = results.column("energy_residual")[results.rolling]
+    residual = results.column("energy_residual")[results.of_one_model(results.rolling)]
     residual = residual[np.isfinite(residual)]
     if not residual.size or np.median(residual) <= KNOWN_ERROR:
         return None

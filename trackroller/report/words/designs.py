@@ -31,6 +31,7 @@ from trackroller.report.numbers import (
 from trackroller.report.tables.table import Table, factor_cell, heading
 from trackroller.report.words.sentence import Sentence, phrase, say
 from trackroller.results.candidates import FEWEST, UNRANKED, Candidates, mixed
+from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.intervals import Cases
 from trackroller.results.results import SAME_ENDS as SAME
@@ -129,7 +130,9 @@ def unanswered(candidates: Candidates) -> Sentence:
     labels = candidates.results.labels  # which no distribution can draw
     roles = {name: role for name, role in candidates.results.roles.items() if name not in labels}
     named = {f"{role}s": [long_name(n) for n in roles if roles[n] == role] for role in ("choice", "condition")}
-    values = {"designs": len(candidates.size), "least": int(candidates.size.min()), "most": int(candidates.size.max())}
+    use = codes(candidates.results.table, candidates.conditions)
+    many = [len(np.unique(use[candidates.place == i])) for i in range(len(candidates.size))]  # a row may be repeated
+    values: dict[str, Any] = {"designs": len(many), "least": min(many), "most": max(many)}
     factors = candidates.results.study.parsed
     values["listed"] = any(r == "condition" and n in factors and factors[n].discrete for n, r in roles.items())
     values |= {"weighted": candidates.weighted, "matched": candidates.matched}

@@ -173,15 +173,16 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any],
     kept = found["optimal"].values == 1
     alike = all(len(np.unique(found[goal].values[kept])) == 1 for goal in search["goals"])
     least = least_violation(search)
+    edges = [long_name(name) for name in _edges(results, best["design"])]
     several = len(search["goals"]) > 1 and values["front"] > 1 and not alike
     named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
     if several and not least and not (required(results) or bounded):  # the goals alone do not choose
         ends = [goal_values(results, search, one) for one in _ends(search)]
-        holes = holes_words(found)
-        return say("optimum", "requirement", ends=ends, words=words, goals=told, holes=holes, **values)
+        values |= {"holes": holes_words(found), "edges": edges, "tried": int(found.attrs["rows"])}
+        return say("optimum", "requirement", ends=ends, words=words, goals=told, **values)
     values |= {"least": least, "constraints": [str(one) for one in results.config.constraints]}
-    values["edges"] = [long_name(name) for name in _edges(results, best["design"])]
+    values["edges"] = edges
     values["goals"] = [" ".join(pair) for pair in zip(words, told, strict=True)]
     front = nondominated_ranks(judged.costs, judged.missed) == 0
     values |= {"alike": alike, "target": targets_in_words(results) if required(results) else ""}
@@ -384,7 +385,8 @@ def steps_table(results: Results) -> Table | None:
         for goal, value in zip(search["goals"], one["values"], strict=True):
             _, units, words = goal_column(results, goal)
             head = with_unit(capital(words), units) if units not in ("", "1") else capital(words)
-            row[head] = percent(value) if judged_by(goal)[0] == "probability" else float(value)
+            known = not one["violation"] or goal in results.design.meta["outer"] or counted
+            row[head] = percent(value) if judged_by(goal)[0] == "probability" else float(value) if known else np.nan
         if lives and results.life is not None:
             row[with_unit(f"{capital(results.life[1])}, shortest", results.life[2])] = (
                 np.nan if one["violation"] else float(one["life"])

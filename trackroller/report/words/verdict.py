@@ -42,7 +42,7 @@ from trackroller.report.words.designs import (
 from trackroller.report.words.pareto import holes_words, partly_holding
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.results.by_tests import not_held
-from trackroller.results.candidates import UNRANKED, Candidates, of_one_model
+from trackroller.results.candidates import UNRANKED, Candidates
 from trackroller.results.intervals import Cases
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.results import Results
@@ -181,7 +181,7 @@ class _Words:
 
     def lives_of_cases(self) -> Sentence | None:
         """State the lives of all cases, and what ends them if it is always the same; with a target that all meet it."""
-        cases, own = Cases(self.candidates), of_one_model(self.results, np.ones(len(self.results.table), dtype=bool))
+        cases, own = Cases(self.candidates), self.results.of_one_model(np.ones(len(self.results.table), dtype=bool))
         rows = own & (cases.reason == "")
         if self.found.target:
             every = cases.on_target(exact=False)[1][own].all()
