@@ -170,7 +170,7 @@ def test_optima_are_solved_again_at_reference_and_told(tmp_path):
     np.testing.assert_allclose(judge(solved).values[found["recommended"]], best["values"])
     assert best["reference"] != best["values"] and np.allclose(best["reference"], best["values"], rtol=0.2)
     said, table = best_of(solved)
-    assert said[0].startswith(("Recommended: ", "Give a requirement. ")) and "at `reference`" in " ".join(said)
+    assert said[0].startswith(("Recommended: ", "Give a requirement. ")) and "t `reference` the goal" in " ".join(said)
     assert table.heads[1] == "Recommended" and len(table.heads) <= 6
     page = write_best(solved, tmp_path / "best.html").read_text()
     assert "Optima of the search" in page and said[0].split(":")[0] in page

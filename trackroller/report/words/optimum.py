@@ -58,6 +58,7 @@ from trackroller.roller.output_names import is_life
 from trackroller.study.file.goals import names_in
 from trackroller.study.file.search import judged_by
 
+WORST = " at the worst condition"  # end of the words of a goal
 AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
 
 
@@ -80,7 +81,9 @@ def optimum_sentences(results: Results) -> list[Sentence]:
             *_turns(results, search, best, judged),
             _unreached(results, search),
         ]
-        said.append(_guessed(results, search, best))
+        said.append(_checked(results, search, large=True))
+        chosen = all(one is None or one.kind != "requirement" for one in said)
+        said.append(_guessed(results, search, best) if chosen else None)
         said.append(bearing_words(results, _limits(results, search, best)))
     said.append(_unchecked(results))
     return [sentence for sentence in said if sentence is not None]
@@ -92,7 +95,7 @@ def searched(results: Results) -> list[Sentence]:
     if search is None:
         return []
     how = say("optimum", "searched", **{name: search[name] for name in ("designs", "model", "stopped")})
-    checked = _checked(results, search) if search["optima"] and least_violation(search) < 1 else None
+    checked = _checked(results, search, large=False) if search["optima"] and least_violation(search) < 1 else None
     return [*filter(None, [checked, _life_error(results, _best(search, judge(results)))]), how]
 
 
@@ -132,11 +135,10 @@ def design_words(results: Results, number: int) -> str:
     return ", ".join(setting(name, value) for name, value in choices_of(results, number).items())
 
 
-def goal_values(results: Results, search: dict[str, Any], one: dict[str, Any]) -> list[str]:
-    """Write the goals of an optimum at `reference`; a life has its range and says whether S-N data end before it."""
+def goal_values(results: Results, search: dict[str, Any], one: dict[str, Any], interval: bool = True) -> list[str]:
+    """Write the goals of an optimum with their units; a life has its range and says whether S-N data end before it."""
     texts = []
-    for goal, found, exact in zip(search["goals"], one["values"], one["reference"], strict=True):
-        value = exact if np.isfinite(exact) else found
+    for goal, value in zip(search["goals"], one["values"], strict=True):
         units = goal_column(results, goal)[1]
         design, ends = one["design"], ends_of_goal(results, goal)
         beyond = bool(beyond_data(results, goal)[design])
@@ -145,7 +147,7 @@ def goal_values(results: Results, search: dict[str, Any], one: dict[str, Any]) -
         if ends is not None and ends[1][design] > ends[0][design] * (1 + SAME):
             text = ends_text(float(ends[0][design]), float(ends[1][design]), BEYOND * beyond, units)
         else:
-            text += _interval(results, goal, design)
+            text += _interval(results, goal, design) if interval else ""
         texts.append(text)
     return texts
 
@@ -178,8 +180,15 @@ def _recommended(results: Results, search: dict[str, Any], best: dict[str, Any],
     named = set[str]().union(*(names_in(str(one)) for one in results.config.constraints))
     bounded = any(judged_by(goal)[1] in named for goal in search["goals"])  # a constraint is a requirement, too
     if several and not least and not (required(results) or bounded):  # the goals alone do not choose
-        ends = [goal_values(results, search, one) for one in _ends(search)]
-        values |= {"holes": holes_words(found), "edges": edges, "tried": int(found.attrs["rows"])}
+        ends = [goal_values(results, search, one, interval=False) for one in _ends(search)]
+        worst = all(text.endswith(WORST) for text in words)
+        words = [text.removesuffix(WORST) for text in words] if worst else words
+        values |= {
+            "worst": worst,
+            "holes": holes_words(found, named=False),
+            "edges": edges,
+            "tried": int(found.attrs["rows"]),
+        }
         return say("optimum", "requirement", ends=ends, words=words, goals=told, **values)
     values |= {"least": least, "constraints": [str(one) for one in results.config.constraints]}
     values["edges"] = edges
@@ -309,13 +318,18 @@ def _unreached(results: Results, search: dict[str, Any]) -> Sentence | None:
     return say("optimum", "unreached", goals=low) if low else None
 
 
-def _checked(results: Results, search: dict[str, Any]) -> Sentence | None:
-    """Say how much goals that are results change at `reference`; None where all goals are choices."""
+def _checked(results: Results, search: dict[str, Any], large: bool) -> Sentence | None:
+    """Say how much goals that are results change at `reference`; None where all goals are choices.
+
+    A `large` change, above `LARGE_ERROR`, stands in the verdict, and a smaller one in the proof.
+    """
     optima = search["optima"]
     solved = [i for i, goal in enumerate(search["goals"]) if goal not in results.design.meta["outer"]]
     if not solved:
         return None
     change = max(abs(_changes(one["values"], one["reference"])[i]) for one in optima for i in solved)
+    if (change > LARGE_ERROR) != large:
+        return None
     worse = sum(one["violation"][1] > one["violation"][0] for one in optima)
     return say("optimum", "checked", change=change, worse=worse, many=len(optima), several=len(solved) > 1)
 

@@ -57,11 +57,12 @@ def partly_holding(front: xr.Dataset) -> int:
     return int(((front["optimal"] == 1) & (front["valid_in"] < front.attrs["conditions"])).sum())
 
 
-def holes_words(front: xr.Dataset) -> list[str]:
-    """Write between which values of a goal a Pareto set has no design."""
+def holes_words(front: xr.Dataset, named: bool = True) -> list[str]:
+    """Write between which values of a goal, which is `named` or told by its unit, a Pareto set has no design."""
     goal, holes = holes_of(front)
     texts = [" and ".join(_goal_value(front, goal, value, plainly=True) for value in ends) for ends in holes]
-    return [f"between {text}" + f" of the {goal_words(front, goal)}" * (text is texts[-1]) for text in texts]
+    of_goal = f" of the {goal_words(front, goal)}" * named
+    return [f"between {text}" + of_goal * (text is texts[-1]) for text in texts]
 
 
 def goal_words(front: xr.Dataset, name: str) -> str:
