@@ -148,11 +148,11 @@ def pareto(
     regime = regimes(ds, dims)
     names = dict.fromkeys([*objectives, *sorted(wanted)])
     columns = {name: results.quantity(name) for name in names}
-    values = {name: own[0] for name, own in columns.items()}
+    limited = {name: results.constrained(name) for name in wanted}
     own, model = _own_rows(design)
     kept = np.isin(regime, [REGIMES.index(name) for name in keep])
-    undefined = np.isnan(np.stack([values[name].astype(float) for name in objectives])).any(axis=0)
-    allowed, excluded = _allowed(undefined, values, constraints, own, kept)
+    undefined = np.isnan(np.stack([columns[name][0].astype(float) for name in objectives])).any(axis=0)
+    allowed, excluded = _allowed(undefined, limited, constraints, own, kept)
     shown = {n: readable(c)[allowed] for n, c in design.columns.items() if not (model and n == "contact_model")}
     attrs: dict[str, Any] = {
         "constraints": "; ".join(constraints),
