@@ -27,7 +27,7 @@ def run(**keys):
 
 @pytest.mark.parametrize("drive", [-6.0, 6.0])
 def test_a_drive_at_the_limit_of_friction_skids_in_both_directions(drive):
-    """12 cos 60 deg = 0.05 * 120 exactly: neither driving nor braking holds, and a little less holds."""
+    """The drive needs 12 N * cos 60 deg, and friction transmits 0.05 * 120 N, which is the same: the roller skids."""
     case = {"contact_angle": 60, "radial_force": -120, "friction_coefficient": 0.05, "motor_force": 2 * drive}
     case |= BASE | {"motor_force": 2 * drive}
     assert int(tr.solve(case, **FAST)["regime"]) == 1
@@ -182,3 +182,12 @@ def test_levels_with_few_cases_do_not_hide_the_one_with_most():
     among = (angle > 33) | (place < 9)
     hit = among & np.where(angle < 33, place < 8, np.where(angle < 38, place < 17, place < 3))
     assert most_frequent(results, hit, among) is None
+
+
+@pytest.mark.slow
+def test_a_pareto_set_keeps_a_constraint_as_the_study_does(search):
+    """Of a life in a range both compare the low end, which is shorter than the value in some rows."""
+    low, value = (search.quantity(f"{FIRST}{end}")[0] for end in ("_low", ""))
+    front = search.pareto({"axis_distance": "min", FIRST: "max"}, [f"{FIRST} > 200"])
+    assert ((low <= 200) & (value > 200) & search.inside).any()
+    assert np.array_equal(front["row"].values, np.flatnonzero((low > 200) & search.rolling & ~np.isnan(value)))

@@ -142,7 +142,7 @@ def test_a_load_that_only_some_proposals_were_tried_under_counts_for_the_target(
     assert "worst shared condition" in report_text(results)
     if best in set(radius[heavy]):
         own = table["life"][heavy & (radius == best)].min()
-        assert f"(the first lasts {quantity(own, 'h')} there)" in report_text(results)
+        assert f"(the first design lasts {quantity(own, 'h')} there)" in report_text(results)
 
 
 def test_one_shared_load_is_too_little_to_compare_proposals(tmp_path, monkeypatch):

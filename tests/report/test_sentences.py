@@ -15,7 +15,7 @@ import yaml
 from synthetic_results import grid_study, results_of
 from told import effect_of, occurrence
 
-from trackroller.report.numbers import at_most, percent, plus_minus, share
+from trackroller.report.numbers import percent, percent_up, plus_minus, share
 from trackroller.report.pages.study import contents
 from trackroller.report.tables.table import Table
 from trackroller.report.words.accuracy import SLIDING_ERROR, friction_error, full_sliding
@@ -81,10 +81,10 @@ def test_a_share_is_never_rounded_to_all_or_none():
 
 
 def test_a_largest_error_is_never_rounded_down():
-    told = [at_most(error) for error in (0.01487, 0.0013, 1.591, 0.0999, 0.0)]
+    told = [percent_up(error) for error in (0.01487, 0.0013, 1.591, 0.0999, 0.0)]
     assert told == ["1.5 %", "0.13 %", "160 %", "10 %", "0 %"]
     for error in np.random.default_rng(2).uniform(1, 10, 300) * 10.0 ** np.arange(-5, 1).repeat(50):
-        percents = float(at_most(error).removesuffix(" %").replace(",", ""))
+        percents = float(percent_up(error).removesuffix(" %").replace(",", ""))
         assert 100 * error * (1 - 1e-9) <= percents <= 110 * error
 
 

@@ -213,9 +213,9 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     if math.isinf(value):
         return "unlimited"
     exact, half = 100 * max(0.0, value), 50 * (high - low)
-    if math.isfinite(half) and min(value - low, high - value) < LOPSIDED * half / 100:
-        return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
     if math.isfinite(half):
+        if 100 * min(value - low, high - value) < LOPSIDED * half:
+            return f"{percent(value)} ({percent(low).removesuffix(' %')} to {percent(high)})"
         return f"{exact:.0f} ± {max(1.0, half):.0f} %" if half >= 0.5 or exact >= 1 else f"{exact:.1f} ± {half:.1f} %"
     return (
         f"{exact:.0f} %"
@@ -226,7 +226,7 @@ def percent(value: float, low: float = math.nan, high: float = math.nan) -> str:
     )
 
 
-def at_most(error: float) -> str:
+def percent_up(error: float) -> str:
     """Write an error in percent with two figures, rounded up, so that no error is larger: '1.5 %' for 0.01482."""
     step = 10.0 ** (math.floor(math.log10(100 * error)) - 1) if error > 0 else 1.0
     return f"{rounded(math.ceil(100 * error / step - 1e-9) * step, 2)} %"

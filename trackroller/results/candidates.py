@@ -146,7 +146,7 @@ class Candidates:
         """
         roles = results.roles | dict.fromkeys(free, "choice")
         choices, conditions = (tuple(n for n, r in roles.items() if r == role) for role in ("choice", "condition"))
-        own = results.of_one_model(np.ones(len(results.table), dtype=bool))
+        own = results.of_one_model()
         place = np.where(own, codes(results.table, choices), -1)
         place[own] = np.unique(place[own], return_inverse=True)[1]
         use = codes(results.table, conditions)

@@ -6,8 +6,9 @@ gaps, no "only at" from a sample, no share over several contact models.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
+from functools import cache, partial
 from itertools import chain
 from typing import Any
 
@@ -153,7 +154,7 @@ def why(results: Results) -> list[Finding]:
         if fitted and headline(sens) == "first":  # a fit tells the same of such a sample, and closer
             indices = [one for one in indices if one.kind != "index"]
         found += indices
-    for i, one in enumerate(strongest):  # said once: that lives lie beyond the data, and how well a fit predicts
+    for i, one in enumerate(strongest):  # one sentence says that lives lie beyond the data, one how well a fit predicts
         once = {"beyond": one.values["beyond"] if i == 0 else 0} | ({"share": np.nan} if i in fitted[1:] else {})
         strongest[i] = replace(one, values={**one.values, **once})
     asked = [name for name in results.config.analysis.outputs or () if not is_life(name) and name not in REGIMES]
@@ -302,7 +303,9 @@ def strongest_effects(results: Results, column: str) -> list[Finding]:
     Among those on a life choices of the design come before conditions, and the speed last: hours are distance over
     speed.
     """
-    found = [one for name in results.factors if (one := effect_of(results, column, name)) is not None]
+    rows = results.of_one_model(results.valid)
+    fit = cache(partial(effects.fitted_effects, results, column, rows))  # one serves all factors, and pairs need none
+    found = [one for name in results.factors if (one := effect_of(results, column, name, fit=fit)) is not None]
 
     def size(one: Finding) -> tuple[bool, float]:
         return one.kind == "pairs_both", -abs(float(np.log(one.values["effect"].ratio)))
@@ -315,7 +318,13 @@ def strongest_effects(results: Results, column: str) -> list[Finding]:
     return sorted(found, key=place) if is_life(column) else found
 
 
-def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | None = None) -> Finding | None:
+def effect_of(
+    results: Results,
+    column: str,
+    factor: str,
+    rows: np.ndarray | None = None,
+    fit: Callable[[], tuple[float, list[Effect]]] | None = None,
+) -> Finding | None:
     """Say how an output changes with a factor.
 
     Cases that differ in nothing else are compared where there are enough of them, otherwise a fit of a sample is asked.
@@ -325,6 +334,7 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
     column : column of the output
     factor : name of the factor
     rows : cases that count, shape (n,) bool; default: the valid ones
+    fit : returns `effects.fitted_effects` of these cases; default: they are fitted anew
 
     Returns
     -------
@@ -340,7 +350,7 @@ def effect_of(results: Results, column: str, factor: str, rows: np.ndarray | Non
         return _of_pairs(results, column, effect, rows)
     if results.config.method.proposes:  # a search prefers good designs: it is no sample
         return None
-    share, fitted = effects.fitted_effects(results, column, rows)
+    share, fitted = effects.fitted_effects(results, column, rows) if fit is None else fit()
     effect = next((one for one in fitted if one.factor == factor), None)
     if effect is None or not _beyond_chance(effect, len(results.factors)) or not cut_evenly(results, factor):
         return None
@@ -420,7 +430,7 @@ def slip_law(results: Results) -> Finding | None:
     hit, lifted = (results.regime == REGIMES.index(name) for name in ("full_slip", "lift_off"))
     margin = slip_margin(results)
     margin = np.where(results.column("motor_force", results.config.base.get("motor_force", np.nan)) == 0, 1.0, margin)
-    looked = results.of_one_model(np.ones(len(hit), dtype=bool))
+    looked = results.of_one_model()
     hit, over = hit & looked, looked & (margin < -ROUNDING)
     if not hit.any() or np.isnan(margin[looked]).any() or (hit & (margin > ROUNDING)).any():
         return None
@@ -447,7 +457,7 @@ def occurrence(results: Results, event: np.ndarray, what: str, among: np.ndarray
     Finding or None
         None if the event never occurs.
     """
-    looked = results.of_one_model(np.ones(len(event), dtype=bool) if among is None else among)
+    looked = results.of_one_model(among)
     kept = "all" if among is None else "valid"
     hit, whole, cases = event & looked, int(looked.sum()), int((event & looked).sum())
     if not cases:

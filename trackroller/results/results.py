@@ -414,9 +414,9 @@ class Results:
         """
         return (name,) if name in self.factors else self.derived.get(name, ())
 
-    def of_one_model(self, rows: np.ndarray) -> np.ndarray:
-        """Leave out the rows with another level of an option than `held_level`, shape (n,) bool."""
-        kept = rows.copy()
+    def of_one_model(self, rows: np.ndarray | None = None) -> np.ndarray:
+        """Return some rows, or all, without those of another level of an option than `held_level`, shape (n,) bool."""
+        kept = np.ones(len(self.table), dtype=bool) if rows is None else rows.copy()
         for option in (n for n in self.factors if n in OPTION_FACTORS):
             kept &= (self.table[option] == self.held_level(option)).to_numpy()
         return kept

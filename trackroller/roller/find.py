@@ -249,7 +249,8 @@ class _Search:
     def notes(self) -> tuple[str, ...]:
         """Say what the condition does not count."""
         said = [
-            f"The value of {one} lies inside its range; {one}_low is surely reached." for one in sorted(self.ranged)
+            f"{one} holds at the values of the placeholders; {one}_low is surely reached."
+            for one in sorted(self.ranged)
         ]
         alone = self.case.guide_overrollings_per_hour is None and self.name != "guide_overrollings_per_hour"
         if alone and any(one.startswith("pair_life") for one in self.results):

@@ -16,13 +16,13 @@ from trackroller.parameters.example import not_given_text, used_of
 from trackroller.report.explorer.page import explorer, secured
 from trackroller.report.html import data_uri, render
 from trackroller.report.numbers import (
-    at_most,
     capital,
     count,
     lives_in_years,
     long_name,
     part_of,
     percent,
+    percent_up,
     plain,
     rounded,
 )
@@ -246,7 +246,7 @@ def solution_facts(results: Results) -> list[inputs.Row]:
     if (known := _finite(ds, "residual")).size:
         rows.append(inputs.Row("Largest relative residual of the equilibrium", rounded(float(known.max()), 2)))
     if (known := _finite(ds, "error_estimate")).size:
-        rows.append(inputs.Row("Largest estimated relative error of the peak stress", at_most(float(known.max()))))
+        rows.append(inputs.Row("Largest estimated relative error of the peak stress", percent_up(float(known.max()))))
     return rows
 
 

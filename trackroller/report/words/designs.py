@@ -399,6 +399,11 @@ def life_error(results: Results) -> Sentence | None:
         return None
     candidates, best = Candidates.grouped(results, ranked.goal), ranked.best[0]
     cases = Cases(candidates)
-    error = float(cases.error[(candidates.design == best.number) & (cases.reason == "")].max(initial=0.0))
     name = design_words(candidates, best.choices) if len(ranked.candidates) > 1 else ""
+    return life_error_of(cases, candidates.design == best.number, name)
+
+
+def life_error_of(cases: Cases, own: np.ndarray, name: str) -> Sentence | None:
+    """State the largest error by the solution of the lives of a named design, shape (n,) bool, above `LARGE_ERROR`."""
+    error = float(cases.error[own & (cases.reason == "")].max(initial=0.0))
     return say("accuracy", "life", name=name, error=error) if error > LARGE_ERROR else None

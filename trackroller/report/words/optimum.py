@@ -24,7 +24,15 @@ from trackroller.report.numbers import (
     with_unit,
 )
 from trackroller.report.tables.table import Table, factor_cell, heading
-from trackroller.report.words.designs import BEST, LARGE_ERROR, compared, ended_by, ends_text, within_words
+from trackroller.report.words.designs import (
+    BEST,
+    LARGE_ERROR,
+    compared,
+    ended_by,
+    ends_text,
+    life_error_of,
+    within_words,
+)
 from trackroller.report.words.pareto import holes_words
 from trackroller.report.words.sentence import Sentence, say
 from trackroller.report.words.verdict import (
@@ -107,10 +115,8 @@ def _life_error(results: Results, best: dict[str, Any] | None) -> Sentence | Non
     if best is None or results.life is None or any(is_life(judged_by(goal)[1]) for goal in goals_of_search(results)):
         return None
     cases, many = Cases(Candidates.grouped(results, results.life)), results.design.meta["inner_samples"]
-    own = slice(best["design"] * many, (best["design"] + 1) * many)
-    error = float(cases.error[own][cases.reason[own] == ""].max(initial=0.0))
-    name = design_words(results, best["design"])
-    return say("accuracy", "life", name=name, error=error) if error > LARGE_ERROR else None
+    own = np.arange(len(cases.error)) // many == best["design"]
+    return life_error_of(cases, own, design_words(results, best["design"]))
 
 
 def _best(search: dict[str, Any], judged: Judged) -> dict[str, Any] | None:
@@ -331,7 +337,7 @@ def _checked(results: Results, search: dict[str, Any], large: bool) -> Sentence 
     if (change > LARGE_ERROR) != large:
         return None
     worse = sum(one["violation"][1] > one["violation"][0] for one in optima)
-    return say("optimum", "checked", change=change, worse=worse, many=len(optima), several=len(solved) > 1)
+    return say("optimum", "checked", change=change, worse=worse, several=len(solved) > 1)
 
 
 def _changes(before: list[float], after: list[float]) -> list[float]:

@@ -58,7 +58,10 @@ def partly_holding(front: xr.Dataset) -> int:
 
 
 def holes_words(front: xr.Dataset, named: bool = True) -> list[str]:
-    """Write between which values of a goal, which is `named` or told by its unit, a Pareto set has no design."""
+    """Write the gaps of a Pareto set: between which values of a goal it has no design.
+
+    The goal is `named`, unless the sentence around has named it.
+    """
     goal, holes = holes_of(front)
     texts = [" and ".join(_goal_value(front, goal, value, plainly=True) for value in ends) for ends in holes]
     of_goal = f" of the {goal_words(front, goal)}" * named

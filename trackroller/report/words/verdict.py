@@ -181,7 +181,7 @@ class _Words:
 
     def lives_of_cases(self) -> Sentence | None:
         """State the lives of all cases, and what ends them if it is always the same; with a target that all meet it."""
-        cases, own = Cases(self.candidates), self.results.of_one_model(np.ones(len(self.results.table), dtype=bool))
+        cases, own = Cases(self.candidates), self.results.of_one_model()
         rows = own & (cases.reason == "")
         if self.found.target:
             every = cases.on_target(exact=False)[1][own].all()
