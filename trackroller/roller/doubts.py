@@ -101,6 +101,7 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
         sentences += [text for profile in _mappings(values.get(name)) for text in _of_points(name, profile, radius)]
+    sentences += _axles_in_the_rail(values)
     sentences += _convex_rollers(values)
     sentences += _touching_elsewhere(values)
     return [text for text in sentences if text]
@@ -224,6 +225,20 @@ def _gaps_and_waves(points: np.ndarray, found: Findings) -> list[str]:
             "length do; they count as shape. If they come from the measurement, describe the shape by its radii."
         )
     return sentences
+
+
+def _axles_in_the_rail(values: Mapping[str, Any]) -> list[str]:
+    """Return a sentence about the first roller whose axis lies inside the contour of the guide."""
+    axes = _numbers(values.get("axis_distance", EXAMPLE["axis_distance"]))
+    radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
+    same = len(axes) == len(radii)  # a study has a row for each case
+    pairs = zip(axes, radii, strict=True) if same else ((axis, radius) for axis in axes for radius in radii)
+    inside = [(axis, radius) for axis, radius in pairs if axis <= radius]
+    return [
+        f"axis_distance = {axis:.4g} mm does not exceed guide_profile_radius = {radius:.4g} mm: the axle lies inside "
+        "the rail. Take a larger axis_distance."
+        for axis, radius in inside[:1]
+    ]
 
 
 def _touching_elsewhere(values: Mapping[str, Any]) -> list[str]:
