@@ -1,7 +1,6 @@
-"""The answer to a study, a search or one roller: one flat record, which every page, table and file reads.
+"""The answer to a study: one flat record of numbers and names.
 
-The record holds numbers and names, no sentences. `trackroller.report.headlines` says its headline in words; terminal,
-JSON, pages and workbook read its fields. `to_dict` states the keys that scripts may rely on.
+The record holds numbers and names, no sentences. `Results.answer` returns it, and `to_dict` states its keys.
 """
 
 from __future__ import annotations

@@ -151,7 +151,7 @@ class CaseRanges:
         body = body_of(name)
         stated = f"error_estimate_{body}"
         if name.startswith("peak_stress") and stated in self.results.table:
-            return np.nan_to_num(self.results.column(stated))
+            return np.asarray(np.nan_to_num(self.results.column(stated)))
         return np.zeros(len(self.value))
 
     @cached_property

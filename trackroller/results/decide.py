@@ -267,7 +267,7 @@ def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
 
 
 def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str, Any]:
-    """Return the numbers and names of the headline, see `trackroller.report.headlines`."""
+    """Return the numbers and names of the headline: the named candidates, and what a reader must know of them."""
     one = table.iloc[found.order[0]]
     told: dict[str, Any] = {
         "names": names_of(own, found.named) if found.named else [],
