@@ -141,6 +141,8 @@ class Comparison:
     @cached_property
     def idle(self) -> dict[str, str]:
         """Return the choices that change nothing which a decision rests on: `no effect`, or `none on the NAME`."""
+        if not self.ranges.held.any():
+            return {}  # equal failures do not tell whether a choice has an effect
         judged = [self.ranges, *(own for _, own in self.judges)]
         deciding = [values for own in judged for values in (own.low, own.high, own.reason.astype(str))]
         found = {}
