@@ -37,11 +37,13 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a factor that the study asks for.
 
 `which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict `model`, `verdict`,
-`low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`, `largest` ratio on like rows, to the model `base`.
+`low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`, `largest` ratio on like rows to the model
+`base`.
 
 `best`, by `Answer.kind` (`one`, `front`, `front_required`): `designs`, a list of dict: `name` (as one of `names`),
 `at` (`corner`, `knee` or ''), `goals` (list of {words, units, value}), `stopped` (search stopped before this end);
-`binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`, `exceeded`, `second`.
+`binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
+`exceeded`, `second`.
 
 `how it behaves`: `smallest`, `largest` [unit of the output], `at_smallest`, `at_largest` (levels in words),
 `ends` (list of {limit, body, count}), `of` (cases), `lost` (cases without the output), `ends_low`.
@@ -55,7 +57,18 @@ from dataclasses import dataclass
 from typing import Any
 
 from trackroller.errors import listing
-from trackroller.report.numbers import capital, hour_unit, level_text, number, on_duty, percent, unit_text
+from trackroller.report.numbers import (
+    capital,
+    carried,
+    carried_range,
+    hour_unit,
+    level_text,
+    number,
+    on_duty,
+    percent,
+    range_unit,
+    unit_text,
+)
 from trackroller.results.answer import Answer, Caution, Column, Required
 from trackroller.study.design.levels import NAMED
 
@@ -92,3 +105,504 @@ def headline_of(answer: Answer) -> Headline:
     """
     with on_duty(answer.facts.get("duty")):
         return TEMPLATES[answer.question](answer)
+
+
+def decide(answer: Answer) -> Headline:
+    """Say which candidate to build, or why the study cannot say so."""
+    head = answer.headline
+    lead = DECISIONS[answer.kind](answer)
+    if head.get("not_held") and head.get("elsewhere"):
+        lost = f"None holds in {_part(head['not_held'], 'conditions')}"
+        lead = f"{lost}; elsewhere {_lowered(lead.removeprefix('Build '))}"
+    clauses = _shares(answer) if _known(head, "share") else _lasts(answer)
+    return _joined(lead, [*_up_to(answer), *clauses, *_nearest(answer)])
+
+
+def _build(answer: Answer) -> str:
+    named = _name(answer, _first(answer.headline.get("names")))
+    return f"Build {named}" if named else "Build it"
+
+
+def _a_or_b(answer: Answer) -> str:
+    names = list(answer.headline["names"])
+    spoken = _alternatives(answer, names[:MOST_CHOICES])
+    left = len(names) - MOST_CHOICES
+    if left > 0:
+        spoken += f" or {left} more"
+    return capital(spoken)
+
+
+def _none(answer: Answer) -> str:
+    wanted = _wanted(answer.required)
+    lead = f"None {wanted}" if wanted else "None holds all conditions"
+    nearest = answer.headline.get("nearest")
+    return f"{lead}; nearest {_name(answer, nearest['name'])}" if nearest else lead
+
+
+def _measure(answer: Answer) -> str:
+    asked = answer.headline["measure"]
+    of = f" of {asked['of']}" if asked.get("of") else ""
+    on = f" on {asked['on']}" if asked.get("on") else ""
+    return f"Measure the {asked['what']}{of}{on}"
+
+
+def _give(answer: Answer) -> str:
+    lead = f"Give {answer.headline['give']['what']}"
+    if answer.headline.get("not_held"):
+        lead += f": without it {_part(answer.headline['not_held'], 'conditions')} are lost"
+    return lead
+
+
+def _solve_finer(answer: Answer) -> str:
+    return f"Solve finer: only the error leaves {_name(answer, _first(answer.headline['names']))} open"
+
+
+def _cannot_tell(answer: Answer) -> str:
+    head = answer.headline
+    if head.get("not_judged"):
+        return f"Cannot tell: the model does not judge {_part(head['not_judged'], 'conditions')}"
+    return "Cannot tell"
+
+
+DECISIONS: dict[str, Callable[[Answer], str]] = {
+    "build": _build,
+    "a_or_b": _a_or_b,
+    "none": _none,
+    "measure": _measure,
+    "give": _give,
+    "solve_finer": _solve_finer,
+    "cannot_tell": _cannot_tell,
+}
+
+
+def _lasts(answer: Answer) -> list[str]:
+    """Return what the leader lasts, what ends it, what other rules say of it, and what is required."""
+    head = answer.headline
+    clauses = []
+    if _known(head, "low") and answer.kind != "none":
+        whose = f"{_name(answer, _first(head['names']))} " if answer.kind in ("a_or_b", "measure", "give") else ""
+        place = "" if answer.facts.get("conditions") == 1 else " at its worst condition"
+        clauses.append(f"{whose}{_output(answer, head['low'], head.get('high'))}{_beyond(head)}{place}{_then(head)}")
+    clauses += _turn(head)
+    return [*clauses, *_other_rules(head), *_required(answer)]
+
+
+def _shares(answer: Answer) -> list[str]:
+    """Return the share of the drawn conditions that meets the requirement."""
+    head = answer.headline
+    said = f"{_share(head)} of {head['n']:,} drawn conditions {_reach(answer.required)}{_beyond(head)}"
+    wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
+    return [said, *wanted, *_other_rules(head)]
+
+
+def _up_to(answer: Answer) -> list[str]:
+    """Return between which levels of a single choice all conditions meet the requirement."""
+    head = answer.headline
+    column = next((one for one in answer.columns if one.role == "name"), None)
+    if column is None or not (_known(head, "up_to") or _known(head, "from_on")):
+        return []
+    title = _lowered(column.title)
+    ends = [_level(column, head[key]) for key in ("from_on", "up_to") if _known(head, key)]
+    if len(ends) == 2:
+        return [f"every condition meets it for {title} {' to '.join(ends)}"]
+    word = "up to" if _known(head, "up_to") else "from"
+    return [f"every condition meets it {word} {title} {ends[0]}"]
+
+
+def _nearest(answer: Answer) -> list[str]:
+    """Return what the nearest candidate holds and meets where none meets the requirement."""
+    near = answer.headline.get("nearest")
+    if answer.kind != "none" or not near:
+        return []
+    met = near.get("meets")
+    said = f"meets {met}" if met is not None else f"holds {near['holds']}"
+    clauses = [f"{said} of {near['of']} conditions"]
+    if _known(near, "low") and near["low"] > 0:
+        clauses[0] += f", {_output(answer, near['low'])} at the worst"
+    fails = _short(near.get("fails"))
+    return [*clauses, f"fails at {fails}"] if fails else clauses
+
+
+def _turn(head: Mapping[str, Any]) -> list[str]:
+    """Return where a placeholder turns the answer."""
+    asked = head.get("measure")
+    if not asked or not _known(asked, "turn"):
+        return []
+    units = f" {unit_text(asked['units'])}" if asked.get("units") not in (None, "", "1", "-") else ""
+    return [f"the answer turns at {number(asked['turn'], 2)}{units}"]
+
+
+def how_sure(answer: Answer) -> Headline:
+    """Say which share of the conditions, or how many of the listed loads, meet the requirement."""
+    head = answer.headline
+    if _known(head, "share"):
+        lead = f"{_share(head)} of the conditions {_reach(answer.required)}"
+        wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
+        return _joined(lead, [*wanted, *_worst(answer), *_other_rules(head)])
+    lead = f"Meets {head['meets']:,} of {head['of']:,} loads"
+    return _joined(lead, [*_worst(answer), *_other_rules(head), *_required(answer)])
+
+
+def _worst(answer: Answer) -> list[str]:
+    head = answer.headline
+    if not _known(head, "low"):
+        return []
+    return [f"{_output(answer, head['low'], head.get('high'))}{_beyond(head)} at the worst{_then(head)}"]
+
+
+def what_matters(answer: Answer) -> Headline:
+    """Say the two largest factors, and from what to what the larger one takes the output."""
+    head, words = answer.headline, _lowered(answer.output[1])
+    factors = list(head.get("factors", ()))
+    if not factors:
+        return Headline(f"No factor changes the {words}", ".")
+    verb = "decides" if len(factors) == 1 else "decide"
+    lead = capital(f"{listing([_lowered(one['title']) for one in factors])} {verb} the {words}")
+    if _known(factors[0], "index"):
+        sizes = f"index {listing([_index(one) for one in factors])}"
+    else:
+        sizes = listing([f"×{number(one['height'], 2)}" for one in factors])
+    clauses = [sizes, _effect(answer, factors[0])]
+    if head.get("asked"):
+        clauses.append(f"{_lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
+    return _joined(lead, [clause for clause in clauses if clause])
+
+
+def _index(factor: Mapping[str, Any]) -> str:
+    index = percent(min(1.0, max(0.0, factor["index"])))
+    if not _known(factor, "index_low"):
+        return index
+    ends = [f"{100 * min(1.0, max(0.0, factor[key])):.0f}" for key in ("index_low", "index_high")]
+    return f"{index} ({' to '.join(ends)})"
+
+
+def _effect(answer: Answer, factor: Mapping[str, Any]) -> str:
+    if not _known(factor, "at_from"):
+        return ""
+    units = unit_text(factor.get("units", "")).replace("–", "")
+    levels = [_plain_level(factor.get(key)) for key in ("from", "to")]
+    ends = [carried(factor[key]) for key in ("at_from", "at_to")]
+    unit = unit_text(answer.output[2]).replace("–", "")
+    return f"{' → '.join(levels)} {units}".rstrip() + f": {' → '.join(ends)} {unit}".rstrip()
+
+
+def which_model(answer: Answer) -> Headline:
+    """Say whether the requirement or the order changes with the contact model."""
+    head = answer.headline
+    models = list(head.get("models", ()))
+    changes = head.get("changes") or ""
+    lead = {
+        "": "Neither verdict nor order changes with the contact model",
+        "verdict": "The verdict changes with the contact model, the order does not",
+        "order": "The order changes with the contact model, the verdict does not",
+        "verdict and order": "Verdict and order change with the contact model",
+    }[changes]
+    if not answer.required:
+        lead = "The order changes with the contact model" if changes else "The order is the same by each contact model"
+    clauses = []
+    if changes:
+        clauses.append(", ".join(_by_model(answer, one) for one in models[:MOST_CHOICES]))
+    if _known(head, "smallest"):
+        ratio = carried_range(head["smallest"], head["largest"])
+        clauses.append(f"{_lowered(answer.output[1])} {ratio} times that of {head['base']}")
+    return _joined(lead, clauses)
+
+
+def _by_model(answer: Answer, model: Mapping[str, Any]) -> str:
+    leader = model.get("leader")
+    named = f"{_name(answer, leader)} " if leader else ""
+    value = carried_range(model["low"], model.get("high", model["low"]), model.get("error", math.nan))
+    state = f"{model['verdict']} " if answer.required and model.get("verdict") else ""
+    unit = unit_text(answer.output[2]).replace("–", "")
+    return f"{named}{state}by {model['model']} ({value} {unit})".replace(" )", ")")
+
+
+def best(answer: Answer) -> Headline:
+    """Say the best design and what binds it, or the corners and the knee of a front."""
+    head = answer.headline
+    designs = list(head.get("designs", ()))
+    if not designs:
+        return _joined("No design meets the requirement" if answer.required else "No design holds", [])
+    if answer.kind == "front":
+        return _front(answer, designs)
+    first = designs[0]
+    goals = listing([_goal(one) for one in first["goals"]])
+    accuracy = f" at {head['accuracy']}" if head.get("accuracy") else ""
+    clauses = [f"{goals}{_beyond(head)}{accuracy}"]
+    binds = _short(head.get("binds"))
+    if binds:
+        clauses.append(f"bound by {binds}")
+    return _joined(f"Build {_name(answer, first['name'])}", [*clauses, *_other_rules(head), *_required(answer)])
+
+
+def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:
+    count = {1: "one design", 2: "two designs"}.get(len(designs), "three designs")
+    said = []
+    for design in designs[:3]:
+        knee = " (knee)" if design.get("at") == "knee" else ""
+        goals = ", ".join(_goal(one, units_only=True) for one in design["goals"])
+        said.append(f"{goals}{knee}")
+    stopped = [design for design in designs if design.get("stopped")]
+    tail = {0: "", 1: "; the search stopped before one corner"}.get(
+        len(stopped), "; the search stopped before both corners"
+    )
+    return Headline(f"No requirement, {count}", f": {'; '.join(said)}{tail}.")
+
+
+def _goal(goal: Mapping[str, Any], units_only: bool = False) -> str:
+    """Return a goal with its value; the words of a life are left to its hours."""
+    value = carried(goal["value"])
+    unit = _unit_of_value(goal["units"], goal["value"])
+    if goal["units"] == "h" or (units_only and unit):
+        return f"{value} {unit}".strip()
+    return f"{_lowered(goal['words'])} {value} {unit}".strip()
+
+
+def how_it_behaves(answer: Answer) -> Headline:
+    """Say the range of the output and what ends the cases."""
+    head = answer.headline
+    if not _known(head, "smallest"):
+        return _joined(f"No case has a {_lowered(answer.output[1])}", _ends(head))
+    one = head["smallest"] == head.get("largest", head["smallest"])
+    value = _value(answer, head["smallest"], head.get("largest"))
+    where = [_short(head.get(key)) for key in ("at_smallest", "at_largest")]
+    clauses = []
+    if all(where) and not one:
+        clauses.append(f"smallest at {where[0]}, largest at {where[1]}")
+    return _joined(f"{capital(answer.output[1])} {value}", [*clauses, *_ends(head)])
+
+
+def _ends(head: Mapping[str, Any]) -> list[str]:
+    ends = list(head.get("ends", ()))
+    if not ends:
+        return []
+    of = int(head.get("of", 0))
+    if len(ends) == 1 and ends[0]["count"] == of:
+        return [f"{_end(ends[0])} ends {'every case' if of > 1 else 'it'}"]
+    said = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
+    return [f"{', '.join(said)} of {of:,} cases"]
+
+
+def _end(end: Mapping[str, Any]) -> str:
+    return f"{end['limit']} of the {end['body']}" if end.get("body") else str(end["limit"])
+
+
+TEMPLATES: dict[str, Callable[[Answer], Headline]] = {
+    "decide": decide,
+    "what matters": what_matters,
+    "how sure": how_sure,
+    "best": best,
+    "which model": which_model,
+    "how it behaves": how_it_behaves,
+}
+WARNING_HEADS = {
+    "not_held": "Not held",
+    "not_judged": "Not judged",
+    "second_model": "Second model",
+    "extrapolated": "Extrapolated",
+    "worn": "Worn",
+    "not_given": "Not given",
+    "at_end": "At an end",
+    "unlike": "Unlike",
+}
+
+
+def warning_line(caution: Caution) -> str:
+    """Return a warning in one line: its head, how many rows of how many, and where."""
+    where = f": {caution.where}" if caution.where else ""
+    return f"{WARNING_HEADS[caution.code]}, {warning_rows(caution)}{where}"
+
+
+def warning_rows(caution: Caution) -> str:
+    """Return how many rows a warning concerns; nothing is counted where it concerns none."""
+    return f"{caution.count:,} of {caution.of:,} {caution.what}" if caution.of else caution.what
+
+
+def _joined(lead: str, clauses: Sequence[str]) -> Headline:
+    """Return a headline of its lead and the clauses behind it."""
+    separator = "; " if ":" in lead else ": "
+    return Headline(lead, f"{separator if clauses else ''}{'; '.join(clauses)}.")
+
+
+def _known(head: Mapping[str, Any], key: str) -> bool:
+    """Return whether a key holds a value."""
+    value = head.get(key)
+    if value is None:
+        return False
+    return not (isinstance(value, float) and math.isnan(value))
+
+
+def _first(names: Any) -> Mapping[str, Any]:
+    return names[0] if names else {}
+
+
+def _name(answer: Answer, name: Mapping[str, Any]) -> str:
+    """Return a candidate by its levels: 'steel, groove 6.5 mm'."""
+    columns = {column.name: column for column in answer.columns}
+    texts = [key for key, level in name.items() if isinstance(level, str)]
+    spoken = []
+    for key, level in name.items():
+        column = columns.get(key, Column(key, key.replace("_", " "), kind="level"))
+        alone = isinstance(level, str) and len(texts) == 1
+        alone = alone or (key in NAMED and not isinstance(level, str))
+        text = _level(column, level)
+        spoken.append(text if alone else f"{_lowered(column.title)} {text}")
+    left = len(spoken) - MOST_CHOICES
+    if left <= 0:
+        return ", ".join(spoken)
+    return f"{', '.join(spoken[:MOST_CHOICES])} and {left} more"
+
+
+def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:
+    """Return candidates that are equally good; the title of a single choice is said once."""
+    columns = {column.name: column for column in answer.columns}
+    keys = {key for name in names for key in name}
+    if len(keys) == 1:
+        key = keys.pop()
+        column = columns.get(key)
+        levels = [name[key] for name in names]
+        if column is not None and key not in NAMED and not any(isinstance(level, str) for level in levels):
+            values = " or ".join(_plain_level(level) for level in levels)
+            return f"{_lowered(column.title)} {values} {unit_text(column.units)}".replace(" –", "").replace(" °", "°")
+    return " or ".join(_name(answer, name) for name in names)
+
+
+def _level(column: Column, level: Any) -> str:
+    """Return a level with its unit."""
+    if isinstance(level, bool):
+        return "yes" if level else "no"
+    if column.name in NAMED or isinstance(level, str):
+        return level_text(column.name, level)
+    unit = unit_text(column.units).replace("–", "")
+    return f"{_plain_level(level)} {unit}".strip().replace(" °", "°")
+
+
+def _plain_level(level: Any) -> str:
+    return level if isinstance(level, str) else number(float(level))
+
+
+def _output(answer: Answer, low: float, high: float | None = None) -> str:
+    """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
+    value = _value(answer, low, high)
+    return value if answer.output[2] == "h" else f"{_lowered(answer.output[1])} {value}"
+
+
+def _value(answer: Answer, low: float, high: float | None = None) -> str:
+    if math.isinf(low) and low > 0:
+        return "unlimited"
+    units, error = answer.output[2], answer.headline.get("error", math.nan)
+    bounds = [end for one in answer.required if one.output == answer.output[0] for end in (one.least, one.most)]
+    if high is None or math.isnan(high):
+        high = low
+    text = carried_range(low, high, error, bounds)
+    unit = _unit_of_value(units, low) if " to " not in text else _unit_of_range(units, low, high)
+    return f"{text} {unit}".strip().replace(" °", "°")
+
+
+def _unit_of_value(units: str, value: float) -> str:
+    return hour_unit(value) if units == "h" else unit_text(units).replace("–", "")
+
+
+def _unit_of_range(units: str, low: float, high: float) -> str:
+    return range_unit(low, high) if units == "h" else unit_text(units).replace("–", "")
+
+
+def _beyond(head: Mapping[str, Any]) -> str:
+    return " (extrapolated)" if head.get("extrapolated") else ""
+
+
+def _then(head: Mapping[str, Any]) -> str:
+    """Return what ends the leader; two limits where the ends of its range differ."""
+    if not head.get("ends"):
+        return ""
+    limits = dict.fromkeys([head["ends"], head.get("ends_high") or head["ends"]])
+    body = f" of the {head['body']}" if head.get("body") else ""
+    return f", then {' or '.join(limits)}{body}"
+
+
+def _other_rules(head: Mapping[str, Any]) -> list[str]:
+    """Return a second model that turns the verdict, and the check that is exceeded most."""
+    clauses = []
+    second = head.get("second")
+    if second:
+        verb = {"met": "meets it", "open": "leaves it open", "missed": "misses it", "none": "does not judge it"}
+        clauses.append(f"{second['limit']} {verb[second['verdict']]}")
+    exceeded = head.get("exceeded")
+    if exceeded:
+        body = f" of the {exceeded['body']}" if exceeded.get("body") else ""
+        after = f" after {carried(exceeded['hours'])} h" if _known(exceeded, "hours") else ""
+        clauses.append(f"{exceeded['limit']}{body} exceeded ({percent(exceeded['use'])}){after}")
+    return clauses
+
+
+def _required(answer: Answer) -> list[str]:
+    """Return what is required, as one clause."""
+    if answer.kind == "none" or not answer.required:
+        return []
+    return [f"required {listing([_bound(one, answer.output[0]) for one in answer.required])}"]
+
+
+def _bound(required: Required, output: str) -> str:
+    """Return a requirement with its unit, and with the words of its output where it is another than the table's."""
+    words = "" if required.output == output else f"{_lowered(required.words)} "
+    if math.isfinite(required.least) and math.isfinite(required.most):
+        return f"{words}{number(required.least, 6)} to {_amount(required, required.most)}"
+    if math.isfinite(required.most):
+        return f"{words}at most {_amount(required, required.most)}"
+    if words:
+        words += "at least "
+    return f"{words}{_amount(required, required.least)}"
+
+
+def _amount(required: Required, value: float) -> str:
+    unit = _unit_of_value(required.units, value)
+    return f"{number(value, 6)} {unit}".strip().replace(" °", "°")
+
+
+def _reach(required: Sequence[Required]) -> str:
+    """Return the verb of conditions that meet a requirement: 'reach 5,000 h'."""
+    if len(required) != 1:
+        return "meet the requirements"
+    one = required[0]
+    if math.isfinite(one.least) and math.isfinite(one.most):
+        return f"keep to {number(one.least, 6)} to {_amount(one, one.most)}"
+    if math.isfinite(one.most):
+        return f"stay within {_amount(one, one.most)}"
+    return f"reach {_amount(one, one.least)}"
+
+
+def _wanted(required: Sequence[Required]) -> str:
+    """Return the verb of one candidate that meets a requirement: 'reaches 5,000 h'; '' without a requirement."""
+    if not required:
+        return ""
+    if len(required) > 1:
+        return "meets the requirements"
+    verb, amount = _reach(required).split(" ", 1)
+    third = {"reach": "reaches", "stay": "stays", "keep": "keeps"}
+    return f"{third[verb]} {amount}"
+
+
+def _share(head: Mapping[str, Any]) -> str:
+    text = percent(head["share"])
+    if not _known(head, "share_low"):
+        return text
+    ends = [f"{100 * head[key]:.0f}" for key in ("share_low", "share_high")]
+    return f"{text} ({' to '.join(ends)})"
+
+
+def _part(lost: Mapping[str, Any], what: str) -> str:
+    """Return 'COUNT of ALL conditions', with the levels that hold them where they are short."""
+    where = _short(lost.get("where"))
+    return f"{lost['count']:,} of {lost['of']:,} {what}" + (f" ({where})" if where else "")
+
+
+def _short(text: Any) -> str:
+    """Return a text of the record if it is short, otherwise nothing: then it stands in the table alone."""
+    if not isinstance(text, str) or len(text.split()) > SHORT:
+        return ""
+    return text
+
+
+def _lowered(text: str) -> str:
+    """Write the first letter small, unless the word is a symbol or a name such as POM."""
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
