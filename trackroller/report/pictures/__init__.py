@@ -12,8 +12,8 @@ front, `named` (list of dict `x`, `y`, `title`), `beyond` (part of the range of 
 
 `like`: `base` (the model that others are compared with), `ratios` (dict: title -> ratios on like rows (n,)).
 
-`slice`: `title`, `units`, `logarithmic`, `levels` (k,), `series` (dict: name -> values (k,)), `held` (the other factors in
-words).
+`slice`: `title`, `units`, `logarithmic`, `levels` (k,), `series` (dict: name -> values (k,)), `held` (the other
+factors in words).
 
 `pairs`: a list of dict `titles`, `units` (two each), `first` (k,), `second` (m,) levels, `middle` (k, m) of the output,
 `index` (share of the variance [1], NaN if unknown).

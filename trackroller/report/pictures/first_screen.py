@@ -1,0 +1,349 @@
+"""The one picture of the first screen: front, history, distribution, like against like, or slice."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from markupsafe import Markup
+
+from trackroller.report.numbers import number
+from trackroller.report.pictures.axis import Axis
+from trackroller.report.pictures.curves import points
+from trackroller.report.pictures.frame import (
+    WIDE,
+    bounds_of,
+    cut,
+    framed,
+    left_out_words,
+    left_room,
+    lower_axis,
+    output_title,
+    required_levels,
+    upright_axis,
+    with_unit,
+)
+from trackroller.report.pictures.marks import (
+    anchor_at,
+    dot,
+    element,
+    joined,
+    label,
+    percent_place,
+    spread_labels,
+    stretched,
+    upright,
+    width_of,
+)
+from trackroller.results.answer import Answer
+
+TALL = 260.0  # height of a front [px]
+FLAT = 190.0  # height of a picture that takes the whole width [px]
+LINE = 15.0  # height of a line of text in a picture [px]
+MOST_POINTS = 800  # of a front that are drawn; of more, those of the front and an even part of the others
+MOST_LINES = 6  # of a distribution or a slice with a name
+MOST_STEPS = 120  # places of a distribution
+MOST_DOTS = 60  # of one row of like against like
+STROKES = ("", "dashed", "dotted", "chain")
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A picture with what it draws in words, and whether it stands beside the table."""
+
+    drawn: Markup
+    caption: str
+    beside: bool = False
+
+
+def picture_of(answer: Answer) -> Picture | None:
+    """Return the picture of the first screen of an answer, None if its table or its curves are the picture."""
+    for name, draw in DRAWINGS.items():
+        if answer.picture.get(name) is not None:
+            return draw(answer, answer.picture[name])
+    return None
+
+
+def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
+    """Draw a front: its designs as dots, the named ones large, the part of the range without a design shaded."""
+    places = np.asarray(data["points"], dtype=float).reshape(-1, 2)
+    best = np.asarray(data["best"], dtype=bool)
+    named = list(data.get("named", ()))
+    across = _axis(data["x"], [*places[:, 0], *(one["x"] for one in named), *(data.get("beyond") or ())])
+    up = _axis(data["y"], [*places[:, 1], *(one["y"] for one in named)])
+    parts = [_shade(across, data.get("beyond")), upright_axis(up, TALL)]
+    rows = _thinned(best)
+    parts += [
+        dot("d small cm" if best[i] else "ring", across.place(places[i, 0]), 100 - up.place(places[i, 1]), 2.6)
+        for i in rows
+        if np.isfinite(places[i]).all()
+    ]
+    parts += _named_dots(named, across, up)
+    parts.append(lower_axis(across, with_unit(data["x"]["title"], data["x"]["units"]), WIDE))
+    title = with_unit(data["y"]["title"], data["y"]["units"])
+    left = left_room(up, TALL)
+    parts.append(label(title, 0, "0", "start", dx=2 - left, dy=-7))
+    words = "; ".join(f"{one['title']}: {number(one['x'], 3)}, {number(one['y'], 3)}" for one in named)
+    drawn = framed(joined(parts), TALL, words or title, left=left, right=14, top=24)
+    hollow = "; rings: other designs" if (~best).any() else ""
+    said = (
+        f"Small dots: the {int(best.sum()):,} designs that no other one beats{hollow}; large: the designs of the table."
+    )
+    if data.get("beyond"):
+        said += " Shaded: part of the range without a design."
+    if len(rows) < len(best):
+        said += f" {len(best) - len(rows):,} other designs are not drawn."
+    return Picture(drawn, _caption(data, said), beside=True)
+
+
+def _axis(side: Mapping[str, Any], values: Sequence[float]) -> Axis:
+    return Axis.of(values, bool(side["logarithmic"]) if side.get("logarithmic") is not None else None)
+
+
+def _thinned(best: np.ndarray) -> list[int]:
+    """Return the rows to draw: those of the front, and an even part of the others."""
+    others = np.flatnonzero(~best)
+    room = max(0, MOST_POINTS - int(best.sum()))
+    if len(others) > room:
+        others = others[np.linspace(0, len(others) - 1, room).astype(int)] if room else others[:0]
+    front = np.flatnonzero(best)
+    if len(front) > MOST_POINTS:
+        front = front[np.linspace(0, len(front) - 1, MOST_POINTS).astype(int)]
+    return sorted([*front.tolist(), *others.tolist()])
+
+
+def _shade(across: Axis, beyond: Sequence[float] | None) -> Markup:
+    if not beyond:
+        return Markup()
+    start, end = (across.place(float(value)) for value in beyond)
+    return element("rect", class_="shade", x=percent_place(start), y=0, width=percent_place(end - start), height="100%")
+
+
+def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> list[Markup]:
+    """Return large dots with their titles, on the side that has room, at heights that do not collide."""
+    places = [(across.place(float(one["x"])), 100 - up.place(float(one["y"]))) for one in named]
+    heights = [y * TALL / 100 for _, y in places]
+    texts = spread_labels(heights, LINE, LINE / 2, TALL - LINE / 2)
+    parts = []
+    for one, (x, y), height in zip(named, places, texts, strict=True):
+        end = x > 50
+        parts.append(dot("d cm", x, y, 5.5))
+        text = cut(str(one["title"]), WIDE * (x if end else 100 - x) / 100)
+        anchor = "end" if end else "start"
+        parts.append(label(text, x, f"{height:.0f}", anchor, "strong", dx=-12 if end else 12, dy=4))
+    return parts
+
+
+def _history(answer: Answer, data: Mapping[str, Any]) -> Picture:
+    """Draw the best value of the goal so far over the evaluations."""
+    steps = np.asarray(data["evaluations"], dtype=float)
+    best = np.asarray(data["best"], dtype=float)
+    known = np.isfinite(best)
+    across = Axis.of(steps, False, room=0.0)
+    up = Axis.of(best[known])
+    line = [(across.place(x), 100 - up.place(y)) for x, y in zip(steps[known], best[known], strict=True)]
+    stairs = [place for i, place in enumerate(line) for place in _stair(line, i)]
+    layer = stretched(element("polyline", class_="l cm", points=points(stairs)), TALL)
+    title = output_title(answer)
+    left = left_room(up, TALL)
+    parts = [upright_axis(up, TALL), layer, required_levels(answer, up)]
+    parts += [lower_axis(across, "designs solved", WIDE), label(title, 0, "0", "start", dx=2 - left, dy=-7)]
+    drawn = framed(joined(parts), TALL, f"{title} of the best design so far", left=left, right=14, top=24)
+    return Picture(drawn, _caption(data, "Best design so far, over the designs that were solved."), beside=True)
+
+
+def _stair(line: Sequence[tuple[float, float]], i: int) -> list[tuple[float, float]]:
+    if i == 0:
+        return [line[0]]
+    return [(line[i][0], line[i - 1][1]), line[i]]
+
+
+def _distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
+    """Draw which share of the conditions reaches each value, for each candidate."""
+    values = {str(name): np.asarray(one, dtype=float) for name, one in data["values"].items()}
+    shown = dict(list(values.items())[:MOST_LINES])
+    bounds = bounds_of(answer)
+    every = np.concatenate([one[np.isfinite(one)] for one in shown.values()]) if shown else np.empty(0)
+    across = Axis.of([*every[every > 0], *(value for value, _ in bounds)])
+    up = Axis(0.0, 100.0)
+    lines = [_reached(one, across, place) for place, one in enumerate(shown.values())]
+    parts = [upright_axis(up, FLAT), lower_axis(across, output_title(answer), WIDE, lines=True)]
+    parts.append(stretched(joined(lines), FLAT))
+    for value, text in bounds:
+        x = across.place(value)
+        parts += [upright("r", x), label(text, x, "0", anchor_at(x), "rt", dy=-7)]
+    parts += _names_of_lines(shown, across)
+    if not _near_left(bounds, across):
+        parts.append(label("reached by [%]", 0, "0", "start", dx=-42, dy=-7))
+    words = "; ".join(f"{name}: median {number(float(np.median(one)), 3)}" for name, one in shown.items() if one.size)
+    drawn = framed(joined(parts), FLAT, words, left=46, right=14, top=24)
+    more = f" {len(values) - len(shown):,} more candidates are not drawn." if len(values) > len(shown) else ""
+    return Picture(drawn, _caption(data, f"Share of the conditions that reach a value [%].{more}"))
+
+
+def _near_left(bounds: Sequence[tuple[float, str]], across: Axis) -> bool:
+    return any(across.place(value) < 30 for value, _ in bounds)
+
+
+def _reached(values: np.ndarray, across: Axis, place: int) -> Markup:
+    """Return a falling line: the share of values that are at least as large as a place on the axis."""
+    ordered = np.sort(np.where(np.isnan(values), -np.inf, values))
+    if not ordered.size:
+        return Markup()
+    rows = np.unique(np.linspace(0, ordered.size - 1, min(MOST_STEPS, ordered.size)).astype(int))
+    line = [(0.0, 0.0)] if ordered[0] > 0 else []
+    for row in rows:
+        reached = 100 * (ordered.size - row) / ordered.size
+        x = across.place(float(ordered[row])) if ordered[row] > -math.inf else 0.0
+        line.append((x, 100 - reached))
+    last = float(ordered[-1])
+    if math.isfinite(last):
+        line.append((across.place(last), 100.0))
+    kind = "cm" if place == 0 else "cg"
+    return element("polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line))
+
+
+def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Markup]:
+    """Return the names of the lines, each beside its median, at heights that do not collide."""
+    if len(shown) < 2:
+        return []
+    rows = np.linspace(0.25, 0.75, len(shown)) if len(shown) > 3 else np.full(len(shown), 0.5)
+    parts = []
+    for place, (name, values) in enumerate(shown.items()):
+        known = np.sort(values[~np.isnan(values)])
+        if not known.size:
+            continue
+        x = across.place(float(np.quantile(known, rows[place], method="nearest")))
+        end = x > 70
+        kind = "strong cm" if place == 0 else "strong"
+        y = percent_place(100 * float(rows[place]))
+        parts.append(label(cut(name, WIDE / 2), x, y, "end" if end else "start", kind, dx=-10 if end else 10, dy=-2))
+    return parts
+
+
+def _like(answer: Answer, data: Mapping[str, Any]) -> Picture:
+    """Draw ratios of results on like rows, one row of dots for each model and output."""
+    ratios = {str(name): np.asarray(one, dtype=float) for name, one in data["ratios"].items()}
+    every = np.concatenate([one[np.isfinite(one)] for one in ratios.values()]) if ratios else np.empty(0)
+    across = Axis.of([*every, 1.0])
+    height = max(60.0, 44.0 * len(ratios))
+    left = max([width_of(cut(name, 150)) for name in ratios], default=40.0) + 16
+    parts = [lower_axis(across, f"÷ {data['base']}", WIDE, lines=True), upright("x", across.place(1.0))]
+    for place, (name, one) in enumerate(ratios.items()):
+        y = 100 * (place + 0.5) / len(ratios)
+        parts.append(label(cut(name, 150), 0, percent_place(y), "end", dx=-10, dy=4))
+        known = one[np.isfinite(one)]
+        kept = known if known.size <= MOST_DOTS else np.quantile(known, np.linspace(0, 1, MOST_DOTS))
+        spread = 30.0 / len(ratios)
+        for number_of, value in enumerate(kept):
+            moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)  # golden section: an even scatter without chance
+            parts.append(dot("d faint cm" if place % 2 == 0 else "d faint co", across.place(float(value)), moved, 3))
+    words = "; ".join(
+        f"{name}: {number(float(np.nanmin(one)), 3)} to {number(float(np.nanmax(one)), 3)}"
+        for name, one in ratios.items()
+        if np.isfinite(one).any()
+    )
+    pairs = max((int(np.isfinite(one).sum()) for one in ratios.values()), default=0)
+    drawn = framed(joined(parts), height, words, left=left, right=14)
+    thinned = f", {MOST_DOTS} of them drawn evenly" if pairs > MOST_DOTS else ""
+    return Picture(
+        drawn, _caption(data, f"Each result over that of {data['base']} in the same case: {pairs:,} pairs{thinned}.")
+    )
+
+
+def _slice(answer: Answer, data: Mapping[str, Any]) -> Picture:
+    """Draw the output over one factor, a line for each level of another one."""
+    levels = np.asarray(data["levels"], dtype=float)
+    series = {str(name): np.asarray(one, dtype=float) for name, one in data["series"].items()}
+    shown = dict(list(series.items())[:MOST_LINES])
+    across = Axis.of(levels, bool(data.get("logarithmic", False)), room=0.0)
+    bounds = [value for value, _ in bounds_of(answer)]
+    up = Axis.of([*np.concatenate(list(shown.values())), *bounds])
+    lines, dots, ends = [], [], []
+    for place, one in enumerate(shown.values()):
+        known = np.isfinite(one)
+        line = [(across.place(x), 100 - up.place(y)) for x, y in zip(levels[known], one[known], strict=True)]
+        kind = "cm" if place == 0 else "cg"
+        lines.append(
+            element("polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line))
+        )
+        dots += [dot(f"d {kind}", x, y, 3) for x, y in line] if len(line) <= 12 else []
+        ends.append(line[-1][1] * FLAT / 100 if line else FLAT)
+    parts = [upright_axis(up, FLAT), required_levels(answer, up), stretched(joined(lines), FLAT), *dots]
+    parts.append(lower_axis(across, with_unit(data["title"], data["units"]), WIDE))
+    left, right = left_room(up, FLAT), 14.0
+    if len(shown) > 1:
+        right = max(width_of(cut(name, 140)) for name in shown) + 16
+        for name, height in zip(shown, spread_labels(ends, LINE, 0.0, FLAT), strict=True):
+            parts.append(label(cut(name, 140), 100, f"{height:.0f}", "start", dx=8, dy=4))
+    parts.append(label(output_title(answer), 0, "0", "start", dx=2 - left, dy=-7))
+    words = "; ".join(
+        f"{name}: {number(float(one[0]), 3)} to {number(float(one[-1]), 3)}" for name, one in shown.items()
+    )
+    drawn = framed(joined(parts), FLAT, words, left=left, right=right, top=24)
+    held = f"Held: {data['held']}." if data.get("held") else ""
+    more = f" {len(series) - len(shown):,} more lines are not drawn." if len(series) > len(shown) else ""
+    return Picture(drawn, _caption(data, f"{held}{more}".strip()))
+
+
+def _caption(data: Mapping[str, Any], said: str) -> str:
+    """Return what a picture draws: the words of the record if it has some, otherwise those of the picture."""
+    parts = [data.get("caption") or said, left_out_words(data)]
+    return " ".join(part for part in parts if part)
+
+
+DRAWINGS: dict[str, Callable[[Answer, Mapping[str, Any]], Picture]] = {
+    "front": _front,
+    "history": _history,
+    "distribution": _distribution,
+    "like": _like,
+    "slice": _slice,
+}
+MAP_ROW = 26.0  # height of a level of a map [px]
+SHADES = 7  # of a map
+
+
+def maps_of(answer: Answer) -> list[tuple[str, Markup, str]]:
+    """Return a map for each pair of factors that interact: its head, the picture, what it draws."""
+    return [_map(answer, pair) for pair in answer.picture.get("pairs", ())]
+
+
+def _map(answer: Answer, pair: Mapping[str, Any]) -> tuple[str, Markup, str]:
+    """Draw the output over two factors as cells of seven shades; its words name the ends."""
+    middle = np.asarray(pair["middle"], dtype=float)
+    rows, columns = middle.shape
+    axis = Axis.of(middle[np.isfinite(middle)], room=0.0)
+    height = MAP_ROW * columns
+    names = [[_text(level) for level in pair[side]] for side in ("first", "second")]
+    left = max(width_of(cut(name, 110)) for name in names[1]) + 14
+    parts = []
+    for i in range(rows):
+        for j in range(columns):
+            shade = min(SHADES - 1, int(axis.place(middle[i, j]) * SHADES / 100)) if np.isfinite(middle[i, j]) else "no"
+            x, y = 100 * i / rows, 100 * (columns - 1 - j) / columns
+            size = (percent_place(100 / rows), percent_place(100 / columns))
+            corner = (percent_place(x), percent_place(y))
+            parts.append(element("rect", class_=f"s{shade}", x=corner[0], y=corner[1], width=size[0], height=size[1]))
+    for j, name in enumerate(names[1]):
+        y = 100 * (columns - 0.5 - j) / columns
+        parts.append(label(cut(name, 110), 0, percent_place(y), "end", dx=-6, dy=4))
+    for i, name in enumerate(names[0]):
+        text = cut(name, 300 / rows)
+        parts.append(label(text, 100 * (i + 0.5) / rows, "100%", dx=0, dy=15))
+    titles = [with_unit(title, units) for title, units in zip(pair["titles"], pair["units"], strict=True)]
+    parts.append(label(titles[0], 50, "100%", dx=0, dy=31))
+    words = f"{titles[1]} (upwards) and {titles[0]}"
+    low = number(float(np.nanmin(middle)), 3)
+    high = number(float(np.nanmax(middle)), 3)
+    caption = f"{output_title(answer)}: {low} (light) to {high} (dark); upwards {titles[1]}."
+    index = float(pair.get("index", math.nan))
+    share = "" if math.isnan(index) else f" {100 * index:.0f} %"
+    head = f"{pair['titles'][0]} and {pair['titles'][1].lower()}{share}"
+    return head, framed(joined(parts), height, words, left=left), caption
+
+
+def _text(value: Any) -> str:
+    return value if isinstance(value, str) else number(float(value))
