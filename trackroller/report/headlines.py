@@ -17,6 +17,7 @@ Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out
 `error`            told error of the leader's output [1]
 `extrapolated`     whether the leader's life lies beyond its data
 `not_held`         {count, of, where}: conditions that no candidate holds; `where` as "all 12 driven at friction 0.05"
+`why`              of `cannot_tell`: a key of `CAUSES`
 `not_judged`       {count, of, where}: the same for conditions that the model cannot judge
 `elsewhere`        whether the leader holds all other conditions, so that the headline says "elsewhere"
 `exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
@@ -61,19 +62,21 @@ from trackroller.report.numbers import (
     capital,
     carried,
     carried_range,
-    hour_unit,
+    grouped,
     level_text,
-    number,
+    lowered,
     on_duty,
     percent,
-    range_unit,
+    plain,
     unit_text,
+    years_of,
 )
 from trackroller.results.answer import Answer, Caution, Column, Required
 from trackroller.study.design.levels import NAMED
 
 MOST_WORDS = 40
-MOST_CHOICES = 3  # of a candidate that a headline names; the others stand in the table
+MOST_NAMES = 3  # candidates, or models, that a headline names
+NAME_WORDS = 10  # of the choices of a candidate; the others stand in the table
 SHORT = 8  # words of a text from the record that a headline repeats
 
 
@@ -111,39 +114,52 @@ def decide(answer: Answer) -> Headline:
     """Say which candidate to build, or why the study cannot say so."""
     head = answer.headline
     lead = DECISIONS[answer.kind](answer)
-    if head.get("not_held") and head.get("elsewhere"):
+    if head.get("not_held") and head.get("elsewhere") and answer.kind in ELSEWHERE:
         lost = f"None holds in {_part(head['not_held'], 'conditions')}"
-        lead = f"{lost}; elsewhere {_lowered(lead.removeprefix('Build '))}"
-    clauses = _shares(answer) if _known(head, "share") else _lasts(answer)
+        lead = f"{lost}; elsewhere {ELSEWHERE[answer.kind](answer)}"
+        return Headline(lead, f": {'; '.join([_value_said(answer), *_other_rules(head)])}.")
+    shares = _known(head, "share") and bool(answer.required)
+    clauses = _shares(answer) if shares and answer.kind != "none" else _lasts(answer)
     return _joined(lead, [*_up_to(answer), *clauses, *_nearest(answer)])
 
 
 def _build(answer: Answer) -> str:
-    named = _name(answer, _first(answer.headline.get("names")))
-    return f"Build {named}" if named else "Build it"
+    return f"Build {_leader(answer)}"
+
+
+def _leader(answer: Answer) -> str:
+    """Return the name of the leader; one candidate has none."""
+    return _name(answer, _first(answer.headline.get("names"))) or "it"
 
 
 def _a_or_b(answer: Answer) -> str:
+    return capital(_either(answer))
+
+
+def _either(answer: Answer) -> str:
+    """Return the candidates of which none beats the other."""
     names = list(answer.headline["names"])
-    spoken = _alternatives(answer, names[:MOST_CHOICES])
-    left = len(names) - MOST_CHOICES
+    spoken = _alternatives(answer, names[:MOST_NAMES])
+    left = len(names) - MOST_NAMES
     if left > 0:
         spoken += f" or {left} more"
-    return capital(spoken)
+    return spoken
 
 
 def _none(answer: Answer) -> str:
     wanted = _wanted(answer.required)
-    lead = f"None {wanted}" if wanted else "None holds all conditions"
+    lead = f"None {wanted}" if wanted else "None holds every condition"
     nearest = answer.headline.get("nearest")
     return f"{lead}; nearest {_name(answer, nearest['name'])}" if nearest else lead
 
 
 def _measure(answer: Answer) -> str:
-    asked = answer.headline["measure"]
+    asked = answer.headline.get("measure")
+    if not asked:
+        return f"Open whether {_leader(answer)} meets it"
     of = f" of {asked['of']}" if asked.get("of") else ""
     on = f" on {asked['on']}" if asked.get("on") else ""
-    return f"Measure the {asked['what']}{of}{on}"
+    return f"Measure the {plain(asked['what'])}{of}{on}"
 
 
 def _give(answer: Answer) -> str:
@@ -161,7 +177,14 @@ def _cannot_tell(answer: Answer) -> str:
     head = answer.headline
     if head.get("not_judged"):
         return f"Cannot tell: the model does not judge {_part(head['not_judged'], 'conditions')}"
-    return "Cannot tell"
+    return f"Cannot tell: {CAUSES[head['why']]}" if head.get("why") in CAUSES else "Cannot tell"
+
+
+CAUSES = {
+    "model": "the model does not judge every condition of a candidate",
+    "conditions": "candidates share no condition",
+    "materials": "a material lacks the life that others have",
+}
 
 
 DECISIONS: dict[str, Callable[[Answer], str]] = {
@@ -175,16 +198,40 @@ DECISIONS: dict[str, Callable[[Answer], str]] = {
 }
 
 
+ELSEWHERE: dict[str, Callable[[Answer], str]] = {"build": _leader, "a_or_b": _either}  # behind "elsewhere"
+
+
 def _lasts(answer: Answer) -> list[str]:
     """Return what the leader lasts, what ends it, what other rules say of it, and what is required."""
     head = answer.headline
     clauses = []
-    if _known(head, "low") and answer.kind != "none":
-        whose = f"{_name(answer, _first(head['names']))} " if answer.kind in ("a_or_b", "measure", "give") else ""
-        place = "" if answer.facts.get("conditions") == 1 else " at its worst condition"
-        clauses.append(f"{whose}{_output(answer, head['low'], head.get('high'))}{_beyond(head)}{place}{_then(head)}")
+    tenth = _tenth(answer)
+    if tenth and answer.kind not in SILENT:
+        clauses.append(f"{tenth} in nine of ten drawn conditions{_then(head)}")
+    elif _known(head, "low") and answer.kind not in SILENT:
+        whose = f"{_leader(answer)} " if answer.kind in ("a_or_b", "measure", "give") else ""
+        place = "" if _one_condition(answer) else " at its worst condition"
+        clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
     clauses += _turn(head)
     return [*clauses, *_other_rules(head), *_required(answer)]
+
+
+SILENT = ("none", "cannot_tell")  # kinds without a leader
+
+
+def _one_condition(answer: Answer) -> bool:
+    conditions = answer.facts.get("conditions")
+    return conditions in (1, [1, 1], (1, 1))
+
+
+def _tenth(answer: Answer) -> str:
+    """Return what nine of ten drawn conditions of the leader reach; '' for listed conditions."""
+    if not answer.facts.get("drawn") or "tenth" not in answer.table or answer.table.empty:
+        return ""
+    tenth = float(answer.table["tenth"].iloc[0])
+    if math.isnan(tenth):
+        return ""
+    return _output(answer, tenth, None, _notes(answer.headline))
 
 
 def _shares(answer: Answer) -> list[str]:
@@ -201,7 +248,7 @@ def _up_to(answer: Answer) -> list[str]:
     column = next((one for one in answer.columns if one.role == "name"), None)
     if column is None or not (_known(head, "up_to") or _known(head, "from_on")):
         return []
-    title = _lowered(column.title)
+    title = lowered(column.title)
     ends = [_level(column, head[key]) for key in ("from_on", "up_to") if _known(head, key)]
     if len(ends) == 2:
         return [f"every condition meets it for {title} {' to '.join(ends)}"]
@@ -214,7 +261,7 @@ def _nearest(answer: Answer) -> list[str]:
     near = answer.headline.get("nearest")
     if answer.kind != "none" or not near:
         return []
-    met = near.get("meets")
+    met = near.get("meets") if answer.required else None
     said = f"meets {met}" if met is not None else f"holds {near['holds']}"
     clauses = [f"{said} of {near['of']} conditions"]
     if _known(near, "low") and near["low"] > 0:
@@ -229,17 +276,19 @@ def _turn(head: Mapping[str, Any]) -> list[str]:
     if not asked or not _known(asked, "turn"):
         return []
     units = f" {unit_text(asked['units'])}" if asked.get("units") not in (None, "", "1", "-") else ""
-    return [f"the answer turns at {number(asked['turn'], 2)}{units}"]
+    return [f"the answer turns at {grouped(asked['turn'], 2)}{units}"]
 
 
 def how_sure(answer: Answer) -> Headline:
     """Say which share of the conditions, or how many of the listed loads, meet the requirement."""
     head = answer.headline
     if _known(head, "share"):
-        lead = f"{_share(head)} of the conditions {_reach(answer.required)}"
+        lead = f"{_share(head)} of the {head['n']:,} drawn conditions {_reach(answer.required)}"
         wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
-        return _joined(lead, [*wanted, *_worst(answer), *_other_rules(head)])
-    lead = f"Meets {head['meets']:,} of {head['of']:,} loads"
+        clauses = [*wanted, *_worst(answer), *_other_rules(head)]
+        return Headline(lead, f"; {'; '.join(clauses)}." if clauses else ".")
+    named = _name(answer, _first(head.get("names")))
+    lead = capital(f"{named} meets {head['meets']:,} of {head['of']:,} loads".strip())
     return _joined(lead, [*_worst(answer), *_other_rules(head), *_required(answer)])
 
 
@@ -247,24 +296,24 @@ def _worst(answer: Answer) -> list[str]:
     head = answer.headline
     if not _known(head, "low"):
         return []
-    return [f"{_output(answer, head['low'], head.get('high'))}{_beyond(head)} at the worst{_then(head)}"]
+    return [f"{_value_said(answer)} at the worst{_then(head)}"]
 
 
 def what_matters(answer: Answer) -> Headline:
     """Say the two largest factors, and from what to what the larger one takes the output."""
-    head, words = answer.headline, _lowered(answer.output[1])
+    head, words = answer.headline, lowered(answer.output[1])
     factors = list(head.get("factors", ()))
     if not factors:
         return Headline(f"No factor changes the {words}", ".")
     verb = "decides" if len(factors) == 1 else "decide"
-    lead = capital(f"{listing([_lowered(one['title']) for one in factors])} {verb} the {words}")
+    lead = capital(f"{listing([lowered(one['title']) for one in factors])} {verb} the {words}")
     if _known(factors[0], "index"):
         sizes = f"index {listing([_index(one) for one in factors])}"
     else:
-        sizes = listing([f"×{number(one['height'], 2)}" for one in factors])
+        sizes = listing([f"×{grouped(one['height'], 2)}" for one in factors])
     clauses = [sizes, _effect(answer, factors[0])]
     if head.get("asked"):
-        clauses.append(f"{_lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
+        clauses.append(f"{lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
     return _joined(lead, [clause for clause in clauses if clause])
 
 
@@ -299,22 +348,30 @@ def which_model(answer: Answer) -> Headline:
     }[changes]
     if not answer.required:
         lead = "The order changes with the contact model" if changes else "The order is the same by each contact model"
-    clauses = []
     if changes:
-        clauses.append(", ".join(_by_model(answer, one) for one in models[:MOST_CHOICES]))
+        return _joined(lead, [_by_models(answer, models)])
+    clauses = []
     if _known(head, "smallest"):
         ratio = carried_range(head["smallest"], head["largest"])
-        clauses.append(f"{_lowered(answer.output[1])} {ratio} times that of {head['base']}")
+        clauses.append(f"{lowered(answer.output[1])} {ratio} times that of {head['base']}")
     return _joined(lead, clauses)
 
 
-def _by_model(answer: Answer, model: Mapping[str, Any]) -> str:
-    leader = model.get("leader")
-    named = f"{_name(answer, leader)} " if leader else ""
+def _by_models(answer: Answer, models: Sequence[Mapping[str, Any]]) -> str:
+    """Return leader and verdict by each model; a leader of all models is named once."""
+    shown = models[:MOST_NAMES]
+    leaders = [_name(answer, one.get("leader") or {}) for one in shown]
+    if len(set(leaders)) == 1:
+        first = f"{leaders[0]} is " if leaders[0] and answer.required else ""
+        return first + ", ".join(_by_model(answer, one, "") for one in shown)
+    return ", ".join(_by_model(answer, one, leader) for one, leader in zip(shown, leaders, strict=True))
+
+
+def _by_model(answer: Answer, model: Mapping[str, Any], leader: str) -> str:
     value = carried_range(model["low"], model.get("high", model["low"]), model.get("error", math.nan))
-    state = f"{model['verdict']} " if answer.required and model.get("verdict") else ""
-    unit = unit_text(answer.output[2]).replace("–", "")
-    return f"{named}{state}by {model['model']} ({value} {unit})".replace(" )", ")")
+    state = str(model["verdict"]) if answer.required and model.get("verdict") else ""
+    what = " ".join(text for text in (leader, state) if text)
+    return f"{what} by {model['model']} ({_measured(value, answer.output[2])})".strip()
 
 
 def best(answer: Answer) -> Headline:
@@ -352,17 +409,18 @@ def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:
 def _goal(goal: Mapping[str, Any], units_only: bool = False) -> str:
     """Return a goal with its value; the words of a life are left to its hours."""
     value = carried(goal["value"])
-    unit = _unit_of_value(goal["units"], goal["value"])
-    if goal["units"] == "h" or (units_only and unit):
-        return f"{value} {unit}".strip()
-    return f"{_lowered(goal['words'])} {value} {unit}".strip()
+    if goal["units"] == "h":
+        years = years_of(goal["value"])
+        return _noted(f"{value} h", [years] if years else [])
+    text = _measured(value, goal["units"])
+    return text if units_only and text != value else f"{lowered(goal['words'])} {text}"
 
 
 def how_it_behaves(answer: Answer) -> Headline:
     """Say the range of the output and what ends the cases."""
     head = answer.headline
     if not _known(head, "smallest"):
-        return _joined(f"No case has a {_lowered(answer.output[1])}", _ends(head))
+        return Headline("No case has a result that can be shown", ".")
     one = head["smallest"] == head.get("largest", head["smallest"])
     value = _value(answer, head["smallest"], head.get("largest"))
     where = [_short(head.get(key)) for key in ("at_smallest", "at_largest")]
@@ -415,7 +473,9 @@ def warning_line(caution: Caution) -> str:
 
 def warning_rows(caution: Caution) -> str:
     """Return how many rows a warning concerns; nothing is counted where it concerns none."""
-    return f"{caution.count:,} of {caution.of:,} {caution.what}" if caution.of else caution.what
+    if caution.of < 2:
+        return caution.what
+    return f"{caution.count:,} of {caution.of:,} {caution.what}"
 
 
 def _joined(lead: str, clauses: Sequence[str]) -> Headline:
@@ -446,11 +506,14 @@ def _name(answer: Answer, name: Mapping[str, Any]) -> str:
         alone = isinstance(level, str) and len(texts) == 1
         alone = alone or (key in NAMED and not isinstance(level, str))
         text = _level(column, level)
-        spoken.append(text if alone else f"{_lowered(column.title)} {text}")
-    left = len(spoken) - MOST_CHOICES
-    if left <= 0:
-        return ", ".join(spoken)
-    return f"{', '.join(spoken[:MOST_CHOICES])} and {left} more"
+        spoken.append(text if alone else f"{lowered(column.title)} {text}")
+    shown = spoken[:1]
+    for text in spoken[1:]:
+        if len(" ".join([*shown, text]).split()) > NAME_WORDS:
+            break
+        shown.append(text)
+    left = len(spoken) - len(shown)
+    return ", ".join(shown) + (f" and {left} more" if left else "")
 
 
 def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:
@@ -463,7 +526,7 @@ def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:
         levels = [name[key] for name in names]
         if column is not None and key not in NAMED and not any(isinstance(level, str) for level in levels):
             values = " or ".join(_plain_level(level) for level in levels)
-            return f"{_lowered(column.title)} {values} {unit_text(column.units)}".replace(" –", "").replace(" °", "°")
+            return f"{lowered(column.title)} {values} {unit_text(column.units)}".replace(" –", "").replace(" °", "°")
     return " or ".join(_name(answer, name) for name in names)
 
 
@@ -478,33 +541,49 @@ def _level(column: Column, level: Any) -> str:
 
 
 def _plain_level(level: Any) -> str:
-    return level if isinstance(level, str) else number(float(level))
+    return level if isinstance(level, str) else grouped(float(level))
 
 
-def _output(answer: Answer, low: float, high: float | None = None) -> str:
+def _value_said(answer: Answer) -> str:
+    """Return the value of the leader, with its years, and whether it is extrapolated."""
+    head = answer.headline
+    return _output(answer, head["low"], head.get("high"), _notes(head))
+
+
+def _notes(head: Mapping[str, Any]) -> list[str]:
+    """Return what stands in brackets behind a value: why nothing lasts, and whether the value is extrapolated."""
+    reason = [str(head["ends"])] if head.get("ends") and not head.get("body") else []
+    return [*reason, "extrapolated"] if head.get("extrapolated") else reason
+
+
+def _output(answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()) -> str:
     """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
-    value = _value(answer, low, high)
-    return value if answer.output[2] == "h" else f"{_lowered(answer.output[1])} {value}"
+    value = _value(answer, low, high, notes)
+    return value if answer.output[2] == "h" else f"{lowered(answer.output[1])} {value}"
 
 
-def _value(answer: Answer, low: float, high: float | None = None) -> str:
-    if math.isinf(low) and low > 0:
-        return "unlimited"
-    units, error = answer.output[2], answer.headline.get("error", math.nan)
-    bounds = [end for one in answer.required if one.output == answer.output[0] for end in (one.least, one.most)]
+def _value(answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()) -> str:
+    """Return a value or a range with its unit, and its years and other notes in brackets."""
     if high is None or math.isnan(high):
         high = low
-    text = carried_range(low, high, error, bounds)
-    unit = _unit_of_value(units, low) if " to " not in text else _unit_of_range(units, low, high)
+    bounds = [end for one in answer.required if one.output == answer.output[0] for end in (one.least, one.most)]
+    if math.isinf(low) and low > 0:
+        return _noted("unlimited", notes)
+    text = carried_range(low, high, answer.headline.get("error", math.nan), bounds)
+    if answer.output[2] != "h":
+        return _noted(_measured(text, answer.output[2]), notes)
+    years = years_of(low, high)
+    return _noted(f"{text} h", [years, *notes] if years else notes)
+
+
+def _measured(text: str, units: str) -> str:
+    """Return a number with its unit; a plain number has none."""
+    unit = unit_text(units).replace("–", "")
     return f"{text} {unit}".strip().replace(" °", "°")
 
 
-def _unit_of_value(units: str, value: float) -> str:
-    return hour_unit(value) if units == "h" else unit_text(units).replace("–", "")
-
-
-def _unit_of_range(units: str, low: float, high: float) -> str:
-    return range_unit(low, high) if units == "h" else unit_text(units).replace("–", "")
+def _noted(text: str, notes: Sequence[str]) -> str:
+    return f"{text} ({', '.join(notes)})" if notes else text
 
 
 def _beyond(head: Mapping[str, Any]) -> str:
@@ -512,12 +591,11 @@ def _beyond(head: Mapping[str, Any]) -> str:
 
 
 def _then(head: Mapping[str, Any]) -> str:
-    """Return what ends the leader; two limits where the ends of its range differ."""
-    if not head.get("ends"):
+    """Return the limit that ends the leader; two where the ends of its range differ; '' where it does not roll."""
+    if not head.get("ends") or not head.get("body"):
         return ""
     limits = dict.fromkeys([head["ends"], head.get("ends_high") or head["ends"]])
-    body = f" of the {head['body']}" if head.get("body") else ""
-    return f", then {' or '.join(limits)}{body}"
+    return f", then {' or '.join(limits)} of the {head['body']}"
 
 
 def _other_rules(head: Mapping[str, Any]) -> list[str]:
@@ -525,28 +603,26 @@ def _other_rules(head: Mapping[str, Any]) -> list[str]:
     clauses = []
     second = head.get("second")
     if second:
-        verb = {"met": "meets it", "open": "leaves it open", "missed": "misses it", "none": "does not judge it"}
+        verb = {"met": "meets", "open": "leaves it open", "missed": "misses", "none": "does not judge"}
         clauses.append(f"{second['limit']} {verb[second['verdict']]}")
     exceeded = head.get("exceeded")
     if exceeded:
-        body = f" of the {exceeded['body']}" if exceeded.get("body") else ""
-        after = f" after {carried(exceeded['hours'])} h" if _known(exceeded, "hours") else ""
-        clauses.append(f"{exceeded['limit']}{body} exceeded ({percent(exceeded['use'])}){after}")
+        clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")
     return clauses
 
 
 def _required(answer: Answer) -> list[str]:
     """Return what is required, as one clause."""
-    if answer.kind == "none" or not answer.required:
+    if answer.kind in SILENT or not answer.required:
         return []
     return [f"required {listing([_bound(one, answer.output[0]) for one in answer.required])}"]
 
 
 def _bound(required: Required, output: str) -> str:
     """Return a requirement with its unit, and with the words of its output where it is another than the table's."""
-    words = "" if required.output == output else f"{_lowered(required.words)} "
+    words = "" if required.output == output or required.units == "h" else f"{lowered(required.words)} "
     if math.isfinite(required.least) and math.isfinite(required.most):
-        return f"{words}{number(required.least, 6)} to {_amount(required, required.most)}"
+        return f"{words}{grouped(required.least, 6)} to {_amount(required, required.most)}"
     if math.isfinite(required.most):
         return f"{words}at most {_amount(required, required.most)}"
     if words:
@@ -555,8 +631,9 @@ def _bound(required: Required, output: str) -> str:
 
 
 def _amount(required: Required, value: float) -> str:
-    unit = _unit_of_value(required.units, value)
-    return f"{number(value, 6)} {unit}".strip().replace(" °", "°")
+    text = _measured(grouped(value, 6), required.units)
+    years = years_of(value) if required.units == "h" else ""
+    return _noted(text, [years] if years else [])
 
 
 def _reach(required: Sequence[Required]) -> str:
@@ -565,7 +642,7 @@ def _reach(required: Sequence[Required]) -> str:
         return "meet the requirements"
     one = required[0]
     if math.isfinite(one.least) and math.isfinite(one.most):
-        return f"keep to {number(one.least, 6)} to {_amount(one, one.most)}"
+        return f"keep to {grouped(one.least, 6)} to {_amount(one, one.most)}"
     if math.isfinite(one.most):
         return f"stay within {_amount(one, one.most)}"
     return f"reach {_amount(one, one.least)}"
@@ -601,8 +678,3 @@ def _short(text: Any) -> str:
     if not isinstance(text, str) or len(text.split()) > SHORT:
         return ""
     return text
-
-
-def _lowered(text: str) -> str:
-    """Write the first letter small, unless the word is a symbol or a name such as POM."""
-    return text[:1].lower() + text[1:] if text[1:2].islower() else text

@@ -150,6 +150,12 @@ def between(low: float, high: float, beyond: bool = False) -> str:
     return f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}" + (f" ({BEYOND})" if beyond else "")
 
 
+def years_of(low: float, high: float | None = None) -> str:
+    """Return a life in hours, or a range of lives, in years: '4.2 years'; '' without a duty or below a year."""
+    unit = hour_unit(low) if high is None or high == low else range_unit(low, high)
+    return unit.removeprefix("h").strip(" ()")
+
+
 def range_unit(low: float, high: float) -> str:
     """Return the unit behind a range of lives: 'h', or with the years of both ends where both last at least one."""
     duty = _duty.get()
@@ -264,6 +270,11 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+def lowered(text: str) -> str:
+    """Write the first letter small, unless the word is a symbol or a name such as POM."""
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+
+
 def shortened(words: Sequence[str], most: int = 4) -> str:
     """Join words; of more than `most` words the last stand as 'and three more', 'and 12 more'."""
     if len(words) <= most:
@@ -280,6 +291,12 @@ def unit_text(units: str) -> str:
 def row_unit(units: str) -> str:
     """Write a CF unit behind a number in a row; a pure number has none."""
     return unit_text(units).replace("–", "")
+
+
+def year_words() -> str:
+    """Return the hours of a year on the duty: '4,000 h are 1 year'; '' without a duty."""
+    duty = _duty.get()
+    return f"{grouped(1 / years(1.0, duty), 3)} h are 1 year" if duty else ""
 
 
 def head_unit(units: str) -> str:
@@ -401,10 +418,25 @@ def carried(value: float, error: float = math.nan, beside: Sequence[float] = ())
     ('210,000', '212,000', '419.96')
     """
     figures = 2 if error >= COARSE else 3
-    others = [other for other in beside if math.isfinite(other) and other != value]
-    while figures < MOST_FIGURES and number(value, figures) in [number(other, MOST_FIGURES) for other in others]:
+    others = [grouped(other, MOST_FIGURES) for other in beside if math.isfinite(other) and other != value]
+    while figures < MOST_FIGURES and grouped(value, figures) in others:
         figures += 1
-    return number(value, figures)
+    return grouped(value, figures)
+
+
+def grouped(value: float, figures: int = 0) -> str:
+    """Write a number as `number` does, but thousands with a comma from 1,000 on, as those beside it in a column.
+
+    Examples
+    --------
+    >>> grouped(8970.0, 3), grouped(212000.0, 3), grouped(-1999.96, 4)
+    ('8,970', '212,000', '−2,000')
+    """
+    text = number(value, figures)
+    whole = text.replace("−", "-")
+    if len(whole.lstrip("-")) == 4 and whole.lstrip("-").isdigit():
+        return f"{int(whole):,}".replace("-", "−")
+    return text
 
 
 def carried_range(low: float, high: float, error: float = math.nan, beside: Sequence[float] = ()) -> str:

@@ -1,20 +1,18 @@
 """Pictures of an answer as inline SVG: places in percent, so that a text keeps its size at each width.
 
-Keys of `Answer.picture`, one of these besides `pairs`; every picture may hold `left_out` (rows that are not drawn) and
-`caption` (what is drawn, in words):
+Keys of `Answer.picture`, which may hold `left_out` (rows that are not drawn) and `caption` (what is drawn, in words):
 
-`front`: `x`, `y` (dict `title`, `units`, `logarithmic`), `points` (n, 2), `best` (n,) whether a design belongs to the
-front, `named` (list of dict `x`, `y`, `title`), `beyond` (part of the range of `x` without a design, or None).
+`front`: dict `x`, `y` (dict `title`, `units`, `logarithmic`), `points` (n, 2), `best` (n,) whether a design belongs to
+the front, `named` (list of dict `x`, `y`, `title`), `beyond` (part of the range of `x` without a design, or None).
 
-`history`: `evaluations` (k,), `best` (k,) best value of the goal so far [unit of the output].
+`history`: dict `evaluations` (k,), `best` (k,) best value of the goal so far [unit of the output].
 
-`distribution`: `values` (dict: name of a candidate -> its values over the conditions (n,), 0 where it does not hold).
+`values`: values of the conditions of each row of the table (list of arrays), the worst value where one is not held.
 
-`like`: `base` (the model that others are compared with), `ratios` (dict: title -> ratios on like rows (n,)).
+`base`, `points`: the contact model that others are compared with, and for each other one its results `y` and those of
+the base `x` on like rows.
 
-`slice`: `title`, `units`, `logarithmic`, `levels` (k,), `series` (dict: name -> values (k,)), `held` (the other
-factors in words).
+`pairs`, `titles`: shares of the variance that pairs of factors hold, (k, k) [1], with the names of the factors.
 
-`pairs`: a list of dict `titles`, `units` (two each), `first` (k,), `second` (m,) levels, `middle` (k, m) of the output,
-`index` (share of the variance [1], NaN if unknown).
+Without one of the first four, the effect curves are the picture of the first screen.
 """

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.report.numbers import number
+from trackroller.report.numbers import grouped
 
 LETTER = 6.6  # mean width of a letter of a picture [px], measured in Chromium with DejaVu Sans of 11 px
 WIDE_RATIO = 5.0  # largest over smallest value from which an axis of positive values is logarithmic
@@ -81,6 +81,15 @@ class Axis:
                 best = ticks
         return best
 
+    def powers(self) -> list[float]:
+        """Return the powers of ten inside a logarithmic axis, at most twelve of them."""
+        if not self.logarithmic:
+            return []
+        first = math.ceil(math.log10(self.low) - 1e-9)
+        last = math.floor(math.log10(self.high) + 1e-9)
+        step = max(1, math.ceil((last - first) / 12))
+        return [10.0**power for power in range(first, last + 1, step)]
+
     def _fit(self, ticks: Sequence[tuple[float, str]], length: float) -> bool:
         places = [self.place(value) * length / 100 for value, _ in ticks]
         widths = [LETTER * len(text) for _, text in ticks]
@@ -135,4 +144,4 @@ def tick_text(value: float) -> str:
     power = math.log10(value) if value > 0 else 0.0
     if (power >= 6 or power <= -4) and abs(power - round(power)) < 1e-9:
         return f"10{str(round(power)).translate(_RAISED)}"
-    return number(value, 4)
+    return grouped(value, 4)

@@ -9,7 +9,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from trackroller.report.numbers import carried_range, number, unit_text
+from trackroller.report.numbers import capital, carried_range, grouped, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.frame import bounds_of
 from trackroller.report.pictures.marks import dot, element, joined, label, line, picture, upright, width_of
@@ -32,6 +32,7 @@ class Bars:
     columns : columns of role `bar` by their name
     shares : whether they are shares, which are drawn from 0 to 100 %
     bounds : required values with their words
+    state : column of the verdict, which colours the bars; '' without one
     """
 
     title: str
@@ -40,21 +41,25 @@ class Bars:
     columns: Mapping[str, Column]
     shares: bool
     bounds: tuple[tuple[float, str], ...]
+    state: str = ""
 
     @classmethod
     def of(cls, answer: Answer) -> Bars | None:
         """Return the bars of an answer, None if its table has no column of role `bar`."""
-        columns = {column.name: column for column in answer.columns if column.role == "bar"}
+        columns = drawn_columns(answer)
         if not columns or answer.table.empty:
             return None
+        state = next((column.name for column in answer.columns if column.kind == "state"), "")
         shares = all(column.kind == "share" for column in columns.values())
         first = next(iter(columns.values()))
         if shares:
-            return cls(first.title, "%", Axis(0.0, 1.0), columns, True, ())
+            return cls(capital(first.title), "%", Axis(0.0, 1.0), columns, True, (), state)
         bounds = tuple(bounds_of(answer))
-        values = [value for row in answer.table.to_dict("records") for value in _values(row, columns)]
+        names = [name for column in columns.values() for name in (column.name, column.until) if name]
+        values = answer.table[names].to_numpy(dtype=float).ravel()
         axis = Axis.of([*values, *(value for value, _ in bounds)])
-        return cls(answer.output[1], unit_text(answer.output[2]), axis, columns, False, bounds)
+        unit = unit_text(answer.output[2]).replace("–", "")
+        return cls(capital(answer.output[1]), unit, axis, columns, False, bounds, state)
 
     def head(self) -> Markup:
         """Return the axis that stands in the head of the table."""
@@ -77,20 +82,22 @@ class Bars:
         anchor = "start" if place < reach else "end" if place > 100 - reach else "middle"
         return label(text, place, "10", anchor, "rt")
 
-    def row(self, row: Mapping[str, Any]) -> Markup:
+    def row(self, row: Mapping[Any, Any]) -> Markup:
         """Return the bar of a row."""
-        colour = COLOURS.get(str(row.get("verdict", "")), "cm")
-        grid = [upright("g", self.axis.place(value)) for value, _ in self._grid()]
+        colour = COLOURS.get(str(row.get(self.state, "")), "cm")
+        grid = [upright("g", self.axis.place(value)) for value in self._grid()]
         required = [upright("r", self.axis.place(value)) for value, _ in self.bounds]
         marks = self._share_marks(row) if self.shares else self._range_marks(row)
         return picture(joined([*grid, *required, *marks]), ROW, self.words(row), colour)
 
-    def _grid(self) -> list[tuple[float, str]]:
+    def _grid(self) -> list[float]:
+        """Return where lines cross the rows: at each power of ten, or at the ticks."""
         if self.shares:
-            return [(share, "") for share in (0.0, 0.25, 0.5, 0.75, 1.0)]
-        return self.axis.ticks(LENGTH)
+            return [0.0, 0.25, 0.5, 0.75, 1.0]
+        powers = self.axis.powers()
+        return powers if len(powers) > 1 else [value for value, _ in self.axis.ticks(LENGTH)]
 
-    def _share_marks(self, row: Mapping[str, Any]) -> Iterator[Markup]:
+    def _share_marks(self, row: Mapping[Any, Any]) -> Iterator[Markup]:
         for column in self.columns.values():
             low = float(row[column.name])
             if math.isnan(low):
@@ -100,7 +107,7 @@ class Bars:
             else:
                 yield line("w", 0.0, "50%", self.axis.place(low), "50%")
 
-    def _range_marks(self, row: Mapping[str, Any]) -> Iterator[Markup]:
+    def _range_marks(self, row: Mapping[Any, Any]) -> Iterator[Markup]:
         """Yield the best condition as a line, the range of the worst one as a bar, the median as a stroke."""
         first = next(iter(self.columns.values()))
         low = float(row[first.name])
@@ -119,7 +126,7 @@ class Bars:
         if not math.isnan(median):
             yield line("q", self.axis.place(median), "25%", self.axis.place(median), "75%")
 
-    def words(self, row: Mapping[str, Any]) -> str:
+    def words(self, row: Mapping[Any, Any]) -> str:
         """Return the numbers of a bar in words."""
         said = []
         for column in self.columns.values():
@@ -128,7 +135,7 @@ class Bars:
                 continue
             high = float(row[column.until]) if column.until else low
             if self.shares:
-                text = " to ".join(dict.fromkeys((number(100 * low, 3), number(100 * high, 3))))
+                text = " to ".join(dict.fromkeys((grouped(100 * low, 3), grouped(100 * high, 3))))
                 said.append(f"{column.title} {text} %")
             else:
                 said.append(f"{column.title} {carried_range(low, high)} {self.units}".rstrip())
@@ -138,7 +145,7 @@ class Bars:
         """Return the marks of a bar with their words."""
         if self.shares:
             drawn = [column for column in self.columns.values() if column.until]
-            return [(_sample(line("q", 8, "50%", 92, "50%")), f"{column.title}") for column in drawn]
+            return [(_sample(line("q", 8, "50%", 92, "50%")), f"{column.title} interval") for column in drawn]
         first = next(iter(self.columns.values()))
         marks = [(_sample(dot("d", 50, "50%", 4.5)), first.title.lower())]
         if first.until:
@@ -152,11 +159,12 @@ class Bars:
         return marks
 
 
-def _values(row: Mapping[Any, Any], columns: Mapping[str, Column]) -> Iterator[float]:
-    for column in columns.values():
-        yield float(row[column.name])
-        if column.until:
-            yield float(row[column.until])
+def drawn_columns(answer: Answer) -> dict[str, Column]:
+    """Return the columns that the bars of a table draw: those of role `bar`, otherwise those of a share."""
+    found = [column for column in answer.columns if column.role == "bar"]
+    if not found:
+        found = [column for column in answer.columns if column.kind == "share"]
+    return {column.name: column for column in found}
 
 
 def _sample(mark: Markup) -> Markup:

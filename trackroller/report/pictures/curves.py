@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
-from trackroller.report.numbers import carried, level_text, number, unit_text
+from trackroller.report.numbers import capital, carried, grouped, level_text, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.frame import (
     NARROW,
@@ -46,7 +46,7 @@ def effects(answer: Answer) -> list[Effect]:
     ends = [*(_inside(curve) for curve in curves)]
     bounds = [bound for one in answer.required if one.output == answer.output[0] for bound in (one.least, one.most)]
     axis = Axis.of([*np.concatenate(ends), *bounds])
-    return [Effect(curve.title, height_words(curve), _drawn(answer, curve, axis)) for curve in curves]
+    return [Effect(capital(curve.title), height_words(curve), _drawn(answer, curve, axis)) for curve in curves]
 
 
 def height_words(curve: Curve) -> str:
@@ -54,8 +54,8 @@ def height_words(curve: Curve) -> str:
     if math.isinf(curve.height):
         return "to 0"
     if curve.middle.size and np.nanmin(curve.middle) < 0:
-        return f"Δ {number(curve.height, 2)}"
-    return f"×{number(curve.height, 2)}"
+        return f"Δ {grouped(curve.height, 2)}"
+    return f"×{grouped(curve.height, 2)}"
 
 
 def _inside(curve: Curve) -> np.ndarray:
@@ -92,7 +92,7 @@ def _named(curve: Curve) -> bool:
 def _text(curve: Curve, level: object) -> str:
     if isinstance(level, str) or curve.factor in NAMED:
         return level_text(curve.factor, level)
-    return number(float(str(level)))
+    return grouped(float(str(level)))
 
 
 def _places(curve: Curve, numeric: bool) -> list[float]:
@@ -166,7 +166,7 @@ def _posts(curve: Curve, axis: Axis, places: Sequence[float]) -> list[Markup]:
 
 def caption(answer: Answer) -> str:
     """Return what the pictures of effects draw."""
-    title = with_unit(answer.output[1], answer.output[2])
+    title = with_unit(capital(answer.output[1]), answer.output[2])
     text = f"{title}: fit or median of like cases at each level; band from the 10th to the 90th hundredth of the cases"
     if any(math.isfinite(end) for one in answer.required for end in (one.least, one.most)):
         text += "; dashed: required"

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from markupsafe import Markup
 
-from trackroller.report.numbers import number
+from trackroller.report.numbers import capital, grouped, level_text, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.curves import points
 from trackroller.report.pictures.frame import (
@@ -38,7 +38,8 @@ from trackroller.report.pictures.marks import (
     upright,
     width_of,
 )
-from trackroller.results.answer import Answer
+from trackroller.results.answer import Answer, Column
+from trackroller.study.design.levels import NAMED
 
 TALL = 260.0  # height of a front [px]
 FLAT = 190.0  # height of a picture that takes the whole width [px]
@@ -63,12 +64,13 @@ def picture_of(answer: Answer) -> Picture | None:
     """Return the picture of the first screen of an answer, None if its table or its curves are the picture."""
     for name, draw in DRAWINGS.items():
         if answer.picture.get(name) is not None:
-            return draw(answer, answer.picture[name])
+            return draw(answer, answer.picture)
     return None
 
 
 def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw a front: its designs as dots, the named ones large, the part of the range without a design shaded."""
+    data = data["front"]
     places = np.asarray(data["points"], dtype=float).reshape(-1, 2)
     best = np.asarray(data["best"], dtype=bool)
     named = list(data.get("named", ()))
@@ -86,7 +88,7 @@ def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
     title = with_unit(data["y"]["title"], data["y"]["units"])
     left = left_room(up, TALL)
     parts.append(label(title, 0, "0", "start", dx=2 - left, dy=-7))
-    words = "; ".join(f"{one['title']}: {number(one['x'], 3)}, {number(one['y'], 3)}" for one in named)
+    words = "; ".join(f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named)
     drawn = framed(joined(parts), TALL, words or title, left=left, right=14, top=24)
     hollow = "; rings: other designs" if (~best).any() else ""
     said = (
@@ -139,6 +141,7 @@ def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> l
 
 def _history(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw the best value of the goal so far over the evaluations."""
+    data = data["history"]
     steps = np.asarray(data["evaluations"], dtype=float)
     best = np.asarray(data["best"], dtype=float)
     known = np.isfinite(best)
@@ -163,7 +166,8 @@ def _stair(line: Sequence[tuple[float, float]], i: int) -> list[tuple[float, flo
 
 def _distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw which share of the conditions reaches each value, for each candidate."""
-    values = {str(name): np.asarray(one, dtype=float) for name, one in data["values"].items()}
+    names = row_names(answer, len(data["values"]))
+    values = {name: np.asarray(one, dtype=float) for name, one in zip(names, data["values"], strict=True)}
     shown = dict(list(values.items())[:MOST_LINES])
     bounds = bounds_of(answer)
     every = np.concatenate([one[np.isfinite(one)] for one in shown.values()]) if shown else np.empty(0)
@@ -178,7 +182,7 @@ def _distribution(answer: Answer, data: Mapping[str, Any]) -> Picture:
     parts += _names_of_lines(shown, across)
     if not _near_left(bounds, across):
         parts.append(label("reached by [%]", 0, "0", "start", dx=-42, dy=-7))
-    words = "; ".join(f"{name}: median {number(float(np.median(one)), 3)}" for name, one in shown.items() if one.size)
+    words = "; ".join(f"{name}: median {grouped(float(np.median(one)), 3)}" for name, one in shown.items() if one.size)
     drawn = framed(joined(parts), FLAT, words, left=46, right=14, top=24)
     more = f" {len(values) - len(shown):,} more candidates are not drawn." if len(values) > len(shown) else ""
     return Picture(drawn, _caption(data, f"Share of the conditions that reach a value [%].{more}"))
@@ -210,7 +214,7 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
     """Return the names of the lines, each beside its median, at heights that do not collide."""
     if len(shown) < 2:
         return []
-    rows = np.linspace(0.25, 0.75, len(shown)) if len(shown) > 3 else np.full(len(shown), 0.5)
+    rows = np.linspace(0.2, 0.8, len(shown))
     parts = []
     for place, (name, values) in enumerate(shown.items()):
         known = np.sort(values[~np.isnan(values)])
@@ -224,9 +228,34 @@ def _names_of_lines(shown: Mapping[str, np.ndarray], across: Axis) -> list[Marku
     return parts
 
 
+def row_names(answer: Answer, count: int) -> list[str]:
+    """Return the names of the first rows of the table of an answer, each another one."""
+    columns = [column for column in answer.columns if column.role == "name"]
+    found: list[str] = []
+    for place in range(count):
+        row = answer.table.iloc[place]
+        text = ", ".join(_level_words(column, row[column.name]) for column in columns)
+        found.append(text if text and text not in found else f"{text} ({place + 1})".strip())
+    return found
+
+
+def _level_words(column: Column, value: Any) -> str:
+    if isinstance(value, str) or column.name in NAMED:
+        return level_text(column.name, value)
+    return f"{grouped(float(value))} {unit_text(column.units)}".replace("–", "").strip().replace(" °", "°")
+
+
+def _ratios(own: Any, other: Any) -> np.ndarray:
+    """Return the ratios of results on like rows, NaN where they have none."""
+    mine = np.asarray(own, dtype=float)
+    theirs = np.asarray(other, dtype=float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.asarray(np.where(mine == theirs, 1.0, mine / theirs))
+
+
 def _like(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw ratios of results on like rows, one row of dots for each model and output."""
-    ratios = {str(name): np.asarray(one, dtype=float) for name, one in data["ratios"].items()}
+    ratios = {model: _ratios(one["y"], one["x"]) for model, one in data["points"].items()}
     every = np.concatenate([one[np.isfinite(one)] for one in ratios.values()]) if ratios else np.empty(0)
     across = Axis.of([*every, 1.0])
     height = max(60.0, 44.0 * len(ratios))
@@ -242,7 +271,7 @@ def _like(answer: Answer, data: Mapping[str, Any]) -> Picture:
             moved = y + spread * (((number_of * 0.618034) % 1) - 0.5)  # golden section: an even scatter without chance
             parts.append(dot("d faint cm" if place % 2 == 0 else "d faint co", across.place(float(value)), moved, 3))
     words = "; ".join(
-        f"{name}: {number(float(np.nanmin(one)), 3)} to {number(float(np.nanmax(one)), 3)}"
+        f"{name}: {grouped(float(np.nanmin(one)), 3)} to {grouped(float(np.nanmax(one)), 3)}"
         for name, one in ratios.items()
         if np.isfinite(one).any()
     )
@@ -254,41 +283,6 @@ def _like(answer: Answer, data: Mapping[str, Any]) -> Picture:
     )
 
 
-def _slice(answer: Answer, data: Mapping[str, Any]) -> Picture:
-    """Draw the output over one factor, a line for each level of another one."""
-    levels = np.asarray(data["levels"], dtype=float)
-    series = {str(name): np.asarray(one, dtype=float) for name, one in data["series"].items()}
-    shown = dict(list(series.items())[:MOST_LINES])
-    across = Axis.of(levels, bool(data.get("logarithmic", False)), room=0.0)
-    bounds = [value for value, _ in bounds_of(answer)]
-    up = Axis.of([*np.concatenate(list(shown.values())), *bounds])
-    lines, dots, ends = [], [], []
-    for place, one in enumerate(shown.values()):
-        known = np.isfinite(one)
-        line = [(across.place(x), 100 - up.place(y)) for x, y in zip(levels[known], one[known], strict=True)]
-        kind = "cm" if place == 0 else "cg"
-        lines.append(
-            element("polyline", class_=f"l {kind} {STROKES[place % len(STROKES)]}".rstrip(), points=points(line))
-        )
-        dots += [dot(f"d {kind}", x, y, 3) for x, y in line] if len(line) <= 12 else []
-        ends.append(line[-1][1] * FLAT / 100 if line else FLAT)
-    parts = [upright_axis(up, FLAT), required_levels(answer, up), stretched(joined(lines), FLAT), *dots]
-    parts.append(lower_axis(across, with_unit(data["title"], data["units"]), WIDE))
-    left, right = left_room(up, FLAT), 14.0
-    if len(shown) > 1:
-        right = max(width_of(cut(name, 140)) for name in shown) + 16
-        for name, height in zip(shown, spread_labels(ends, LINE, 0.0, FLAT), strict=True):
-            parts.append(label(cut(name, 140), 100, f"{height:.0f}", "start", dx=8, dy=4))
-    parts.append(label(output_title(answer), 0, "0", "start", dx=2 - left, dy=-7))
-    words = "; ".join(
-        f"{name}: {number(float(one[0]), 3)} to {number(float(one[-1]), 3)}" for name, one in shown.items()
-    )
-    drawn = framed(joined(parts), FLAT, words, left=left, right=right, top=24)
-    held = f"Held: {data['held']}." if data.get("held") else ""
-    more = f" {len(series) - len(shown):,} more lines are not drawn." if len(series) > len(shown) else ""
-    return Picture(drawn, _caption(data, f"{held}{more}".strip()))
-
-
 def _caption(data: Mapping[str, Any], said: str) -> str:
     """Return what a picture draws: the words of the record if it has some, otherwise those of the picture."""
     parts = [data.get("caption") or said, left_out_words(data)]
@@ -298,52 +292,48 @@ def _caption(data: Mapping[str, Any], said: str) -> str:
 DRAWINGS: dict[str, Callable[[Answer, Mapping[str, Any]], Picture]] = {
     "front": _front,
     "history": _history,
-    "distribution": _distribution,
-    "like": _like,
-    "slice": _slice,
+    "values": _distribution,
+    "points": _like,
 }
-MAP_ROW = 26.0  # height of a level of a map [px]
+MAP_ROW = 26.0  # height of a row of a map [px]
 SHADES = 7  # of a map
+WORTH = 0.02  # of the variance: a map is drawn from such an interaction on
 
 
-def maps_of(answer: Answer) -> list[tuple[str, Markup, str]]:
-    """Return a map for each pair of factors that interact: its head, the picture, what it draws."""
-    return [_map(answer, pair) for pair in answer.picture.get("pairs", ())]
+def map_of(answer: Answer) -> tuple[Markup, str] | None:
+    """Return the map of the pairs that interact, with what it draws; None where no pair holds 2 % of the variance."""
+    if answer.picture.get("pairs") is None:
+        return None
+    shares = np.asarray(answer.picture["pairs"], dtype=float)
+    names = [capital(str(title)) for title in answer.picture["titles"]]
+    own = np.tril(np.nan_to_num(shares), -1)
+    if own.max(initial=0.0) < WORTH:
+        return None
+    kept = [i for i in range(len(names)) if max(own[i].max(), own[:, i].max()) >= WORTH]
+    return _drawn_map(own[np.ix_(kept, kept)], [names[i] for i in kept])
 
 
-def _map(answer: Answer, pair: Mapping[str, Any]) -> tuple[str, Markup, str]:
-    """Draw the output over two factors as cells of seven shades; its words name the ends."""
-    middle = np.asarray(pair["middle"], dtype=float)
-    rows, columns = middle.shape
-    axis = Axis.of(middle[np.isfinite(middle)], room=0.0)
-    height = MAP_ROW * columns
-    names = [[_text(level) for level in pair[side]] for side in ("first", "second")]
-    left = max(width_of(cut(name, 110)) for name in names[1]) + 14
+def _drawn_map(shares: np.ndarray, names: Sequence[str]) -> tuple[Markup, str]:
+    """Draw the shares of the pairs of factors as cells with their numbers."""
+    size = len(names) - 1  # the first factor has no row, the last one no column
+    cell = 100 / size
     parts = []
-    for i in range(rows):
-        for j in range(columns):
-            shade = min(SHADES - 1, int(axis.place(middle[i, j]) * SHADES / 100)) if np.isfinite(middle[i, j]) else "no"
-            x, y = 100 * i / rows, 100 * (columns - 1 - j) / columns
-            size = (percent_place(100 / rows), percent_place(100 / columns))
-            corner = (percent_place(x), percent_place(y))
-            parts.append(element("rect", class_=f"s{shade}", x=corner[0], y=corner[1], width=size[0], height=size[1]))
-    for j, name in enumerate(names[1]):
-        y = 100 * (columns - 0.5 - j) / columns
-        parts.append(label(cut(name, 110), 0, percent_place(y), "end", dx=-6, dy=4))
-    for i, name in enumerate(names[0]):
-        text = cut(name, 300 / rows)
-        parts.append(label(text, 100 * (i + 0.5) / rows, "100%", dx=0, dy=15))
-    titles = [with_unit(title, units) for title, units in zip(pair["titles"], pair["units"], strict=True)]
-    parts.append(label(titles[0], 50, "100%", dx=0, dy=31))
-    words = f"{titles[1]} (upwards) and {titles[0]}"
-    low = number(float(np.nanmin(middle)), 3)
-    high = number(float(np.nanmax(middle)), 3)
-    caption = f"{output_title(answer)}: {low} (light) to {high} (dark); upwards {titles[1]}."
-    index = float(pair.get("index", math.nan))
-    share = "" if math.isnan(index) else f" {100 * index:.0f} %"
-    head = f"{pair['titles'][0]} and {pair['titles'][1].lower()}{share}"
-    return head, framed(joined(parts), height, words, left=left), caption
-
-
-def _text(value: Any) -> str:
-    return value if isinstance(value, str) else number(float(value))
+    for row in range(size):
+        y = row * cell
+        parts.append(label(cut(names[row + 1], 110), 0, percent_place(y + cell / 2), "end", dx=-6, dy=4))
+        for column in range(row + 1):
+            share = float(shares[row + 1, column])
+            shade = min(SHADES - 1, int(SHADES * share / max(float(shares.max()), WORTH)))
+            place = (percent_place(column * cell), percent_place(y))
+            length = percent_place(cell)
+            parts.append(element("rect", class_=f"s{shade}", x=place[0], y=place[1], width=length, height=length))
+            middle = percent_place(y + cell / 2)
+            parts.append(label(f"{100 * share:.0f}", (column + 0.5) * cell, middle, kind="strong", dx=0, dy=4))
+    for column in range(size):
+        parts.append(label(cut(names[column], 260 / size), (column + 0.5) * cell, "100%", dx=0, dy=15))
+    left = max(width_of(cut(name, 110)) for name in names[1:]) + 14
+    words = "; ".join(
+        f"{names[i]} and {names[j]} {100 * shares[i, j]:.0f} %" for i in range(len(names)) for j in range(i)
+    )
+    drawn = framed(joined(parts), MAP_ROW * size, words, left=left)
+    return drawn, "Share of the variance that a pair of factors holds beyond each of them alone [%]."

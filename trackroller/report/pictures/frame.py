@@ -8,7 +8,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from trackroller.report.numbers import number, unit_text
+from trackroller.report.numbers import grouped, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.marks import (
     anchor_at,
@@ -106,7 +106,7 @@ def bounds_of(answer: Answer) -> list[tuple[float, str]]:
 
 def _bounds(required: Required) -> list[tuple[float, str]]:
     ends = [(required.least, "required"), (required.most, "at most")]
-    return [(value, f"{word} {number(value, 6)}") for value, word in ends if math.isfinite(value)]
+    return [(value, f"{word} {grouped(value, 6)}") for value, word in ends if math.isfinite(value)]
 
 
 def required_levels(answer: Answer, axis: Axis) -> Markup:

@@ -10,10 +10,11 @@ from typing import Any
 from trackroller.report.numbers import (
     capital,
     carried_range,
-    head_unit,
+    grouped,
     level_text,
-    number,
+    lowered,
     unit_text,
+    year_words,
 )
 from trackroller.results.answer import Answer, Column
 from trackroller.study.design.levels import NAMED
@@ -21,14 +22,17 @@ from trackroller.study.design.levels import NAMED
 STATE_SIGNS = {"met": "● met", "open": "◐ open", "missed": "✕ missed", "none": "– none"}
 MOST_ROWS = 15  # of a table that stands on a page whole
 FIRST_ROWS = 12  # of a longer one, before the fold
-FOLDED_ROWS = 200  # of a longer one, behind the fold; the others stand in the files
-PAGE = 1120.0  # width of a table on a page [px]
+MOST_SHOWN = 200  # of a longer one, the fold included; the others stand in the files
+PAGE = 1090.0  # width of a table on a page [px]
 BARS = 210.0  # width of the bars of a table [px]
 GAP = 17.0  # between two columns [px]
 LETTER = 7.3  # mean width of a letter of a table [px]
-WRAPPED = 26  # letters of a line of a text in a table
+WRAPPED = 24  # letters of a line of a text in a table
+LINES = 2  # of a text in a table
+WIDEST = 40  # letters of such a line; longer texts stand in the proof
 NARROW_KINDS = ("ratio", "error")  # that a card of a narrow screen leaves out
 NARROW_NAMES = ("median", "best")
+WORDS = ("factor", "output")  # columns of words that name a row
 UNDRAWN = ("best",)  # columns that are drawn and not written
 
 
@@ -73,16 +77,19 @@ def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
     shared = answer.shared
     every = tuple(answer.columns) if columns is None else tuple(columns)
     shown = [one for one in every if one.name not in shared and one.name not in UNDRAWN]
-    records = answer.table.to_dict("records")
-    cells = tuple(tuple(cell_of(answer, column, row) for column in shown) for row in records)
+    records = answer.table.head(MOST_SHOWN).to_dict("records")
+    heads = tuple(head_of(answer, column) for column in shown)
+    pairs = list(zip(shown, heads, strict=True))
+    cells = tuple(tuple(cell_of(answer, column, row, head.kind) for column, head in pairs) for row in records)
     first = records[0] if records else {}
     said = [_shared_text(answer, column, first) for column in answer.columns if column.name in shared]
-    return Rows(tuple(head_of(answer, column) for column in shown), cells, tuple(text for text in said if text))
+    said.append(year_words())
+    return Rows(heads, cells, tuple(text for text in said if text))
 
 
 def head_of(answer: Answer, column: Column) -> Head:
     """Return the head of a column."""
-    return Head(column.name, column.title, unit_of(column), column.meaning, classes_of(answer, column))
+    return Head(column.name, capital(column.title), unit_of(column), column.meaning, classes_of(answer, column))
 
 
 def unit_of(column: Column) -> str:
@@ -90,9 +97,7 @@ def unit_of(column: Column) -> str:
     if column.name in NAMED and column.role == "name":
         return ""
     signs = {"share": "%", "ratio": "×", "error": "± %"}
-    unit = column.units or signs.get(column.kind, "")
-    if unit == "h":
-        return head_unit("h")
+    unit = signs.get(column.kind) or column.units
     return unit_text(unit).replace("–", "")
 
 
@@ -102,14 +107,19 @@ def classes_of(answer: Answer, column: Column) -> str:
     if _is_number(answer, column):
         classes.append("n")
     elif column.kind == "state":
-        classes.append("v")
-    elif column.role == "name":
+        classes.append("v" if column is _first_state(answer) else "s")
+    elif column.role == "name" and _longest(answer, column) <= WRAPPED:
         classes.append("s")
     if column.kind in NARROW_KINDS or column.name in NARROW_NAMES:
         classes.append("z")
     if column.role == "name":
         classes.append("u")
     return " ".join(classes)
+
+
+def _first_state(answer: Answer) -> Column | None:
+    """Return the column of the verdict: the first one of its kind."""
+    return next((column for column in answer.columns if column.kind == "state"), None)
 
 
 def _is_number(answer: Answer, column: Column) -> bool:
@@ -120,10 +130,9 @@ def _is_number(answer: Answer, column: Column) -> bool:
     return not any(isinstance(value, str) for value in answer.table[column.name])
 
 
-def cell_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> Cell:
-    """Return a cell of a row."""
+def cell_of(answer: Answer, column: Column, row: Mapping[Any, Any], kind: str) -> Cell:
+    """Return a cell of a row with the classes of its column."""
     value = row[column.name]
-    kind = classes_of(answer, column)
     if column.kind == "state":
         return Cell(STATE_SIGNS.get(str(value), str(value)), kind, str(value))
     return Cell(text_of(answer, column, row), kind)
@@ -137,19 +146,21 @@ def text_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
     if column.kind == "level":
         return _level_text(column, value)
     if isinstance(value, str):
-        return value
+        return capital(value) if column.name in WORDS else value
     if column.kind == "count":
-        return number(float(value), 12)
+        return grouped(float(value), 12)
     low = float(value)
     high = float(row[column.until]) if column.until and not _missing(row[column.until]) else low
     if column.kind in ("share", "error"):
         return _percent_range(low, high)
     if column.kind == "ratio":
-        return carried_range(low, high, COARSE_RATIO)
+        return " to ".join(dict.fromkeys(ratio_text(end) for end in (low, high)))
     return carried_range(low, high, _error_of(row, column), _bounds(answer, column))
 
 
-COARSE_RATIO = 1.0  # a ratio is written with two figures
+def ratio_text(ratio: float) -> str:
+    """Write a ratio: three figures near 1, where small differences count, otherwise two."""
+    return grouped(ratio, 3 if 0.1 <= ratio < 10 else 2)
 
 
 def _missing(value: Any) -> bool:
@@ -161,7 +172,7 @@ def _level_text(column: Column, value: Any) -> str:
         return "yes" if value else "no"
     if isinstance(value, str) or column.name in NAMED:
         return level_text(column.name, value)
-    return number(float(value))
+    return grouped(float(value))
 
 
 def _percent_range(low: float, high: float) -> str:
@@ -172,10 +183,10 @@ def _percent_range(low: float, high: float) -> str:
 def _percent(value: float) -> str:
     whole = 100 * value
     if math.isinf(whole):
-        return number(whole)
+        return grouped(whole)
     if 0 < whole < 1 or 99 < whole < 100:
-        return number(whole, 2 if whole < 1 else 4)
-    return number(float(f"{whole:.0f}"), 12) if whole >= 1 else "0"
+        return grouped(whole, 2 if whole < 1 else 4)
+    return grouped(float(f"{whole:.0f}"), 12) if whole >= 1 else "0"
 
 
 def _error_of(row: Mapping[Any, Any], column: Column) -> float:
@@ -194,7 +205,7 @@ def _shared_text(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
     text = text_of(answer, column, row)
     if text in ("–", ""):
         return ""
-    title = column.title[:1].lower() + column.title[1:] if column.title[1:2].islower() else column.title
+    title = lowered(column.title)
     unit = unit_of(column)
     return f"{title} {text} {unit}".strip().replace(" °", "°")
 
@@ -216,7 +227,8 @@ def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> Fit:
         if column.name in shared or column.name in UNDRAWN:
             continue
         needed = _width(answer, column)
-        if column.role or needed <= left:
+        readable = column.kind != "text" or _longest(answer, column) <= LINES * WIDEST
+        if column.role or (readable and needed <= left):
             left -= needed
             shown.append(column)
         else:
@@ -229,14 +241,19 @@ def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> Fit:
 
 def _width(answer: Answer, column: Column) -> float:
     """Return the estimated width of a column [px]; texts wrap, and numbers do not."""
-    texts = [text_of(answer, column, row) for row in answer.table.to_dict("records")]
-    longest = max([len(text) for text in texts], default=1)
-    if column.kind == "text":
-        longest = min(longest, WRAPPED)
+    longest = _longest(answer, column)
+    if column.kind == "text" or column.role == "name":
+        longest = max(min(longest, WRAPPED), longest // LINES)
     if column.kind == "state":
         longest = len("✕ missed")
     heads = [len(word) for word in (*column.title.split(), unit_of(column))]
     return LETTER * max(longest, *heads) + GAP
+
+
+def _longest(answer: Answer, column: Column) -> int:
+    """Return the letters of the longest cell of a column."""
+    texts = [text_of(answer, column, row) for row in answer.table.head(MOST_SHOWN).to_dict("records")]
+    return max([len(text) for text in texts], default=1)
 
 
 def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
@@ -244,7 +261,8 @@ def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
     for column in answer.columns:
         if column.meaning:
             unit = unit_of(column)
-            yield (f"{column.title} [{unit}]" if unit else column.title), column.meaning
+            title = capital(column.title)
+            yield (f"{title} [{unit}]" if unit else title), capital(column.meaning)
 
 
 def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
@@ -253,17 +271,16 @@ def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
     if ends.empty:
         return [], [], ""
     limits = [str(name) for name in ends.columns if name not in ("factor", "level")]
-    first = ends[ends["factor"] == ends["factor"].iloc[0]]
-    totals = {limit: int(first[limit].sum()) for limit in limits}
-    ending = [limit for limit in limits if totals[limit] > 0]
+    rows = ends.to_dict("records")
+    ending = [limit for limit in limits if int(rows[0][limit]) > 0]
     if len(ending) == 1:
-        return [], [], f"{number(totals[ending[0]], 12)} cases: {ending[0]}"
-    titles = {curve.factor: (curve.title, curve.units) for curve in answer.curves}
-    rows = []
-    for row in ends.to_dict("records"):
-        name = str(row["factor"])
-        title, units = titles.get(name, (capital(name.replace("_", " ")), ""))
-        level = _level_text(Column(name, title), row["level"])
-        unit = "" if name in NAMED or isinstance(row["level"], str) else unit_text(units).replace("–", "")
-        rows.append([title, f"{level} {unit}".strip(), *(number(float(row[limit]), 12) for limit in ending)])
-    return ["Factor", "Level", *(capital(limit) for limit in ending)], rows, ""
+        return [], [], f"{grouped(float(rows[0][ending[0]]), 12)} cases: {ending[0]}"
+    shown = []
+    last = ""
+    for row in rows:
+        factor = capital(str(row["factor"]))
+        level = row["level"] if isinstance(row["level"], str) else grouped(float(row["level"]))
+        counts = [grouped(float(row[limit]), 12) for limit in ending]
+        shown.append(["" if factor == last else factor, level, *counts])
+        last = factor
+    return ["Factor", "Level", *(capital(limit) for limit in ending)], shown, ""

@@ -1,4 +1,4 @@
-"""Levels of a factor, groups of cases and held factors in words."""
+"""Levels of a factor, groups of cases and held factors in words, for figures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from trackroller.report.numbers import level_text, long_name, number, rounded, s
 from trackroller.results.groups import DRIVE, Groups, classes
 from trackroller.results.results import Results
 
-LOADS = ("radial_force", "axial_force", "motor_force")  # their sign is a direction: less may mean more load
 COLOURS = 5  # most groups that get a colour each
 
 
@@ -50,34 +49,6 @@ def _drive(low: float, high: float) -> str:
         return level_text(DRIVE, low)
     least, most = sorted((abs(low), abs(high)))
     return f"{'driven' if low < 0 else 'braked'}, {rounded(least, 2)} to {rounded(most, 2)} N"
-
-
-def at_most(name: str, value: Any, least: float) -> str:
-    """Name the values of a factor from its least value up to a bound: 'contact angle up to 30°'.
-
-    Of a load with a sign: 'radial force of −100 N or heavier', 'axial force of 5 N or lighter', and of a load that
-    acts both ways 'motor force −20 to 3 N', because neither word holds.
-    """
-    return _of_load(name, value, value, least, "up to") or f"{long_name(name)} up to {_bound(name, value)}"
-
-
-def at_least(name: str, value: Any, most: float) -> str:
-    """Name the values of a factor from a bound to its largest value: 'contact angle from 30° up'; see `at_most`."""
-    return _of_load(name, value, most, value, "from") or f"{long_name(name)} from {_bound(name, value)} up"
-
-
-def _of_load(name: str, bound: Any, high: float, low: float, way: str) -> str:
-    """Name a range of a load by its weight; an empty text for another factor."""
-    if name not in LOADS:
-        return ""
-    if low < 0 < high:
-        return f"{long_name(name)} {span(name, low, high)}"
-    lighter = (way == "up to") == (high > 0)
-    return f"{long_name(name)} of {_bound(name, bound)} or {'lighter' if lighter else 'heavier'}"
-
-
-def _bound(name: str, value: Any) -> str:
-    return level_text(name, value, words=False)
 
 
 def held_words(held: Mapping[str, Any]) -> str:
