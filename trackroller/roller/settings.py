@@ -52,7 +52,7 @@ def checked_sheet(value: Any) -> dict[str, str]:
 
 
 def with_beside(ds: xr.Dataset, beside: Mapping[str, Any]) -> xr.Dataset:
-    """Return the result of one case with its duty, the head of its sheet and its requirement as attributes; see `checked_case`."""
+    """Return the result of one case with the entries `BESIDE` as attributes; see `checked_case`."""
     return ds.assign_attrs({name: json.dumps(value) for name, value in beside.items()})
 
 
@@ -119,7 +119,8 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     (70.0, {'contact_model': 'sliding'}, {'sheet': {'part': '7'}})
     """
     left = dict(values)
-    wrong, beside = Collector(), {}
+    wrong = Collector()
+    beside: dict[str, Any] = {}
     options = {key: left.pop(key) for key in OPTIONS if key in left}
     for key in (name for name in BESIDE if name in left):
         with wrong.part():
