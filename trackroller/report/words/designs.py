@@ -197,12 +197,12 @@ def best_table(results: Results) -> Table | None:
 def _on_targets(candidates: Candidates, best: list[pd.Series]) -> list[list[Any]]:
     """Return a row for each target that is no life: its worst value over the conditions that a design holds."""
     results, rows = candidates.results, []
-    for name, ends in results.config.analysis.target.items():
+    for name, ends in results.config.requirement.items():
         if is_life(name) or name == candidates.goal[0]:  # which have rows already
             continue
         values, unit, words = results.quantity(name)
         for end, way, place in (("min", "max", "smallest"), ("max", "min", "largest")):
-            if end in ends:
+            if end in ends.ends:
                 case = candidates.worst_cases(values.astype(float), way)[[int(str(row.name)) for row in best]]
                 head = with_unit(f"{capital(words)}{f', {place}' * bool(candidates.conditions)}", unit)
                 rows.append([head, *(float(value) for value in np.where(case < 0, np.nan, values[case]))])

@@ -565,8 +565,9 @@ def unchecked_words(results: Results, names: Iterable[str]) -> list[str]:
 def targets_in_words(results: Results, unit_of_goal: str = "h") -> str:
     """Write the targets of a study: the largest life that they ask of the pair, then the others by their names."""
     lives, texts = [], []
-    for name, ends in results.config.analysis.target.items():
+    for name, wanted in results.config.requirement.items():
         unit, words = results.quantity(name)[1:]
+        ends = wanted.ends
         if name in OF_PAIR and set(ends) == {"min"} and unit_of_goal == "h":
             lives.append(ends["min"])
         else:
