@@ -78,7 +78,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
         `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
         (load_case) is False where no state fulfils all conditions of an equilibrium; its forces, margins and the lives
         of all rollers are NaN. A margin beyond the one to a single contact is one of rollers that carry axial load both
-        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`, `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
+        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`, `life_km` and
+        `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
         roller with the shortest one.
 
     Raises

@@ -147,7 +147,8 @@ class CaseRanges:
         """Return the relative error of the output by the solution, shape (n,) [1]; 0 where none is stated."""
         name = self.output[0]
         if is_life(name):
-            return self._error_of_life
+            error: np.ndarray = self._error_of_life
+            return error
         body = body_of(name)
         stated = f"error_estimate_{body}"
         if name.startswith("peak_stress") and stated in self.results.table:

@@ -68,7 +68,7 @@ class Effects:
         return np.exp(values) if self.by_ratio else values
 
     def curves(self) -> tuple[Curve, ...]:
-        """Return the curve of each factor, the highest one first; factors without two levels that count are left out."""
+        """Return the curve of each factor with two levels that count, the highest one first."""
         found = []
         for name in self.results.factors:
             if name in OPTION_FACTORS or name in self.results.labels:
@@ -107,7 +107,7 @@ class Effects:
         return self._curve(name, kept, np.median(full, axis=0), ends, shape, full.size, left)
 
     def _by_fit(self, name: str) -> Curve | None:
-        """Return the curve of a factor by the fit of one function of each factor; None where the fit predicts too little."""
+        """Return the curve of a factor by the fit of the sample; None where the fit predicts too little."""
         if self.fit is None or name not in self.fit.parts:
             return None
         part, own = self.fit.parts[name], self.fit.values[name]

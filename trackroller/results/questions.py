@@ -27,13 +27,12 @@ def question_of(results: Results) -> str:
 
     Notes
     -----
-    The first that applies: best (a search), which model (several contact models; each has its own decision), what matters (a method
-    of sensitivity analysis, or a random sample whose candidates share no conditions), decide (two candidates or more),
-    how sure (one candidate with a requirement), how it behaves.
+    The first that applies: best (a search), which model (several contact models; each has its own decision), what
+    matters (a method of sensitivity analysis, or a random sample whose candidates share no conditions), decide (two
+    candidates or more), how sure (one candidate with a requirement), how it behaves.
     """
-    given = getattr(results.config, "question", None)
-    if given:
-        return str(given)
+    if results.config.question:
+        return str(results.config.question)
     method = results.config.method
     if method.proposes:
         return "best"
@@ -69,8 +68,8 @@ def _ranks(name: str) -> bool:
     return is_life(name) or name.startswith("peak_stress")
 
 
-def answer_of(results: Results) -> Answer:
-    """Return the answer to a study.
+def answer_of(results: Results) -> Answer | None:
+    """Return the answer to a study; None for a search, which recommends a design of its own.
 
     Parameters
     ----------
@@ -79,9 +78,7 @@ def answer_of(results: Results) -> Answer:
     """
     question = question_of(results)
     if question == "best":
-        from trackroller.results.best import answer_of_search
-
-        return answer_of_search(results)
+        return None
     needs_output = question in ("decide", "how sure")
     if needs_output and Comparison.of(results) is None:
         return answer_how_it_behaves(results)
