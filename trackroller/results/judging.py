@@ -130,7 +130,7 @@ def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
 def required(results: Results) -> bool:
     """Return whether a search has a target that its designs have to meet, instead of a goal that is its probability."""
     chances = {judged_by(goal)[1] for goal in goals_of_search(results) if judged_by(goal)[0] == "probability"}
-    return bool(set(results.config.analysis.target) - chances)
+    return bool(set(results.config.requirement) - chances)
 
 
 def shortfall(results: Results, nine_of_ten: bool = False, exact: bool = False) -> np.ndarray:

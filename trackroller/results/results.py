@@ -32,6 +32,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.outputs import Output, case_dims, flat, of_fatigue, of_first_limit
 
 if TYPE_CHECKING:
+    from trackroller.results.answer import Answer
     from trackroller.results.by_tests import ByTests
     from trackroller.results.candidates import Candidates
     from trackroller.results.findings import Finding
@@ -198,6 +199,19 @@ class Results:
         from trackroller.results.verdict import verdict_of
 
         return verdict_of(self)
+
+    @cached_property
+    def answer(self) -> Answer | None:
+        """Return the answer to the study as one record of numbers and names.
+
+        Returns
+        -------
+        Answer or None
+            See `trackroller.results.answer.Answer`; None for a search.
+        """
+        from trackroller.results.questions import answer_of
+
+        return answer_of(self)
 
     @cached_property
     def by_tests(self) -> ByTests | None:
@@ -582,9 +596,9 @@ class Results:
 
         A life that is a range has to meet it with its low end.
         """
-        ends, judged = self.config.analysis.target[target], self.judged_targets
+        judged = self.judged_targets
         values = judged[target] if target in judged else self.quantity(target)[0].astype(float)
-        return np.asarray((values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+        return self.config.requirement[target].meets(values)
 
     @cached_property
     def judged_targets(self) -> dict[str, np.ndarray]:
@@ -596,7 +610,7 @@ class Results:
         """
         if self.life != FIRST_LIMIT:
             return {}
-        named = [n for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}]
+        named = [n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least]
         return dict.fromkeys(named, self.sure_life)
 
     @cached_property
