@@ -22,7 +22,7 @@ from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
-from trackroller.report.headlines import headline_of, warning_line
+from trackroller.report.headlines import headline_of, shown_answer, warning_line
 from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
@@ -308,7 +308,7 @@ def headlines(name: str) -> dict[str, Any]:
 
 def _said(results: Results) -> list[tuple[str, str]]:
     """Return the headline and the warnings of a study, each with its head."""
-    answer = results.answer
+    answer = shown_answer(results)
     warnings = " · ".join(warning_line(caution) for caution in answer.warnings)
     lines = [("Answer", headline_of(answer).text), ("Warnings", warnings)]
     return [(head, text) for head, text in lines if text]

@@ -119,6 +119,7 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
 def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:
     """Print the answer to a study: headline, table and warnings, or its record as JSON; write its page to `out`."""
     from trackroller.report.build import report_text  # heavy: SALib
+    from trackroller.report.headlines import shown_answer
     from trackroller.report.html import write_page
     from trackroller.report.terminal import print_answer
     from trackroller.results.stored_study import open_study
@@ -127,10 +128,11 @@ def print_best(study: str, results: Path, out: Path | None, as_json: bool = Fals
     found = find_folder(study, results)
     folder = Path(study) if found is None and Path(study).is_dir() else find_study(study, results)[1].root
     solved = open_study(folder)
+    answer = shown_answer(solved)
     if as_json:
-        print(json.dumps(solved.answer.to_dict(), ensure_ascii=False, allow_nan=False))
+        print(json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False))
     else:
-        print_answer(solved.answer)
+        print_answer(answer)
     if target is not None:
         print(write_page(target, report_text(solved)))
 

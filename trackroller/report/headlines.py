@@ -72,6 +72,8 @@ from trackroller.report.numbers import (
     years_of,
 )
 from trackroller.results.answer import Answer, Caution, Column, Required
+from trackroller.results.how_it_behaves import answer_how_it_behaves
+from trackroller.results.results import Results
 from trackroller.study.design.levels import NAMED
 
 MOST_WORDS = 40
@@ -108,6 +110,11 @@ def headline_of(answer: Answer) -> Headline:
     """
     with on_duty(answer.facts.get("duty")):
         return TEMPLATES[answer.question](answer)
+
+
+def shown_answer(results: Results) -> Answer:
+    """Return the answer to a study; of a search without one how its designs behave."""
+    return results.answer or answer_how_it_behaves(results)
 
 
 def decide(answer: Answer) -> Headline:
@@ -307,7 +314,7 @@ def what_matters(answer: Answer) -> Headline:
         return Headline(f"No factor changes the {words}", ".")
     verb = "decides" if len(factors) == 1 else "decide"
     lead = capital(f"{listing([lowered(one['title']) for one in factors])} {verb} the {words}")
-    if _known(factors[0], "index"):
+    if _known(factors[0], "index") and _in_shares(answer):
         sizes = f"index {listing([_index(one) for one in factors])}"
     else:
         sizes = listing([f"×{grouped(one['height'], 2)}" for one in factors])
@@ -315,6 +322,11 @@ def what_matters(answer: Answer) -> Headline:
     if head.get("asked"):
         clauses.append(f"{lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
     return _joined(lead, [clause for clause in clauses if clause])
+
+
+def _in_shares(answer: Answer) -> bool:
+    """Return whether the index of an answer is a share; an effect is said by the height of its curve."""
+    return any(column.name == "index" and column.kind == "share" for column in answer.columns)
 
 
 def _index(factor: Mapping[str, Any]) -> str:

@@ -12,6 +12,7 @@ import xarray as xr
 from trackroller import parameters
 from trackroller.methods import METHODS
 from trackroller.report.explorer.page import explorer, secured
+from trackroller.report.headlines import shown_answer
 from trackroller.report.html import render
 from trackroller.report.numbers import capital, lives_in_years, long_name, part_of, percent_up, rounded
 from trackroller.report.pages.blocks import screen_of
@@ -54,13 +55,13 @@ def write_report(results: Results, out_html: Path) -> Path:
     put_text(Path(out_html), report_text(results))
     with sealing(Path(out_html).with_name("tables")) as beside:
         export(tables_of(results), beside)
-        write_answer(results.answer, beside)
+        write_answer(shown_answer(results), beside)
     return Path(out_html)
 
 
 def report_text(results: Results) -> str:
     """Return the report of a study as HTML; no file is read or written."""
-    return page_text(results.answer, proof_of(results), explorer(results))
+    return page_text(shown_answer(results), proof_of(results), explorer(results))
 
 
 def page_text(answer: Answer, proof: dict[str, Any], shown: dict[str, Any] | None) -> str:
