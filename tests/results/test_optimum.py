@@ -209,7 +209,7 @@ def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
         ({"goals": {"pair_life_hour": "max"}}, "Did you mean 'pair_life_hours'"),
         ({"goals": {"b10(max_pressure)": "min"}}, "b10 of a life"),
         ({"goals": {"median(pair_life_hours)": "max"}}, "mean, worst, b10 or probability of one. For example mean"),
-        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a target or of a regime"),
+        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a requirement or of a regime"),
         ({"goals": {"pair_life_hours": "up"}}, "Allowed: max, min"),
         ({"goals": {"pair_life_hours": "max", "worst(pair_life_hours)": "min"}}, "each result once"),
         ({"pareto": {"pair_life_hours": "max", "max_pressure": "min"}}, "Rename the key to goals"),
@@ -225,17 +225,6 @@ def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
 def test_a_wrong_search_is_refused(keys, says):
     with pytest.raises(InputError, match=says.replace("(", r"\(")):
         changed(**keys).design()
-
-
-def test_a_recommended_design_names_the_constraints_that_it_keeps():
-    from trackroller.report.words.sentence import say
-
-    values = {"least": 0.0, "design": "outer radius 14 mm", "goals": ["outer radius 14 mm"], "edges": [], "front": 1}
-    values |= {"short": 0.0, "target": "", "limits": [], "meeting": 1, "designs": 4, "conditions": 1}
-    values |= {"others": 0, "life": ""}
-    kept = say("optimum", "recommended", alike=True, constraints=["pair_life_hours >= 10000"], **values).text
-    assert "Its goal: outer radius 14 mm; it keeps `pair_life_hours >= 10000`." in kept
-    assert "keeps" not in say("optimum", "recommended", alike=True, constraints=[], **values).text
 
 
 def test_a_target_on_a_force_decides_a_search_without_lives_and_stresses():

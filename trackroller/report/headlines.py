@@ -58,12 +58,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from trackroller.errors import listing
+from trackroller.parameters.of_carriage import parameter_of
 from trackroller.report.numbers import (
     capital,
     carried,
     carried_range,
     grouped,
     level_text,
+    long_name,
     lowered,
     on_duty,
     percent,
@@ -514,7 +516,7 @@ def _name(answer: Answer, name: Mapping[str, Any]) -> str:
     texts = [key for key, level in name.items() if isinstance(level, str)]
     spoken = []
     for key, level in name.items():
-        column = columns.get(key, Column(key, key.replace("_", " "), kind="level"))
+        column = columns.get(key) or _column_of(key)
         alone = isinstance(level, str) and len(texts) == 1
         alone = alone or (key in NAMED and not isinstance(level, str))
         text = _level(column, level)
@@ -526,6 +528,13 @@ def _name(answer: Answer, name: Mapping[str, Any]) -> str:
         shown.append(text)
     left = len(spoken) - len(shown)
     return ", ".join(shown) + (f" and {left} more" if left else "")
+
+
+def _column_of(key: str) -> Column:
+    """Return the column of a choice that the table does not show."""
+    known = parameter_of(key)
+    units = "" if known is None or known.unit == "-" else known.unit
+    return Column(key, long_name(key), units, kind="level", role="name")
 
 
 def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:

@@ -157,13 +157,15 @@ def years_of(low: float, high: float | None = None) -> str:
 
 
 def range_unit(low: float, high: float) -> str:
-    """Return the unit behind a range of lives: 'h', or with the years of both ends where both last at least one."""
+    """Return the unit behind a range of lives: 'h', or with its years where an end lasts at least one."""
     duty = _duty.get()
     if not duty or not (math.isfinite(low) and math.isfinite(high)):
         return "h"
     first, last = (years(end, duty) for end in (low, high))
-    if first < LEAST_YEARS or last > MOST_YEARS:
+    if last < LEAST_YEARS or last > MOST_YEARS:
         return "h"
+    if first < LEAST_YEARS:
+        return f"h (up to {_year_words(rounded(last, 2))})"
     return f"h ({_year_words(rounded(first, 2), rounded(last, 2))})"
 
 
