@@ -121,7 +121,7 @@ def print_best(study: str, results: Path, out: Path | None, as_json: bool = Fals
     from trackroller.report.build import report_text  # heavy: SALib
     from trackroller.report.headlines import shown_answer
     from trackroller.report.html import write_page
-    from trackroller.report.terminal import print_answer
+    from trackroller.report.printed import print_answer
     from trackroller.results.stored_study import open_study
 
     target = out if out is None else writable_page(out)

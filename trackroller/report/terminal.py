@@ -1,4 +1,4 @@
-"""Answers, tables and texts on a terminal, in a file or in a pipe."""
+"""Tables and texts on a terminal, in a file or in a pipe."""
 
 from __future__ import annotations
 
@@ -10,11 +10,6 @@ from typing import TextIO
 
 from rich.console import Console
 from rich.table import Table
-
-from trackroller.report.headlines import headline_of, warning_line
-from trackroller.report.numbers import on_duty
-from trackroller.report.tables.rows import MOST_ROWS, rows_of
-from trackroller.results.answer import Answer
 
 NARROW = 12  # letters; cells that are longer may be broken between words
 FRAME = 3  # letters that the frame takes for each column
@@ -81,28 +76,3 @@ def print_text(text: str, head: str = "", to: TextIO | None = None) -> None:
         break_on_hyphens=False,
     )
     print("\n".join(lines), file=to)
-
-
-def print_answer(answer: Answer) -> None:
-    """Print the headline of an answer, its table, what all its rows share, and its warnings.
-
-    Columns that are equal in all rows stand once below the table; of a long table the first rows are printed.
-    """
-    with on_duty(answer.facts.get("duty")):
-        print_text(headline_of(answer).text)
-        table = rows_of(answer)
-        heads = [f"{head.title} [{head.unit}]" if head.unit else head.title for head in table.heads]
-        rows = [[cell.text for cell in row] for row in table.cells[:MOST_ROWS]]
-        right = [i for i, head in enumerate(table.heads) if "n" in head.kind.split()]
-        if rows:
-            print_table(heads, rows, right)
-        left = len(answer.table) - len(rows)
-        if left > 0:
-            print_text(f"{left:,} more rows stand in the report.")
-        if table.shared:
-            print_text("; ".join(table.shared), "all rows")
-        for body, limits in answer.not_checked.items():
-            if limits:
-                print_text(f"not checked, {body}: {', '.join(limits)}")
-        for caution in answer.warnings:
-            print_text(warning_line(caution))
