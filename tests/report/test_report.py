@@ -62,15 +62,13 @@ OVERFLOW = """(() => {
 @pytest.mark.parametrize(
     "part",
     [
-        "pages.study.report_section",
-        "pages.study.given_pareto",
-        "pages.study.target_tables",
+        "pages.study.screen_of",
+        "pages.study.proof_of",
         "pages.study.explorer",
-        "pages.study.figures",
-        "figures.comparison.pairs",
+        "pages.study.tables_of",
+        "pages.study.write_answer",
         "figures.study.given_pareto",
-        "figures.factors.coloured",
-        "figures.sensitivity._axis",
+        "figures.sensitivity._heat",
     ],
 )
 def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatch):
