@@ -147,12 +147,11 @@ class CaseRanges:
         """Return the relative error of the output by the solution, shape (n,) [1]; 0 where none is stated."""
         name = self.output[0]
         if is_life(name):
-            error: np.ndarray = self._error_of_life
-            return error
+            return self._error_of_life
         body = body_of(name)
         stated = f"error_estimate_{body}"
         if name.startswith("peak_stress") and stated in self.results.table:
-            return np.nan_to_num(self.results.column(stated))
+            return np.asarray(np.nan_to_num(self.results.column(stated)))
         return np.zeros(len(self.value))
 
     @cached_property

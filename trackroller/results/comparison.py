@@ -21,7 +21,7 @@ from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.first_limits import UNSURE
 from trackroller.results.groups import MOST_LEVELS
-from trackroller.results.lives import OF_PAIR
+from trackroller.results.lives import FIRST_LIMIT, OF_PAIR
 from trackroller.results.requirement import required_of
 from trackroller.results.results import Results
 from trackroller.results.robustness import material_deviations
@@ -44,7 +44,7 @@ def compared_output(results: Results, required: Iterable[Required]) -> tuple[tup
     otherwise the first output that is required; without both the peak stress. None if the study has none of them.
     """
     wanted = list(required)
-    life = results.life
+    life = results.life or next((one for one in (FIRST_LIMIT, *results.fatigue_lives) if one[0] in results.table), None)
     if any(one.output in OF_PAIR for one in wanted) and life is not None:
         return life, True
     for one in wanted:

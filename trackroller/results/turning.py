@@ -89,7 +89,8 @@ class Turning:
             low, high = (np.log(hours[rows]) for hours in self.hours)
         endless = np.isposinf(low)
         open_end = np.isposinf(high) & ~endless
-        width = np.where(endless | open_end, 0.0, high - low)
+        with np.errstate(invalid="ignore"):
+            width = np.where(endless | open_end, 0.0, high - low)
         start = np.where(endless, np.inf, low)
         moved = self.moves(one, rows)
         still = np.where(moved, np.inf, start + 0.5 * width).min()
