@@ -164,8 +164,8 @@ def test_a_sample_without_designs_says_so_and_nothing_contradicts_it(name):
     """No row of these studies repeats a groove: the verdict refuses, and Pareto set and targets speak of cases."""
     solved, found, prose = page(name)
     best = {s.kind: s.text for s in dict(found["summary"])["Verdict"]}
-    longest, target = solved.table.pair_life_hours.max(), solved.config.analysis.target
-    if target and longest < target["pair_life_hours"]["min"]:  # no need to compare designs
+    longest, target = solved.table.pair_life_hours.max(), solved.config.requirement
+    if target and longest < target["pair_life_hours"].least:  # no need to compare designs
         assert solved.verdict.kind == "none" and f"None of the {len(solved.table)} cases meets" in best["nowhere"]
     else:
         assert solved.verdict.kind == "cannot_tell" and "design: inner_outer" in best["unanswered"]

@@ -310,7 +310,7 @@ def test_targets_are_met_by_designs():
     """Designs that meet a life of the pair in their conditions, by a group-by on raw rows."""
     ds, frame = solved(analysis={"target": {"min": 100}})
     results = results_of(ds)
-    assert results.config.analysis.target == {"pair_life_hours": {"min": 100}}
+    assert results.config.requirement["pair_life_hours"].least == 100
     hits = (frame["valid"] & (frame["pair_life_hours"] >= 100)).groupby([frame[n] for n in CHOICES]).sum()
     found = results.verdict
     assert sorted(one.met for one in found.candidates) == sorted(hits) and 0 < max(hits) < 12

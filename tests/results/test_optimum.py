@@ -273,7 +273,7 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
         ({"goals": {"pair_life_hour": "max"}}, "Did you mean 'pair_life_hours'"),
         ({"goals": {"b10(max_pressure)": "min"}}, "b10 of a life"),
         ({"goals": {"median(pair_life_hours)": "max"}}, "mean, worst, b10 or probability of one. For example mean"),
-        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a target or of a regime"),
+        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a requirement or of a regime"),
         ({"goals": {"pair_life_hours": "up"}}, "Allowed: max, min"),
         ({"goals": {"pair_life_hours": "max", "worst(pair_life_hours)": "min"}}, "each result once"),
         ({"pareto": {"pair_life_hours": "max", "max_pressure": "min"}}, "Rename the key to goals"),

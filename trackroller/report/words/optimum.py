@@ -215,8 +215,7 @@ def _open_values(results: Results, search: dict[str, Any], best: dict[str, Any])
 
     Nothing where the error of its solution does.
     """
-    nine_of_ten = any(judged_by(goal)[0] == "b10" for goal in search["goals"])
-    if results.life is None or not 1 <= shortfall(results, nine_of_ten, exact=True)[best["design"]] < 2:
+    if results.life is None or not 1 <= shortfall(results, exact=True)[best["design"]] < 2:
         return ()
     cases = Cases(Candidates.grouped(results, results.life))
     row = best["design"] * results.design.meta["inner_samples"]
