@@ -15,7 +15,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.methods.probability import wilson
-from trackroller.parameters import BODIES, REGIMES
+from trackroller.parameters import BODIES
 from trackroller.parameters.of_carriage import long_name_of, parameter_of
 from trackroller.results.answer import Answer, Caution, Column
 from trackroller.results.intervals import Cases
@@ -571,9 +571,8 @@ def _picture(found: _Found) -> dict[str, Any]:
 def _warnings(found: _Found) -> tuple[Caution, ...]:
     """Return the warnings of a search."""
     results, warnings = found.results, []
-    failed = {word: n for word, n in found.search["reasons"].items() if word in (*REGIMES, "constraints")}
     if not found.usable:
-        said = ", ".join(f"{word.replace('_', ' ')} {n:,}" for word, n in failed.items())
+        said = ", ".join(f"{word.replace('_', ' ')} {n:,}" for word, n in found.search["reasons"].items())
         tried = int(found.search["designs"])
         return (Caution("not_held", tried, tried, said, "candidates"),)
     rows = found.rows(found.chosen)
