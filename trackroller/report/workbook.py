@@ -110,7 +110,10 @@ def write_roller(ds: xr.Dataset, path: Path) -> Path:
     own = record.radii_of(ds) | {name: value for name, value in inputs.items() if value is not None}
     units = dict.fromkeys(RADII, "mm")
     duty = duty_of(ds) or {}
-    rows = [[n, _plain(v), units.get(n, unit_of(n)), "example" if n in example else "given"] for n, v in own.items()]
+    sources = dict.fromkeys(own, "given") | dict.fromkeys(example, "example")
+    if record.friction_records(ds.attrs):  # left out, or a level of the database
+        sources["friction_coefficient"] = "database"
+    rows = [[name, _plain(value), units.get(name, unit_of(name)), sources[name]] for name, value in own.items()]
     rows += [[name, value, "-", "given"] for name, value in duty.items()]
     rows = [[name, long_name(name), *others] for name, *others in rows]
     sheets = [Table("inputs", "Inputs", ["input", "meaning", "value", "unit", "from"], rows)]

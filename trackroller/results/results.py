@@ -32,6 +32,7 @@ from trackroller.study.file.study import Study
 from trackroller.study.outputs import Output, case_dims, flat, of_fatigue, of_first_limit
 
 if TYPE_CHECKING:
+    from trackroller.results.answer import Answer
     from trackroller.results.by_tests import ByTests
     from trackroller.results.candidates import Candidates
     from trackroller.results.findings import Finding
@@ -198,6 +199,19 @@ class Results:
         from trackroller.results.verdict import verdict_of
 
         return verdict_of(self)
+
+    @cached_property
+    def answer(self) -> Answer | None:
+        """Return the answer to the study as one record of numbers and names.
+
+        Returns
+        -------
+        Answer or None
+            See `trackroller.results.answer.Answer`; None for a search.
+        """
+        from trackroller.results.questions import answer_of
+
+        return answer_of(self)
 
     @cached_property
     def by_tests(self) -> ByTests | None:
