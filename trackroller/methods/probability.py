@@ -72,25 +72,6 @@ def bounds(share: np.ndarray, count: np.ndarray | float) -> tuple[np.ndarray, np
     return low, high
 
 
-def wilson(share: float, count: int) -> tuple[float, float]:
-    """Return the 95 % interval of Wilson of a share of `count` independent draws.
-
-    References
-    ----------
-    Wilson (1927), J. Am. Stat. Assoc. 22, 209-212
-
-    Examples
-    --------
-    >>> [round(end, 4) for end in wilson(0.9, 20)]
-    [0.699, 0.9721]
-    """
-    z = float(stats.norm.ppf(0.975))
-    middle = share + z**2 / (2 * count)
-    half = z * np.sqrt(share * (1 - share) / count + z**2 / (4 * count**2))
-    whole = 1 + z**2 / count
-    return max(0.0, float((middle - half) / whole)), min(1.0, float((middle + half) / whole))
-
-
 def _empty(unit: np.ndarray) -> float:
     """Return the largest share of the n strata of a factor without a sample; factors with a list do not count."""
     own = unit[:, (unit % 1 != 0).any(axis=0)]

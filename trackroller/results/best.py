@@ -14,25 +14,34 @@ import pandas as pd
 from trackroller.damage import LIMITS
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
-from trackroller.methods.probability import wilson
-from trackroller.parameters import BODIES
+from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.of_carriage import long_name_of, parameter_of
 from trackroller.results.answer import Answer, Caution, Column
-from trackroller.results.intervals import Cases
+from trackroller.results.answer_parts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
+from trackroller.results.candidate_table import title_of
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import wilson
 from trackroller.results.judging import (
     Judged,
     Shares,
     beyond_data,
-    cases_of_search,
     choices_of,
     ends_of_goal,
     goal_column,
     judge,
+    life_of_search,
     optimum_of,
     required,
     shares_of,
     shortfall,
 )
+from trackroller.results.lives import OF_PAIR
 from trackroller.results.requirement import required_of
 from trackroller.results.results import SAME_ENDS, Results
 from trackroller.roller.output_names import is_life
@@ -71,9 +80,17 @@ class _Found:
         return judge(self.results)
 
     @cached_property
-    def cases(self) -> Cases | None:
-        """Return the cases with their ranges; None if nothing compares them."""
-        return cases_of_search(self.results)
+    def ranges(self) -> CaseRanges:
+        """Return the output of every case that says why a case does not hold: the life, otherwise the first goal."""
+        life = life_of_search(self.results)
+        if life is not None:
+            return life
+        goal, way = next(iter(self.goals.items()))
+        output = judged_by(goal)[1]
+        if output in REGIMES:
+            return CaseRanges(self.results, ("converged", "converged", "1"), True)
+        _, units, words = self.results.quantity(output)
+        return CaseRanges(self.results, (output, words, units), way == "max")
 
     @cached_property
     def shares(self) -> list[Shares]:
@@ -192,6 +209,9 @@ def answer_of_search(results: Results) -> Answer:
         columns=columns,
         required=required_of(results),
         picture=_picture(found),
+        not_checked=checks_left_out(results),
+        not_used=given_for_nothing(results),
+        not_given=not_given_words(results),
         warnings=_warnings(found),
         facts=_facts(found),
     )
@@ -250,7 +270,8 @@ def _nearest(found: _Found, number: int) -> dict[str, Any]:
     rows = found.rows(number)
     meets = min((own.sure[number] for own in found.shares), default=0.0)
     of = rows.stop - rows.start
-    low = float(found.cases.ends[0][rows].min()) if found.cases is not None else np.nan
+    worse = found.ranges.worse[rows]
+    low = float(worse.min() if found.ranges.rises else worse.max())
     return {
         "name": _name(found, number),
         "holds": int(found.results.held[rows].sum()),
@@ -404,7 +425,8 @@ def _requirement(found: _Found, number: int) -> dict[str, Any]:
     share = float(min((own.sure[number] for own in found.shares), default=np.nan))
     low, high = (np.nan, np.nan)
     if _is_drawn(found):
-        low, high = wilson(share, int(found.results.design.meta["inner_samples"]))
+        count = np.array([found.results.design.meta["inner_samples"]])
+        low, high = (float(end[0]) for end in wilson(share * count, count))
     return {"verdict": str(found.verdict[number]), "share": share, "share_low": low, "share_high": high}
 
 
@@ -448,14 +470,12 @@ def _missed(found: _Found, number: int) -> str:
     """Return what a design misses, in words that follow "bound by"."""
     if found.judged.violation[number] == 0:
         lacking = [own for own in found.shares if not own.enough(own.sure)[number]]
-        return f"the required {found.results.quantity(lacking[0].name)[2]}" if lacking else ""
-    if found.cases is None:
+        return f"the required {lacking[0].required.words}" if lacking else ""
+    causes = Counter(str(word) for word in found.ranges.reason[found.rows(number)] if word)
+    if not causes:
         return ""
-    causes = Counter(str(word) for word in found.cases.reason[found.rows(number)] if word)
-    cause = causes.most_common(1)[0][0] if causes else ""
-    if cause.startswith("limit "):
-        return LIMITS[cause.removeprefix("limit ")].title.partition(" (")[0]
-    return REASONS.get(cause, cause)
+    cause = causes.most_common(1)[0][0]
+    return REASONS.get(cause, title_of(cause.removeprefix("limit ")))
 
 
 def _at_ends(found: _Found, number: int) -> list[str]:
@@ -484,13 +504,11 @@ def _beyond(found: _Found) -> np.ndarray:
 
 def _required_life(found: _Found) -> tuple[float, float]:
     """Return the required life of the pair and the share of the conditions that has to reach it; NaN without one."""
-    if found.cases is None:
-        return np.nan, np.nan
-    lives = [own for own in found.shares if own.name not in found.cases.other_targets]
+    lives = [own for own in found.shares if own.required.output in OF_PAIR and own.required.least > 0]
     if not lives:
         return np.nan, np.nan
-    longest = max(lives, key=lambda own: found.results.config.requirement[own.name].least)
-    return found.results.config.requirement[longest.name].least, longest.wanted
+    longest = max(lives, key=lambda own: own.required.least)
+    return longest.required.least, longest.wanted
 
 
 def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
@@ -570,15 +588,15 @@ def _picture(found: _Found) -> dict[str, Any]:
 
 def _warnings(found: _Found) -> tuple[Caution, ...]:
     """Return the warnings of a search."""
-    results, warnings = found.results, []
+    results = found.results
     if not found.usable:
         said = ", ".join(f"{word.replace('_', ' ')} {n:,}" for word, n in found.search["reasons"].items())
         tried = int(found.search["designs"])
         return (Caution("not_held", tried, tried, said, "candidates"),)
-    rows = found.rows(found.chosen)
-    lost = int((~results.held[rows]).sum())
-    if lost:
-        warnings.append(Caution("not_held", lost, rows.stop - rows.start, _lost(found, rows)))
+    rows = np.zeros(len(results.table), dtype=bool)
+    rows[found.rows(found.chosen)] = True
+    warnings = case_cautions(results, found.ranges, rows)
+    warnings = [one for one in warnings if one.code != "extrapolated"]  # of the designs of the table, below
     shown = np.array(found.shown)
     beyond = int(_beyond(found)[shown].sum())
     if beyond:
@@ -595,29 +613,14 @@ def _warnings(found: _Found) -> tuple[Caution, ...]:
     return tuple(warnings)
 
 
-def _lost(found: _Found, rows: slice) -> str:
-    """Return why cases do not hold, with their counts."""
-    if found.cases is None:
-        return ""
-    counts = Counter(str(word) for word in found.cases.reason[rows] if word)
-    return ", ".join(f"{word} {n:,}" for word, n in counts.most_common())
-
-
 def _facts(found: _Found) -> dict[str, Any]:
     """Return what the title line says, and how the search went."""
     results, search = found.results, found.search
-    config = results.config
-    return {
-        "name": results.study.name,
-        "description": config.description,
-        "date": str(results.data.attrs.get("date_created", ""))[:10],
-        "cases": len(results.table),
+    conditions = int(results.design.meta["inner_samples"])
+    return facts_of(results) | {
         "candidates": int(results.design.meta["design_points"]),
-        "conditions": int(results.design.meta["inner_samples"]),
+        "conditions": [conditions, conditions],
         "drawn": _is_drawn(found),
-        "models": [config.contact_model] if isinstance(config.contact_model, str) else list(config.contact_model),
-        "accuracy": config.accuracy,
-        "duty": config.duty,
         "searched": int(search["designs"]),
         "searched_with": str(search["model"]),
         "stopped": str(search["stopped"]),

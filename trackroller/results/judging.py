@@ -13,9 +13,10 @@ from trackroller.methods.b10 import b10
 from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.results.candidates import Candidates, goal_without_lives
+from trackroller.results.answer import Required
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
-from trackroller.results.intervals import Cases
 from trackroller.results.results import OUTSIDE, Results
 from trackroller.roller.output_names import is_life
 from trackroller.roller.requirement import Requirement
@@ -121,9 +122,10 @@ def _beyond_spare(results: Results, lost: np.ndarray) -> np.ndarray:
 def _shortest(results: Results) -> np.ndarray:
     """Return the shortest life of each design over its conditions, of a range its low end, shape (designs,)."""
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    if results.life is None:
+    life = life_of_search(results)
+    if life is None:
         return np.zeros(shape[0])
-    return np.asarray(Cases(Candidates.grouped(results, results.life)).ends[0].reshape(shape).min(axis=1))
+    return np.asarray(life.low.reshape(shape).min(axis=1))
 
 
 def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
@@ -160,27 +162,16 @@ def _to_meet(results: Results) -> dict[str, Requirement]:
     return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
 
 
-def cases_of_search(results: Results) -> Cases | None:
-    """Return the cases of a search with the range of each; None without a life, a stress and a requirement."""
-    goal = results.life or goal_without_lives(results)
-    return None if goal is None else Cases(Candidates.grouped(results, goal))
+def judges_of(results: Results) -> list[tuple[Required, CaseRanges]]:
+    """Return each requirement that the designs of a search have to meet, with the output that judges it."""
+    own = Comparison.of(results)
+    wanted = _to_meet(results)
+    return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
 
 
-def met_in(cases: Cases, name: str, exact: bool = False) -> tuple[np.ndarray, np.ndarray]:
-    """Return the cases that surely meet one requirement, and those that may meet it, shape (n,) each.
-
-    The life that is compared judges a requirement on the life of the pair, see `Cases.other_targets`. Unless `exact`,
-    the error of the solution widens the range of each life.
-    """
-    judged, held = cases.judged, cases.reason == ""
-    doubtful = np.any([np.zeros(len(held), dtype=bool), *cases.open_limits.values()], axis=0)
-    if name in cases.other_targets:
-        sure = may = cases.results.meets(name)
-    else:
-        error = 1.0 if exact else 1.0 + cases.error
-        least = cases.results.config.requirement[name].least
-        sure, may = cases.ends[0] / error >= least, cases.ends[1] * error >= least
-    return judged & held & sure & ~doubtful, np.where(judged, held & may, True)
+def life_of_search(results: Results) -> CaseRanges | None:
+    """Return the life that orders designs with the same goals, with its range; None in a study without lives."""
+    return None if results.life is None else CaseRanges(results, results.life, True)
 
 
 @dataclass(frozen=True)
@@ -189,12 +180,12 @@ class Shares:
 
     Attributes
     ----------
-    name : output of the requirement
+    required : the requirement
     sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape (designs,)
     wanted : share that is enough [1]
     """
 
-    name: str
+    required: Required
     sure: np.ndarray
     may: np.ndarray
     wanted: float
@@ -209,18 +200,16 @@ def shares_of(results: Results, exact: bool = False) -> list[Shares]:
 
     All conditions have to meet a requirement without a probability; nine of ten where a goal is a B10.
     """
-    cases = cases_of_search(results)
-    if cases is None:
-        return []
     design = results.design
     shape = design.meta["design_points"], design.meta["inner_samples"]
-    b10_counts = any(judged_by(goal)[0] == "b10" for goal in goals_of_search(results))
-    all_conditions = np.floor(0.9 * shape[1] + 1.0) / shape[1] if b10_counts else 1.0
+    enough = 1.0
+    if any(judged_by(goal)[0] == "b10" for goal in goals_of_search(results)):
+        enough = min(1.0, float(np.floor(0.9 * shape[1] + 1.0)) / shape[1])
     found = []
-    for name, own in _to_meet(results).items():
-        sure, may = (hits.reshape(shape).mean(axis=1) for hits in met_in(cases, name, exact))
-        wanted = own.probability if own.in_shares else min(1.0, float(all_conditions))
-        found.append(Shares(name, sure, may, wanted))
+    for one, own in judges_of(results):
+        sure, may = (hits.reshape(shape).mean(axis=1) for hits in own.meets(one, exact))
+        wanted = enough if np.isnan(one.probability) else one.probability
+        found.append(Shares(one, sure, may, wanted))
     return found
 
 
@@ -250,12 +239,10 @@ def shortfall(results: Results, exact: bool = False) -> np.ndarray:
 
 def _life_gap(results: Results) -> np.ndarray:
     """Return how much the shortest life of each design lacks of the required one, 0 to 1, shape (designs,)."""
-    cases = cases_of_search(results)
-    lives = [] if cases is None else [n for n in _to_meet(results) if n not in cases.other_targets]
     gap = np.zeros(results.design.meta["design_points"])
-    for name in lives:
-        least = results.config.requirement[name].least
-        gap = np.maximum(gap, 1.0 - np.clip(_shortest(results) / least, 0.0, 1.0))
+    for one, own in judges_of(results):
+        if is_life(own.output[0]) and one.least > 0:
+            gap = np.maximum(gap, 1.0 - np.clip(_shortest(results) / one.least, 0.0, 1.0))
     return gap
 
 
