@@ -100,7 +100,7 @@ def test_figures_of_the_set_are_drawn_in_words():
         ("inner_outer", "axial_force", "compares design points"),
         ("inner_outer", "b10(max_pressure)", "mean.max_pressure"),
         ("inner_outer", "mean(max_presure)", "max_pressure"),
-        ("inner_outer", "probability(roller_life_hours)", "analysis.target"),
+        ("inner_outer", "probability(roller_life_hours)", "requirement"),
         ("lhs", "b10(roller_life_hours)", "inner_outer"),
     ],
 )

@@ -207,7 +207,7 @@ class Results:
         Returns
         -------
         Answer or None
-            See `trackroller.results.answer.Answer`; None for a search.
+            See `trackroller.results.answer.Answer`; None for a search that did not come to its end.
         """
         from trackroller.results.questions import answer_of
 
