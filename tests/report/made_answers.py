@@ -269,8 +269,8 @@ def what_matters(indices: bool = True) -> Answer:
 
 
 def best(kind: str = "front") -> Answer:
-    x = np.linspace(14, 25, 60)
-    points = np.column_stack([x, 2_550 * (x / 14) ** 7.5 * np.resize([1.0, 0.6], 60)])
+    x = np.append(np.linspace(14, 25, 60), 18.9)
+    life = 2_550 * (x / 14) ** 7.5 * np.append(np.resize([1.0, 0.6], 60), 1.0)
     names = ("Smallest", "Knee", "Longest life")
     designs = [
         {
@@ -283,10 +283,6 @@ def best(kind: str = "front") -> Answer:
             "stopped": name == "Longest life",
         }
         for name, distance, life in zip(names, (14.0, 18.9, 25.0), (2_550.0, 27_900.0, 201_000.0), strict=True)
-    ]
-    named = [
-        {"x": d["goals"][0]["value"], "y": d["goals"][1]["value"], "title": n}
-        for d, n in zip(designs, names, strict=True)
     ]
     table = pd.DataFrame(
         {
@@ -308,17 +304,22 @@ def best(kind: str = "front") -> Answer:
         Column("corner", "Corner", "", "Solved: no design lies beyond", "text"),
         Column("ratio", "Profile ratio", "", "Groove over guide", "level"),
     )
-    front = {
-        "x": {"title": "Axis distance", "units": "mm", "logarithmic": False},
-        "y": {"title": "Life to the first limit", "units": "h", "logarithmic": True},
-        "points": points, "best": np.resize([True, False], 60), "named": named, "beyond": (25.0, 30.0),
+    picture: dict[str, Any] = {
+        "goals": np.column_stack([life, x]), "front": np.append(np.resize([True, False], 60), True),
+        "named": np.array([0, 60, 58]), "words": ["life to the first limit", "axis distance"], "units": ["h", "mm"],
     }  # fmt: skip
-    picture: dict[str, Any] = {"front": front}
-    if kind == "one":
-        picture = {"history": {"evaluations": np.arange(40), "best": np.maximum.accumulate(np.geomspace(100, 3e4, 40))}}
-    head = {"designs": designs if kind == "front" else designs[1:2], "binds": "axis distance: end of its range"}
     if kind != "front":
+        picture = {**picture, "goals": life[:, None], "words": ["life to the first limit"], "units": ["h"]}
+        picture |= {"named": np.array([60]), "history": np.maximum.accumulate(np.geomspace(100, 3e4, 61))}
+    head: dict[str, Any] = {
+        "designs": designs if kind == "front" else designs[1:2],
+        "binds": "axis distance: end of its range",
+    }
+    if kind == "one":
         head["accuracy"] = "reference"
+    if kind in ("none", "open", "solve_finer"):
+        near = {"name": {"axis_distance": 18.9}, "holds": 12, "meets": 9, "of": 12, "low": 850.0}
+        head = {"designs": [], "nearest": near}
     return Answer(
         "best", kind, head, LIFE, table if kind == "front" else table[1:2], columns, picture=picture,
         required=() if kind == "front" else (required(),), curves=CURVES[:2], not_checked=NOT_CHECKED,
@@ -446,6 +447,8 @@ ALL = {
     "heights": lambda: what_matters(indices=False),
     "front": best,
     "one": lambda: best("one"),
+    "lost": lambda: best("none"),
+    "ranged": lambda: best("open"),
     "models": which_model,
     "same": lambda: which_model(""),
     "behaves": how_it_behaves,

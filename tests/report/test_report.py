@@ -68,7 +68,7 @@ OVERFLOW = """(() => {
         "pages.study.tables_of",
         "pages.study.write_answer",
         "figures.study.given_pareto",
-        "figures.sensitivity._heat",
+        "figures.maps.held_words",
     ],
 )
 def test_a_part_that_cannot_be_made_fails_the_command(part, tmp_path, monkeypatch):

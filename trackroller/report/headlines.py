@@ -41,7 +41,8 @@ of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a f
 `low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`, `largest` ratio on like rows to the model
 `base`.
 
-`best`, by `Answer.kind` (`one`, `front`, `front_required`): `designs`, a list of dict: `name` (as one of `names`),
+`best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
+`nearest`): `designs`, a list of dict: `name` (as one of `names`),
 `at` (`corner`, `knee` or ''), `goals` (list of {words, units, value}), `stopped` (search stopped before this end);
 `binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
 `exceeded`, `second`.
@@ -270,13 +271,16 @@ def _nearest(answer: Answer) -> list[str]:
     near = answer.headline.get("nearest")
     if answer.kind != "none" or not near:
         return []
-    met = near.get("meets") if answer.required else None
-    said = f"meets {met}" if met is not None else f"holds {near['holds']}"
-    clauses = [f"{said} of {near['of']} conditions"]
+    clauses = _reached(near) if answer.required else [f"holds {near['holds']} of {near['of']} conditions"]
     if _known(near, "low") and near["low"] > 0:
         clauses[0] += f", {_output(answer, near['low'])} at the worst"
     fails = _short(near.get("fails"))
     return [*clauses, f"fails at {fails}"] if fails else clauses
+
+
+def _reached(near: Mapping[str, Any]) -> list[str]:
+    """Return in how many conditions the nearest design meets the requirement."""
+    return [f"meets {near['meets']} of {near['of']} conditions"]
 
 
 def _turn(head: Mapping[str, Any]) -> list[str]:
@@ -393,7 +397,7 @@ def best(answer: Answer) -> Headline:
     head = answer.headline
     designs = list(head.get("designs", ()))
     if not designs:
-        return _joined("No design meets the requirement" if answer.required else "No design holds", [])
+        return _without_design(answer)
     if answer.kind == "front":
         return _front(answer, designs)
     first = designs[0]
@@ -404,6 +408,15 @@ def best(answer: Answer) -> Headline:
     if binds:
         clauses.append(f"bound by {binds}")
     return _joined(f"Build {_name(answer, first['name'])}", [*clauses, *_other_rules(head), *_required(answer)])
+
+
+def _without_design(answer: Answer) -> Headline:
+    """Say how near a search came where no design surely meets the requirement."""
+    near = answer.headline.get("nearest")
+    if answer.kind == "none" or not near:
+        return _joined(_none(answer), _nearest(answer))
+    only = "Solve finer: only the error leaves" if answer.kind == "solve_finer" else "A range leaves"
+    return _joined(f"{only} {_name(answer, near['name'])} open", [*_reached(near), *_required(answer)])
 
 
 def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:

@@ -52,10 +52,11 @@ def write_report(results: Results, out_html: Path) -> Path:
     pathlib.Path
         The path of the report.
     """
-    put_text(Path(out_html), report_text(results))
+    text = report_text(results)
     with sealing(Path(out_html).with_name("tables")) as beside:
         export(tables_of(results), beside)
         write_answer(shown_answer(results), beside)
+    put_text(Path(out_html), text)
     return Path(out_html)
 
 

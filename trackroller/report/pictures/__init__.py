@@ -2,10 +2,9 @@
 
 Keys of `Answer.picture`, which may hold `left_out` (rows that are not drawn) and `caption` (what is drawn, in words):
 
-`front`: dict `x`, `y` (dict `title`, `units`, `logarithmic`), `points` (n, 2), `best` (n,) whether a design belongs to
-the front, `named` (list of dict `x`, `y`, `title`), `beyond` (part of the range of `x` without a design, or None).
-
-`history`: dict `evaluations` (k,), `best` (k,) best value of the goal so far [unit of the output].
+`goals`, `front`, `named`, `words`, `units`: values of the goals of the designs of a search (n, k), which of them no
+other one beats (n,), those of the headline in the order of the first rows of the table, words and units of the goals;
+of one goal `history`: the best value so far (n,).
 
 `values`: values of the conditions of each row of the table (list of arrays), the worst value where one is not held.
 
@@ -14,5 +13,5 @@ the base `x` on like rows.
 
 `pairs`, `titles`: shares of the variance that pairs of factors hold, (k, k) [1], with the names of the factors.
 
-Without one of the first four, the effect curves are the picture of the first screen.
+Without `goals`, `values` and `points` the effect curves are the picture of the first screen.
 """

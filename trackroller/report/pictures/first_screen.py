@@ -68,41 +68,46 @@ def picture_of(answer: Answer) -> Picture | None:
     return None
 
 
+def _goals(answer: Answer, data: Mapping[str, Any]) -> Picture:
+    """Draw a search: the front of two goals, or the best value of one goal so far."""
+    if len(data["words"]) == 1:
+        return _history(answer, data)
+    return _front(answer, data)
+
+
 def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
-    """Draw a front: its designs as dots, the named ones large, the part of the range without a design shaded."""
-    data = data["front"]
-    places = np.asarray(data["points"], dtype=float).reshape(-1, 2)
-    best = np.asarray(data["best"], dtype=bool)
-    named = list(data.get("named", ()))
-    across = _axis(data["x"], [*places[:, 0], *(one["x"] for one in named), *(data.get("beyond") or ())])
-    up = _axis(data["y"], [*places[:, 1], *(one["y"] for one in named)])
-    parts = [_shade(across, data.get("beyond")), upright_axis(up, TALL)]
-    rows = _thinned(best)
+    """Draw a front: its designs as dots, other ones as rings, the named ones large; upwards the first goal."""
+    values = np.asarray(data["goals"], dtype=float)[:, [1, 0]]
+    front = np.asarray(data["front"], dtype=bool)
+    across, up = Axis.of(values[:, 0]), Axis.of(values[:, 1])
+    parts = [upright_axis(up, TALL)]
+    rows = _thinned(front)
     parts += [
-        dot("d small cm" if best[i] else "ring", across.place(places[i, 0]), 100 - up.place(places[i, 1]), 2.6)
+        dot("d small cm" if front[i] else "ring", across.place(values[i, 0]), 100 - up.place(values[i, 1]), 2.6)
         for i in rows
-        if np.isfinite(places[i]).all()
+        if np.isfinite(values[i]).all()
+    ]
+    titles = row_names(answer, len(data["named"]))
+    named = [
+        {"x": values[i, 0], "y": values[i, 1], "title": text} for i, text in zip(data["named"], titles, strict=True)
     ]
     parts += _named_dots(named, across, up)
-    parts.append(lower_axis(across, with_unit(data["x"]["title"], data["x"]["units"]), WIDE))
-    title = with_unit(data["y"]["title"], data["y"]["units"])
+    words, units = data["words"], data["units"]
+    parts.append(lower_axis(across, with_unit(capital(words[1]), units[1]), WIDE))
     left = left_room(up, TALL)
+    title = with_unit(capital(words[0]), units[0])
     parts.append(label(title, 0, "0", "start", dx=2 - left, dy=-7))
-    words = "; ".join(f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named)
-    drawn = framed(joined(parts), TALL, words or title, left=left, right=14, top=24)
-    hollow = "; rings: other designs" if (~best).any() else ""
-    said = (
-        f"Small dots: the {int(best.sum()):,} designs that no other one beats{hollow}; large: the designs of the table."
-    )
-    if data.get("beyond"):
-        said += " Shaded: part of the range without a design."
-    if len(rows) < len(best):
-        said += f" {len(best) - len(rows):,} other designs are not drawn."
+    spoken = "; ".join(f"{one['title']}: {grouped(one['x'], 3)}, {grouped(one['y'], 3)}" for one in named)
+    drawn = framed(joined(parts), TALL, spoken or title, left=left, right=14, top=24)
+    said = f"Small dots: {int(front.sum()):,} designs that no other one beats"
+    if (~front).any():
+        said += "; rings: other designs"
+    said += "; large: those of the headline."
+    if len(values[0]) < len(words):
+        said += f" Not drawn: {', '.join(words[2:])}."
+    if len(rows) < len(front):
+        said += f" {len(front) - len(rows):,} designs are not drawn."
     return Picture(drawn, _caption(data, said), beside=True)
-
-
-def _axis(side: Mapping[str, Any], values: Sequence[float]) -> Axis:
-    return Axis.of(values, bool(side["logarithmic"]) if side.get("logarithmic") is not None else None)
 
 
 def _thinned(best: np.ndarray) -> list[int]:
@@ -115,13 +120,6 @@ def _thinned(best: np.ndarray) -> list[int]:
     if len(front) > MOST_POINTS:
         front = front[np.linspace(0, len(front) - 1, MOST_POINTS).astype(int)]
     return sorted([*front.tolist(), *others.tolist()])
-
-
-def _shade(across: Axis, beyond: Sequence[float] | None) -> Markup:
-    if not beyond:
-        return Markup()
-    start, end = (across.place(float(value)) for value in beyond)
-    return element("rect", class_="shade", x=percent_place(start), y=0, width=percent_place(end - start), height="100%")
 
 
 def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> list[Markup]:
@@ -141,16 +139,15 @@ def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> l
 
 def _history(answer: Answer, data: Mapping[str, Any]) -> Picture:
     """Draw the best value of the goal so far over the evaluations."""
-    data = data["history"]
-    steps = np.asarray(data["evaluations"], dtype=float)
-    best = np.asarray(data["best"], dtype=float)
+    best = np.asarray(data["history"], dtype=float)
+    steps = np.arange(1.0, len(best) + 1.0)
     known = np.isfinite(best)
     across = Axis.of(steps, False, room=0.0)
     up = Axis.of(best[known])
     line = [(across.place(x), 100 - up.place(y)) for x, y in zip(steps[known], best[known], strict=True)]
     stairs = [place for i, place in enumerate(line) for place in _stair(line, i)]
     layer = stretched(element("polyline", class_="l cm", points=points(stairs)), TALL)
-    title = output_title(answer)
+    title = with_unit(capital(data["words"][0]), data["units"][0])
     left = left_room(up, TALL)
     parts = [upright_axis(up, TALL), layer, required_levels(answer, up)]
     parts += [lower_axis(across, "designs solved", WIDE), label(title, 0, "0", "start", dx=2 - left, dy=-7)]
@@ -232,7 +229,7 @@ def row_names(answer: Answer, count: int) -> list[str]:
     """Return the names of the first rows of the table of an answer, each another one."""
     columns = [column for column in answer.columns if column.role == "name"]
     found: list[str] = []
-    for place in range(count):
+    for place in range(min(count, len(answer.table))):
         row = answer.table.iloc[place]
         text = ", ".join(_level_words(column, row[column.name]) for column in columns)
         found.append(text if text and text not in found else f"{text} ({place + 1})".strip())
@@ -290,8 +287,7 @@ def _caption(data: Mapping[str, Any], said: str) -> str:
 
 
 DRAWINGS: dict[str, Callable[[Answer, Mapping[str, Any]], Picture]] = {
-    "front": _front,
-    "history": _history,
+    "goals": _goals,
     "values": _distribution,
     "points": _like,
 }
