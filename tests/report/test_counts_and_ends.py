@@ -9,12 +9,7 @@ import trackroller as tr
 from trackroller.report.figures.maps import life_map
 from trackroller.report.numbers import percent
 from trackroller.report.pages.sheet import collect
-from trackroller.report.pages.study import contents
-from trackroller.report.words.findings import sentence_of
-from trackroller.report.words.optimum import optimum_sentences
-from trackroller.report.words.verdict import verdict_sentences
-from trackroller.results.findings import ends, most_frequent, why
-from trackroller.results.judging import optimum_of
+from trackroller.results.findings import most_frequent
 
 FIRST = "pair_life_to_first_limit_hours"
 FAST = {"contact_model": "sliding", "accuracy": "preview"}
@@ -32,33 +27,6 @@ def test_a_drive_at_the_limit_of_friction_skids_in_both_directions(drive):
     case |= BASE | {"motor_force": 2 * drive}
     assert int(tr.solve(case, **FAST)["regime"]) == 1
     assert int(tr.solve(case | {"motor_force": 1.999 * drive}, **FAST)["regime"]) == 0
-
-
-def test_a_bell_shaped_factor_is_a_condition():
-    """Tolerances of one drawing: the study asks whether the drawing lasts, not which of its samples is best."""
-    factors = {"roller_profile_radius": {"normal": [-6.5, 0.04]}, "axis_distance": {"normal": [22, 0.05]}}
-    keys = {"base": BASE | {"radial_force": -100}, "factors": factors, "design": "lhs", "samples": 40}
-    results = run(**keys, analysis={"target": {"min": 10}})
-    assert set(results.roles.values()) == {"condition"}
-    lives = np.sort(results.column(FIRST))
-    said = " ".join(one.text for one in verdict_sentences(results))
-    assert said.startswith("The pair lasts") and "in nine of ten conditions" in said
-    told = float(re.search(r"lasts ([\d,]+) h", said)[1].replace(",", ""))
-    assert lives[2] <= told <= lives[6]  # nine of ten of 40
-
-
-def test_a_limit_is_counted_among_the_valid_cases():
-    """Rows that break lie outside the model: they are neither among the hits nor among the cases."""
-    base = BASE | {"roller_material": "C45", "guide_material": "100Cr6", "motor_force": -8}
-    factors = {"radial_force": {"values": [-200, -900, -2500]}, "friction_coefficient": {"values": [0.1, 0.25, 0.4]}}
-    results = run(base=base, factors=factors)
-    state = results.data["limit_state"]
-    words = state.attrs["flag_meanings"].split()
-    over = (state.sel(limit="shakedown") == words.index("exceeded")).any("body").transpose(*results.dims).values.ravel()
-    assert 0 < (over & results.valid).sum() and results.valid.sum() < len(over)
-    told = next(one for one in ends(results) if one.values["what"] == "shakedown")
-    assert (told.values["count"], told.values["of"]) == ((over & results.valid).sum(), results.valid.sum())
-    assert f"of {results.valid.sum()} valid cases" in sentence_of(results, told).text
 
 
 def test_of_levels_with_the_same_share_none_has_most():
@@ -80,36 +48,6 @@ def test_an_interval_on_one_side_is_written_with_both_ends(value, low, high, tex
     assert percent(value, low, high) == text
 
 
-def test_an_effect_of_pairs_that_differ_is_told_with_its_ends():
-    """The smallest and the largest ratio of all pairs, from the raw rows."""
-    factors = {"friction_coefficient": {"values": [0.05, 0.4]}, "contact_angle": {"values": [25, 60]}}
-    results = run(base=BASE, factors=factors | {"radial_force": {"values": [-80, -120, -160]}})
-    lives = results.data[FIRST].transpose("friction_coefficient", ...).values
-    ratios = (lives[0] / lives[1]).ravel()
-    told = {
-        one.values["effect"].factor: sentence_of(results, one).text for one in why(results) if "effect" in one.values
-    }
-    low, high = re.search(r"in all pairs, ([\d.]+)-fold to ([\d.]+)-fold", told["friction_coefficient"]).groups()
-    assert ratios.max() > 2 * ratios.min()
-    assert (float(low), float(high)) == (pytest.approx(ratios.min(), rel=0.01), pytest.approx(ratios.max(), rel=0.03))
-
-
-def test_a_page_says_at_how_many_failures_its_lives_stand():
-    results = run(base=BASE, factors={"radial_force": {"values": [-100, -200]}}, failure_probability=0.1)
-    assert contents(results)["facts"].endswith("lives at 10 % failures")
-
-
-def test_a_condition_that_every_design_misses_is_told_of_the_nearest():
-    factors = {"contact_angle": {"values": [30, 45]}, "motor_force": {"values": [0, -40]}}
-    base = BASE | {"radial_force": -100, "friction_coefficient": 0.2}
-    del base["motor_force"]
-    results = run(base=base, factors=factors, analysis={"target": {"min": 1}})
-    regime = results.data["regime"].transpose("motor_force", "contact_angle").values
-    assert (regime[results.data["motor_force"].values.tolist().index(-40)] == 1).all()
-    said = " ".join(one.text for one in verdict_sentences(results))
-    assert "where it skids, as no design is enough there" in said
-
-
 @pytest.fixture(scope="module")
 def search():
     """A search for the smallest roller whose life, a range by the wear coefficients, is long enough for certain."""
@@ -126,17 +64,6 @@ def test_a_constraint_on_a_life_in_a_range_counts_its_low_end(search):
     low = search.quantity(f"{FIRST}_low")[0]
     assert np.array_equal(search.valid & (low > 200), search.valid) and (low <= 200).any()
     assert (search.column(FIRST)[~search.valid & search.inside] > 200).any()  # longer at the values of the placeholders
-
-
-@pytest.mark.slow
-def test_a_recommended_design_lasts_from_its_smallest_low_to_its_smallest_high_end(search):
-    many, best = search.design.meta["inner_samples"], optimum_of(search)["recommended"]
-    own = slice(best * many, (best + 1) * many)
-    wanted = [search.quantity(f"{FIRST}{end}")[0][own].min() for end in ("_low", "_high")]
-    said = " ".join(one.text for one in optimum_sentences(search))
-    told = re.search(r"lasts ([\d,]+) to ([\d,]+) h", said).groups()
-    assert [float(text.replace(",", "")) for text in told] == pytest.approx(wanted, rel=0.006)
-    assert "Not checked: bearing and heat." in said
 
 
 @pytest.mark.slow

@@ -217,6 +217,7 @@ def test_one_roller_under_drawn_conditions_has_a_share(tmp_path_factory):
             },
             "what matters",
         ),
+        ({"factors": {"roller_profile_radius": {"values": [-6.6, -7]}}, "question": "what matters"}, "what matters"),
     ],
 )
 def test_the_question_follows_from_the_study(tmp_path_factory, keys, question):

@@ -8,12 +8,10 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 
 from trackroller.errors import WorkError
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
-from trackroller.report.words.samples import samples
 from trackroller.results.candidates import FEWEST, Candidates, lift_off_margin
 from trackroller.results.effects import _of_steps
 from trackroller.results.findings import _outwards
@@ -92,14 +90,6 @@ def test_the_rate_of_several_models_is_that_of_their_times_together(monkeypatch)
     study = SimpleNamespace(factors=models, options={}, friction_laws=[None])
     monkeypatch.setattr(cost, "rate", lambda options, law: {"sliding": 100.0, "kalker": 1.0}[options["contact_model"]])
     assert cost.study_rate(study) == pytest.approx(2 / (1 / 100 + 1 / 1))
-
-
-@pytest.mark.parametrize(("times", "kind"), [(1.0, "enough"), (2.0, "more")])
-def test_samples_are_enough_until_more_are_needed(times, kind):
-    columns = {"take_times": times, "half_width": 0.1, "output_name": "slip", "scale": "linear"}
-    sens = xr.Dataset({name: ("output", [value]) for name, value in columns.items()}, {"output": ["slip"]})
-    sens = sens.assign_attrs(method="sobol", samples=64)
-    assert samples(sens, 64).kind == kind
 
 
 def test_a_pair_without_a_change_neither_rises_nor_falls():

@@ -6,10 +6,7 @@ import xarray as xr
 import yaml
 from synthetic_results import grid_study, results_of
 
-import trackroller as tr
-from trackroller.report.numbers import BEYOND
-from trackroller.report.words.in_short import in_short
-from trackroller.results.findings import MOST, confounded_with, effect_of, occurrence, slip_law, strongest_effects
+from trackroller.results.findings import confounded_with, effect_of, occurrence, slip_law, strongest_effects
 from trackroller.study.file.load import parse_study
 
 LIFE = "roller_life_hours"
@@ -52,26 +49,6 @@ def test_a_finding_names_its_rows_their_levels_and_the_contact_model():
     for name, levels in CALM.items():
         assert found.spans[name] == tuple(sorted(set(results.table[name][results.valid])))
         assert set(found.spans[name]) <= set(levels)
-
-
-def test_of_several_contact_models_the_most_exact_one_counts():
-    """A regime that only the cheap model finds is not told; shares count the cases of one model."""
-    study = {
-        "name": "models",
-        "factors": {"contact_model": {"values": ["sliding", "kalker"]}, "axial_force": {"values": [0, 20, 100]}},
-        "base": {"motor_force": 0, "radial_force": -90},
-        "accuracy": "preview",
-        "outputs": ["forces", "peak_stress", "life"],
-    }
-    solved = tr.run(study, progress=False)
-    exact = (solved.table["contact_model"] == "kalker").to_numpy()
-    found = occurrence(solved, solved.regime == 2, "lift_off")
-    assert found.values["count"] == (solved.regime[exact] == 2).sum() > 0
-    assert found.values["of"] == exact.sum() and found.models == ("kalker",)
-    assert occurrence(solved, (solved.regime == 2) & ~exact, "lift_off") is None
-    told = [one.kind for one in solved.findings["why"]]
-    (said,) = (s for s in dict(in_short(solved, []))["Where it ends"] if s.values.get("what") == "lift_off")
-    assert "index" not in told and (said.values["of"], said.values["model"]) == (3, "kalker")
 
 
 def test_factors_that_confounded_with_have_no_effect_of_their_own():
@@ -178,25 +155,3 @@ def test_full_slip_follows_the_law_of_the_drive_or_is_not_told_so(lifts):
     assert found.values["count"] == 4 - lifts and found.values["lifted"] == lifts
     ds["regime"][{"friction_coefficient": 3}] = 1  # more friction than the drive needs, and slip all the same
     assert slip_law(results_of(ds)) is None
-
-
-def test_at_most_five_findings_stand_under_why_and_each_is_said_once():
-    solved = tr.run(
-        {
-            "name": "why",
-            "factors": {
-                "friction_coefficient": {"values": [0.1, 0.2, 0.3]},
-                "radial_force": {"values": [-60, -90, -150]},
-                "roller_profile_radius": {"values": [-6.5, -7, -8]},
-            },
-            "base": {"permissible_wear_depth": 0.05, "motor_force": 0, "guide_overrollings_per_hour": 600},
-            "contact_model": "sliding",
-            "accuracy": "preview",
-        },
-        progress=False,
-    )
-    found = solved.findings["why"]
-    assert 2 <= len(found) <= MOST and all(one.rows.any() and one.spans for one in found)
-    texts = [one.text for one in dict(in_short(solved, []))["Why"]]
-    assert len(set(texts)) == len(texts)
-    assert sum(BEYOND in text for text in texts) <= 1

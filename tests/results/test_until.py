@@ -18,7 +18,6 @@ from trackroller.errors import InputError
 from trackroller.methods.b10 import log_b10, share
 from trackroller.methods.given_data import first_indices
 from trackroller.methods.replicates import jackknife
-from trackroller.report.words.samples import grown
 from trackroller.results.growing import grow_study
 from trackroller.results.looks import looks_of
 from trackroller.results.results import OUTSIDE
@@ -97,29 +96,6 @@ def test_a_doubled_sample_begins_with_the_smaller_one_and_has_independent_replic
     assert len(np.unique(own[0])) == (16 if design != "morris" else len(np.unique(own[0])))
     if design not in ("morris", "saltelli"):  # one row in each stratum of every replicate
         assert all(np.array_equal(np.sort((one * len(own)).astype(int)), np.arange(len(own))) for one in own.T)
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("design", DESIGNS)
-def test_each_design_grows_until_its_intervals_are_narrow(design, tmp_path):
-    solved = grow(study_of(design), tmp_path)
-    found = looks_of(solved)
-    widths = [look["half_width"] for look in found["looks"]]
-    assert "narrower" in found["stopped"]
-    assert all(max(look.values()) > 0.05 for look in widths[:-1]) and max(widths[-1].values()) <= 0.05
-    cases = [look["cases"] for look in found["looks"]]
-    assert cases == [cases[0] << i for i in range(len(cases))] and solved.data.sizes["case"] == cases[-1]
-    assert solved.config.samples == study_of(design).config.samples  # the study file stays as it was written
-    assert solved.design.samples == solved.config.samples << (len(cases) - 1)
-    said = grown(solved)
-    assert said.values["cases"] == cases[-1]
-    assert said.values["stopped"] == found["stopped"] and said.values["width"] == max(widths[-1].values())
-    if design != "inner_outer":
-        index = {"saltelli": "ST", "morris": "mu_star"}.get(design, "first")
-        part = solved.indices().sel(output="normal_force_1")
-        half = ((part[f"{index}_high"] - part[f"{index}_low"]) / 2).values
-        scale = np.ptp(solved.data["normal_force"].sel(contact=1).values) if design == "morris" else 1.0
-        assert np.nanmax(half) / scale <= max(widths[-1].values()) + 1e-12
 
 
 @pytest.mark.long

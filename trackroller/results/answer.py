@@ -14,8 +14,9 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from trackroller.study.file.config import QUESTIONS as QUESTIONS
+
 VERSION = 1  # of the keys of `Answer.to_dict`; a key that is renamed or that changes its meaning raises it
-QUESTIONS = ("decide", "what matters", "how sure", "best", "which model", "how it behaves")
 WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",

@@ -91,7 +91,7 @@ def goal_without_lives(results: Results) -> tuple[str, str, str] | None:
     """Return what compares designs without lives: a stress, else whether they meet the target; None without both."""
     if STRESS[0] in results.table:
         return STRESS
-    return UNRANKED if results.config.analysis.target else None
+    return UNRANKED if results.config.requirement else None
 
 
 @dataclass(frozen=True)
@@ -288,10 +288,10 @@ class Candidates:
     def targets_met(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Return how many cases of each design meet every target of the study, and of how many, shape (designs,) each.
 
-        Rows of a table that only some designs were tried under count, too. None without the key `analysis.target`.
+        Rows of a table that only some designs were tried under count, too. None without the key `requirement`.
         """
         results, own = self.results, self.design >= 0
-        if not (targets := results.config.analysis.target):
+        if not (targets := results.config.requirement):
             return None
         rows = own & results.held & ~np.isnan(results.column(self.goal[0]))
         rows &= np.all([*map(results.meets, targets)], axis=0)

@@ -59,7 +59,7 @@ class Finding:
 
     Attributes
     ----------
-    kind : what is stated; `trackroller.report.words.findings` says it in words
+    kind : what is stated
     values : the numbers and names of the statement
     among : the set of cases that it speaks of: `valid`, `rolling` or `all`
     rows : the cases of this set that it rests on, shape (n,) bool

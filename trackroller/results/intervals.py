@@ -330,11 +330,11 @@ class Cases:
         both = self.ends if scattered else self.unscattered
         low, high = both[0] / error, both[1] * error
         required, others = np.nan, np.ones(len(low), dtype=bool)
-        for name, ends in results.config.analysis.target.items():
+        for name, ends in results.config.requirement.items():
             if name in self.other_targets:
                 others &= results.meets(name)
             else:
-                required = float(np.fmax(required, ends["min"]))
+                required = float(np.fmax(required, ends.least))
         least = 0.0 if np.isnan(required) else required
         uncertain = np.any([np.zeros(len(low), dtype=bool), *self.open_limits.values()], axis=0)
         judged = self.judged
@@ -345,8 +345,8 @@ class Cases:
     @cached_property
     def other_targets(self) -> tuple[str, ...]:
         """Return the targets of the study that the life which is compared does not judge, such as those on a force."""
-        hours, targets = self.candidates.goal[2] == "h", self.results.config.analysis.target
-        return tuple(n for n, ends in targets.items() if not (hours and n in OF_PAIR and set(ends) == {"min"}))
+        hours, targets = self.candidates.goal[2] == "h", self.results.config.requirement
+        return tuple(n for n, ends in targets.items() if not (hours and n in OF_PAIR and ends.only_least))
 
     def conditions_in(self, rows: np.ndarray) -> np.ndarray:
         """Return the number of conditions of each candidate that have one of these cases, shape (candidates,)."""

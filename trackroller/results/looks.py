@@ -90,7 +90,7 @@ def _of_points(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
             scatter = np.zeros(design.size) if scatter is None else scatter
             halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]
             return values, np.where([np.isnan(values[rows]).all() for rows in points], 0.0, halves)
-        hits = hits_of(column, results.config.analysis.target[output], scatter)
+        hits = hits_of(column, results.config.requirement[output], scatter)
     return values, np.array([share(hits[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points])
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from trackroller.parameters import REGIMES
 from trackroller.results.answer import Answer
+from trackroller.results.best import answer_of_search
 from trackroller.results.comparison import Comparison, compared_output
 from trackroller.results.decide import answer_decide
 from trackroller.results.how_it_behaves import answer_how_it_behaves
 from trackroller.results.how_sure import answer_how_sure
+from trackroller.results.judging import optimum_of
 from trackroller.results.requirement import required_of
 from trackroller.results.results import Results
 from trackroller.results.what_matters import answer_what_matters, shown_ranges
@@ -18,7 +20,7 @@ SENSITIVITY = ("saltelli", "morris", "central_composite", "box_behnken", "placke
 
 
 def question_of(results: Results) -> str:
-    """Return which of `trackroller.results.answer.QUESTIONS` a study asks.
+    """Return which of `trackroller.results.answer.QUESTIONS` a study asks; the key `question` of its file decides.
 
     Parameters
     ----------
@@ -31,6 +33,8 @@ def question_of(results: Results) -> str:
     matters (a method of sensitivity analysis, or a random sample whose candidates share no conditions), decide (two
     candidates or more), how sure (one candidate with a requirement), how it behaves.
     """
+    if results.config.question:
+        return str(results.config.question)
     method = results.config.method
     if method.proposes:
         return "best"
@@ -67,7 +71,7 @@ def _ranks(name: str) -> bool:
 
 
 def answer_of(results: Results) -> Answer | None:
-    """Return the answer to a study; None for a search, which recommends a design of its own.
+    """Return the answer to a study; None for a search that did not come to its end.
 
     Parameters
     ----------
@@ -76,7 +80,7 @@ def answer_of(results: Results) -> Answer | None:
     """
     question = question_of(results)
     if question == "best":
-        return None
+        return None if optimum_of(results) is None else answer_of_search(results)
     needs_output = question in ("decide", "how sure")
     if needs_output and Comparison.of(results) is None:
         return answer_how_it_behaves(results)

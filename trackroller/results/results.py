@@ -207,7 +207,7 @@ class Results:
         Returns
         -------
         Answer or None
-            See `trackroller.results.answer.Answer`; None for a search.
+            See `trackroller.results.answer.Answer`; None for a search that did not come to its end.
         """
         from trackroller.results.questions import answer_of
 
@@ -596,9 +596,9 @@ class Results:
 
         A life that is a range has to meet it with its low end.
         """
-        ends, judged = self.config.analysis.target[target], self.judged_targets
+        judged = self.judged_targets
         values = judged[target] if target in judged else self.quantity(target)[0].astype(float)
-        return np.asarray((values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+        return self.config.requirement[target].meets(values)
 
     @cached_property
     def judged_targets(self) -> dict[str, np.ndarray]:
@@ -610,7 +610,7 @@ class Results:
         """
         if self.life != FIRST_LIMIT:
             return {}
-        named = [n for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}]
+        named = [n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least]
         return dict.fromkeys(named, self.sure_life)
 
     @cached_property

@@ -30,6 +30,7 @@ from trackroller.results.results import SAME_ENDS, Results
 from trackroller.roller.limit_notes import Placeholder, placeholders_of
 from trackroller.roller.output_names import is_life
 from trackroller.roller.record import names_not_given
+from trackroller.roller.requirement import Requirement
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.outputs import flat
 
@@ -197,7 +198,7 @@ class Verdict:
     goal: tuple[str, str, str]
     candidates: tuple[Candidate, ...]
     required: float = np.nan
-    target: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    target: Mapping[str, Requirement] = field(default_factory=dict)
     named: int = 1
     why: str = ""
     next: Candidate | None = None
@@ -272,7 +273,7 @@ def verdict_of(results: Results) -> Verdict | None:
         reach: np.ndarray = np.zeros(len(results.table), dtype=bool)
         turns = _given(cases, reach)
         required, _, may = cases.on_target()
-        if results.config.analysis.target and not may[cases.own].any():
+        if results.config.requirement and not may[cases.own].any():
             fails = _misses(cases, cases.own & ~may, cases.own, np.where(cases.reason == "", cases.first, cases.reason))
             facts = {"required": required, "fails": fails, "longest": _longest(candidates), **_shared(cases)}
             return Verdict("none", goal, (), why="conditions", **facts)
@@ -462,7 +463,7 @@ def _of_all_rows(cases: Cases, i: int, shared: str, sure: np.ndarray, may: np.nd
 
 def _decided(cases: Cases, wanted: np.ndarray, reach: np.ndarray) -> Verdict:
     """Return the verdict over the cases `wanted`; those out of reach are left out of the ranking, not of the target."""
-    candidates, target = cases.candidates, cases.results.config.analysis.target
+    candidates, target = cases.candidates, cases.results.config.requirement
     kept = wanted & ~reach
     kept = kept if kept.any() else wanted
     if target and cases.sampled:  # nine of ten of all conditions
@@ -683,7 +684,7 @@ def _shared(cases: Cases) -> dict[str, Any]:
     """Return what every verdict of a study says."""
     candidates = cases.candidates
     return {
-        "target": cases.results.config.analysis.target,
+        "target": cases.results.config.requirement,
         "tried": 0 if cases.conditions else len(candidates.size),
         "sampled": cases.sampled,
         "not_checked": not_checked(cases.results, candidates.rising),
@@ -788,7 +789,7 @@ def _given(cases: Cases, reach: np.ndarray) -> tuple[Turn, ...]:
     turns = []
     for name, by_it in _by_not_given(cases).items():
         hopeless = by_it & reach
-        wanted = bool(results.config.analysis.target) and hopeless.any()
+        wanted = bool(results.config.requirement) and hopeless.any()
         share = hopeless.sum() if cases.candidates.matched and cases.conditions else by_it.sum()
         if wanted or share >= MANY * cases.own.sum():
             turns.append(Turn(name, low=float(results.base[name]), high=float(results.base[name]), units="N"))
@@ -797,7 +798,7 @@ def _given(cases: Cases, reach: np.ndarray) -> tuple[Turn, ...]:
 
 def _tradeoff(results: Results) -> Tradeoff | None:
     """Return the ends of the Pareto set; None unless the study file has several goals and no target."""
-    if len(results.config.pareto) < 2 or results.config.analysis.target:
+    if len(results.config.pareto) < 2 or results.config.requirement:
         return None
     front = results.pareto()
     if front is None or front.attrs.get("kind") == "case" or (front["optimal"].values == 1).sum() < 2:
