@@ -44,7 +44,9 @@ NOT_CHECKED = {"roller": ("bearing", "catalogue", "heat", "wear"), "guide": ("we
 WARNINGS = (
     Caution("extrapolated", 288, 288, "life beyond the S-N data (5,000,000 cycles): all candidates"),
     Caution("second_model", 5, 12, "by rating open: 6.3 / 26 mm, 6.2 / 21.75 mm; missed: 6.3 / 21.75 mm", "candidates"),
-    Caution("at_end", 1, 1, "groove 6.2 mm: smallest of 6.2 to 7; axis distance 26 mm: largest of 18 to 26", "leader"),
+    Caution(
+        "at_end", 1, 1, "groove 6.2 mm: smallest of 6.2 to 7; axis distance 26 mm: largest of 18 to 26", "candidates"
+    ),
     Caution("not_given", 288, 288, "guide profile radius 6 mm, contact angle 30° (values of the example)"),
 )
 

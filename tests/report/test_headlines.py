@@ -31,7 +31,7 @@ def test_every_question_and_kind_has_a_template():
 def test_every_warning_has_one_line():
     assert set(WARNING_HEADS) == set(WARNINGS)
     assert warning_line(Caution("not_held", 9, 1080, "friction 0.05")) == "Not held, 9 of 1,080 cases: friction 0.05"
-    assert warning_line(Caution("at_end", 1, 1, "groove 6.2 mm", "leader")) == "At an end, leader: groove 6.2 mm"
+    assert warning_line(Caution("at_end", 1, 1, "groove 6.2 mm", "candidates")) == "At an end, leader: groove 6.2 mm"
 
 
 @pytest.mark.parametrize(

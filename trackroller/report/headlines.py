@@ -500,8 +500,8 @@ def warning_line(caution: Caution) -> str:
 
 def warning_rows(caution: Caution) -> str:
     """Return how many rows a warning concerns; nothing is counted where it concerns none."""
-    if caution.of < 2:
-        return caution.what
+    if caution.of < 2 and caution.what != "cases":
+        return "leader"
     return f"{caution.count:,} of {caution.of:,} {caution.what}"
 
 

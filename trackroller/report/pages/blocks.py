@@ -18,7 +18,7 @@ from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_row
 from trackroller.report.numbers import count, long_name, on_duty, plain
 from trackroller.report.pictures import curves
 from trackroller.report.pictures.bars import Bars
-from trackroller.report.pictures.first_screen import map_of, picture_of
+from trackroller.report.pictures.first_screen import map_of, picture_of, row_names
 from trackroller.report.tables.rows import (
     FIRST_ROWS,
     MOST_ROWS,
@@ -90,7 +90,7 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "headline": headline_of(answer),
             "table": shown,
             "others": _others(answer),
-            "transposed": beside and len(shown.rows.cells) <= MOST_TRANSPOSED,
+            "transposed": transposed_names(answer) if beside else [],
             "shared": shown.rows.shared,
             "picture": picture,
             "effects_first": effects[:first],
@@ -105,6 +105,12 @@ def screen_of(answer: Answer) -> dict[str, Any]:
             "definitions": list(definitions(answer)),
             "download": download_of(answer),
         }
+
+
+def transposed_names(answer: Answer) -> list[str]:
+    """Return the names of the rows that stand as columns beside a picture: those of the headline."""
+    named = len(answer.picture.get("named", ())) or len(answer.table)
+    return row_names(answer, min(named, len(answer.table), MOST_TRANSPOSED))
 
 
 def _curves_are_the_picture(answer: Answer, other: bool) -> bool:
