@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import numpy as np
 import pytest
@@ -10,6 +11,8 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 
 import trackroller as tr
+from trackroller.report.words.verdict import verdict_sentences
+from trackroller.roller.requirement import checked_requirement
 from trackroller.study.file.load import parse_study
 
 STEEL = "1.7225-normalised"
@@ -103,9 +106,28 @@ def test_between_materials_a_life_by_tests_is_a_range(rig, pairs):
 
 
 def with_target(results, hours):
-    analysis = results.config.analysis.model_copy(update={"target": {"pair_life_hours": {"min": hours}}})
-    config = results.config.model_copy(update={"analysis": analysis})
+    wanted = checked_requirement({"pair_life_hours": {"min": hours}})
+    config = results.config.model_copy(update={"requirement": wanted})
     return dataclasses.replace(results, study=dataclasses.replace(results.study, config=config))
+
+
+def said(results):
+    return " ".join(sentence.text for sentence in verdict_sentences(results))
+
+
+@pytest.mark.slow
+def test_a_target_within_the_range_asks_for_more_tests(rig):
+    factors = {"roller_profile_radius": {"values": [-7.0, -7.2]}, "radial_force": {"values": [-150, -140]}}
+    base = BASE | {"roller_material": "rig steel"}
+    results = solved(base=base, factors=factors, design="grid", roles={"radial_force": "condition"})
+    own = results.verdict.best[0]
+    asked = with_target(results, math.sqrt(own.low * own.high))
+    assert asked.verdict.kind == "measure"
+    assert [(turn.what, turn.of) for turn in asked.verdict.turns] == [("tests", "rig steel")]
+    assert "Measure the S-N line of rig steel with more tests." in said(asked)
+    assert "`trackroller fit next` says which test" in said(asked)
+    assert with_target(results, 0.99 * own.low).verdict.kind == "build"
+    assert with_target(results, 1.01 * own.high).verdict.kind == "none"
 
 
 @pytest.mark.slow
@@ -133,8 +155,29 @@ def test_overlapping_ranges_of_different_materials_decide_nothing(pairs):
 
 
 @pytest.mark.slow
+def test_the_verdict_says_which_life_is_an_extrapolation(rig, pairs):
+    near, far = (pairs(strong="EN AW-7075", loads=loads) for loads in ((-160, -150), (-60, -50)))
+    assert "extrapolation" not in said(near)
+    assert "the 6 tests of rig steel" in said(near)
+    stress = float(far.data["peak_stress"].sel(body="roller").max("contact").values[0].max())
+    low, _, _ = rig.groups[0].tested
+    assert stress < low
+    assert f"{stress:.0f} MPa" in said(far)
+    assert "is an extrapolation beyond the tested" in said(far)
+    assert "(beyond the tests of rig steel)" in said(far)
+
+
+@pytest.mark.slow
 def test_a_study_without_stresses_has_the_same_ranges(pairs):
     whole, lives = pairs(), pairs(outputs=["life"])
     assert "peak_stress" not in lives.data
     for one, other in zip(whole.verdict.candidates, lives.verdict.candidates, strict=True):
         assert (one.low, one.high) == pytest.approx((other.low, other.high), rel=1e-6)
+
+
+@pytest.mark.slow
+def test_a_fit_for_another_contact_model_does_not_count(pairs):
+    results = pairs(contact_model="kalker_table")
+    assert results.by_tests is None
+    assert all(one.low == one.high for one in results.verdict.candidates)
+    assert "rig steel hold for contact_model sliding alone" in said(results)

@@ -17,6 +17,7 @@ from trackroller.results.effects import _of_steps
 from trackroller.results.findings import _outwards
 from trackroller.results.groups import classes
 from trackroller.results.targets import _all, hits_of
+from trackroller.roller.requirement import Requirement
 from trackroller.study import cost
 from trackroller.study.file.load import parse_study
 from trackroller.study.outputs import _countable
@@ -37,7 +38,7 @@ def test_a_value_on_an_edge_belongs_to_the_class_above():
 
 def test_a_target_is_met_at_its_limits():
     values = SimpleNamespace(values=np.array([9.9, 10.0, 15.0, 20.0, 20.1, np.nan]))
-    assert hits_of(values, {"min": 10.0, "max": 20.0}, None).tolist() == [0, 1, 1, 1, 0, 0]
+    assert hits_of(values, Requirement(10.0, 20.0), None).tolist() == [0, 1, 1, 1, 0, 0]
 
 
 def test_all_targets_of_a_body_are_met_with_the_least_of_their_probabilities():

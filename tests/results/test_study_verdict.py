@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 import trackroller as tr
 from trackroller.parameters import REGIMES
 from trackroller.results.verdict import verdict_of
+from trackroller.roller.requirement import checked_requirement
 from trackroller.study.file.load import parse_study
 
 LIFE = "pair_life_to_first_limit_hours"
@@ -70,7 +71,7 @@ def made(low, high=None, target=None, error=0.0, limit="fatigue", regime=None, f
     ds = ds.assign(life_error_estimate=(wide.dims, error), **data)
     config = results.config
     if target is not None:
-        config = config.model_copy(update={"analysis": config.analysis.model_copy(update={"target": target})})
+        config = config.model_copy(update={"requirement": checked_requirement(target)})
     study = dataclasses.replace(results.study, config=config)
     return dataclasses.replace(results, study=study, data=ds)
 
@@ -479,7 +480,7 @@ def aimed(results, hours=None, **more):
     config = results.config.model_copy(update=more)
     if hours is not None:
         target = {results.life[0]: {"min": hours}}
-        config = config.model_copy(update={"analysis": config.analysis.model_copy(update={"target": target})})
+        config = config.model_copy(update={"requirement": checked_requirement(target)})
     return dataclasses.replace(results, study=dataclasses.replace(results.study, config=config))
 
 
