@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Collection, Mapping
@@ -243,7 +244,11 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
     if kind == "values":
         if parameter is not None:
             return [_number(parameter, entry, where) for entry in value]
-        return value if key not in FACTOR_NAMES else [field_value(key, entry, where) for entry in value]
+        if key not in FACTOR_NAMES:
+            return value
+        levels = [field_value(key, entry, where) for entry in value]
+        _refuse_equal_names(key, levels, where)
+        return levels
     unit = None if parameter is None else parameter.unit
     spread = 1 if kind in ("normal", "truncnormal") else None
     plain = 1 if kind in ("lognormal", "weibull") else None  # a number without unit beside the median or scale
@@ -254,6 +259,16 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
         # a mistyped number of levels would fill the memory
         raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")
     return numbers
+
+
+def _refuse_equal_names(key: str, levels: list[Any], where: str) -> None:
+    """Refuse two levels of a factor that are mappings with the same name."""
+    if key not in MAPPING_FIELDS:
+        return
+    names = [json.loads(text).get("name") if text else None for text in levels]
+    for name in names:
+        if name is not None and names.count(name) > 1:
+            raise InputError(f"{where}.name", name, "a name of its own for each level", "Rename one of them.")
 
 
 def _to_float(value: Any, unit: str | None, where: str, difference: bool) -> Any:
