@@ -249,7 +249,8 @@ def _headline(found: _Found, kind: str) -> dict[str, Any]:
     if not settled:
         return head | {"nearest": _nearest(found, chosen)}
     if kind != "front":
-        head["binds"] = listing(_binds(found, chosen)[:2])
+        binds = _binds(found, chosen)[:2]
+        head["binds"] = listing(binds) if binds else ""
     return head
 
 

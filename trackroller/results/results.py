@@ -22,6 +22,7 @@ from trackroller.results import groups
 from trackroller.results.columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives, past_data
+from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -79,6 +80,11 @@ class Results:
     data: xr.Dataset
     known_indices: xr.Dataset | None = field(default=None, repr=False)
     materials_file: Path | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        """Add the study's own outputs to the data."""
+        if self.config.own:
+            object.__setattr__(self, "data", with_own_outputs(self.study, self.data))
 
     @property
     def config(self) -> StudyFile:
@@ -312,7 +318,8 @@ class Results:
         Results by contact and body have the suffixes `_1`, `_2`, `_roller`, `_guide`; a body counts at its worse
         contact.
         """
-        return pd.DataFrame(case_columns(self.data, self.dims))
+        own = {name: flat(self.data, name, self.dims) for name in self.config.own}
+        return pd.DataFrame(case_columns(self.data, self.dims) | own)
 
     @cached_property
     def factors(self) -> tuple[str, ...]:

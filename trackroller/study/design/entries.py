@@ -203,6 +203,8 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = 
     if isinstance(spec, Mapping):
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}", parameter) for kind, value in spec.items()}
     checked = parse(key, spec)
+    if checked.text and not own:
+        refuse_results(checked.text, f"{where}.expression")
     if not own and parameter is None and checked.kind != "values":
         raise InputError(where, checked.kind, "names as {values: [...]}")
     if parameter is not None:
@@ -229,12 +231,29 @@ def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputEr
         allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
         return InputError("factors", name, allowed, f"Write {own}.", "is not known")
     error = unknown_name("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
-    unknown = sorted(_in_expressions(factors) - {*FACTOR_NAMES, *map(str, factors)})
+    used = _in_expressions(factors)
+    unknown = sorted(used - {*FACTOR_NAMES, *map(str, factors)})
+    if results := [one for one in unknown if one in PARTS or one in VARIABLES]:
+        return _of_result("factors", name, results[0])
     if not unknown:
         return error
     allowed = "parameters, and names that an expression of another factor uses"
     remedy = f"The expressions use {listing(unknown)}, which is no factor: give both the same name."
     return InputError("factors", name, allowed, remedy, "is not known")
+
+
+def _of_result(where: str, value: str, result: str) -> InputError:
+    """Return the error for a factor whose expression uses a result."""
+    wrong = f"uses the result {result}, but a factor is computed before the solution"
+    remedy = "Write the expression under own: as an output of the study's own."
+    return InputError(where, value, "expressions of parameters and factors", remedy, wrong)
+
+
+def refuse_results(text: str, where: str) -> None:
+    """Refuse an expression of a factor that uses results, which are known after the solution only."""
+    for one in sorted(expressions.names(text, where)):
+        if one in PARTS or (one in VARIABLES and one not in FACTOR_NAMES):
+            raise _of_result(where, text, one)
 
 
 def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter | None) -> Any:

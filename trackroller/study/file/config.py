@@ -30,7 +30,7 @@ from trackroller.roller.stop import parse_condition
 from trackroller.study.design.entries import base_value, choice, factor
 from trackroller.study.design.roles import check_words
 from trackroller.study.file.correlations import check_entries
-from trackroller.study.file.goals import Analysis, comparisons, directions
+from trackroller.study.file.goals import Analysis, comparisons, directions, own_expressions
 from trackroller.study.file.search import Budget
 from trackroller.study.file.until import Until
 
@@ -145,6 +145,9 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
         {},
         description="what is wanted of outputs: min, max, and probability, the share of the conditions that have to "
         "meet it; `analysis.target` is its other name",
+    )
+    own: Annotated[dict[str, str], BeforeValidator(own_expressions)] = Field(
+        {}, description="outputs of the study's own: name and expression of results and inputs"
     )
     question: str | None = Field(None, description="what the study asks; follows from its keys if it is left out")
     roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")

@@ -22,14 +22,14 @@ import numpy as np
 from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from trackroller.damage import judged
-from trackroller.errors import InputError, collected, listing, raise_all, unknown_name
+from trackroller.errors import Collector, InputError, collected, listing, raise_all, unknown_name
 from trackroller.methods.factor import Factor
 from trackroller.numerics.units import without_units
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import PARTS, body_of, is_life, parts_of, unit_of
 from trackroller.roller.requirement import DEFAULT, KEY
-from trackroller.study.design.entries import choice
+from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, choice
 
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
@@ -147,6 +147,47 @@ def output_names(groups: Iterable[str]) -> list[str]:
     return [p.name for v in VARIABLES.values() if v.group in groups for p in parts_of(v, limits)]
 
 
+def names_of_outputs(config: Any) -> list[str]:
+    """Return the names of the results of a study with one number a case, and of its own outputs."""
+    return [*output_names(config.outputs), *config.own]
+
+
+def own_expressions(value: Any) -> Any:
+    """Check the names and the texts of the key `own`, each by itself."""
+    return collected(value, _own_expression)
+
+
+def _own_expression(name: Any, text: Any) -> str:
+    """Return the expression of an output of the study's own."""
+    where = f"own.{name}"
+    if not isinstance(name, str) or not name.isidentifier() or name in FACTOR_NAMES:
+        allowed = "a name of letters, digits and '_' that is no parameter"
+        raise InputError("own", name, allowed, "Rename it.")
+    check_own_name(name, where)
+    expressions.names(text, where)
+    return str(text)
+
+
+def check_own(config: Any, factors: Mapping[str, Factor]) -> None:
+    """Check that the expressions of the key `own` use results and inputs of the study, and clash with no factor."""
+    results = output_names(config.outputs)
+    known = [*results, *factors, *PARAMETERS, *MATERIAL_FIELDS, "material_pair", "regime"]
+    texts = {*MATERIAL_FIELDS, "material_pair", "regime"}
+    texts |= {name for name, factor in factors.items() if not factor.numeric}
+    dummy: dict[str, Any] = {name: "" if name in texts else np.ones(2) for name in known}
+    wrong = Collector()
+    for name, text in config.own.items():
+        where = f"own.{name}"
+        with wrong.part():
+            if name in factors:
+                raise InputError("own", name, "a name that is no factor", "Rename it.", "stands among the factors too")
+            for one in sorted(expressions.names(text, where) - set(REGIMES)):
+                if one not in known:
+                    raise unknown_result(where, one, known, config.outputs)
+            expressions.evaluate(text, dummy | {regime: regime for regime in REGIMES}, where)
+    wrong.check()
+
+
 def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
     """Check that the materials of each body whose life is asked for have a scatter, if the analysis counts on it.
 
@@ -186,7 +227,8 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
 
 def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
-    known = output_names(config.outputs)
+    check_own(config, factors)
+    known = names_of_outputs(config)
     check_analysed(config)
     if config.requirement and not config.method.weighted:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
@@ -203,7 +245,7 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
 
 def check_analysed(config: Any) -> None:
     """Check that the outputs under `analysis` and `requirement` are results of the study; raise all errors together."""
-    known, scale = output_names(config.outputs), config.analysis.scale
+    known, scale = names_of_outputs(config), config.analysis.scale
     asked = {
         "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
         KEY: config.requirement,

@@ -13,7 +13,7 @@ from trackroller.errors import InputError, listing
 from trackroller.methods import METHODS, those_with
 from trackroller.parameters import REGIMES
 from trackroller.roller.output_names import is_life
-from trackroller.study.file.goals import output_names, statistic, unknown_result
+from trackroller.study.file.goals import names_of_outputs, statistic, unknown_result
 
 
 class Until(BaseModel):
@@ -63,7 +63,7 @@ def check_until(config: Any) -> None:
         allowed = f"with until: the {until.replicates} replicates times a power of two, at the first look"
         raise InputError("samples", config.samples, allowed, f"Write samples: {near}, or remove the key.")
     for name in until.of:
-        _check_of(config, name, output_names(config.outputs))
+        _check_of(config, name, names_of_outputs(config))
 
 
 def _check_of(config: Any, name: str, known: list[str]) -> None:
