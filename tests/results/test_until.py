@@ -127,6 +127,23 @@ def test_only_the_design_points_with_wide_intervals_grow(tmp_path, monkeypatch):
 
 
 @pytest.mark.slow
+def test_a_sample_grows_only_until_its_shares_are_clear_of_the_wanted_one(tmp_path):
+    """One half and all of the conditions are told from 90 % by few cases; both need thousands for ± 0.02."""
+    keys = {key: value for key, value in UNEQUAL.items() if key != "analysis"}
+    wanted = {"normal_force_1": {"min": 0.0, "probability": 0.9}}
+
+    results = grow(load_study({**keys, "requirement": wanted}), tmp_path)
+    found = looks_of(results)
+    assert found["stopped"] == "every share is clear of the share that the requirement wants"
+    shares = [(results.column("normal_force_1")[rows] >= 0).mean() for rows in results.design.points]
+    for rows, value in zip(results.design.points, shares, strict=True):
+        count = rows.stop - rows.start
+        ends = stats.binomtest(round(value * count), count).proportion_ci(0.95)
+        assert not ends.low <= 0.9 <= ends.high
+    free = grow(load_study({**UNEQUAL, "name": "free"}), tmp_path)
+    assert results.design.size < 0.5 * free.design.size
+
+
 def test_a_sample_without_a_valid_case_does_not_grow(tmp_path):
     def outside(cases, **how):
         ds = fake_solver.solve(cases, **how)

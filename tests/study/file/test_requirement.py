@@ -71,7 +71,7 @@ def test_the_remedy_for_years_works():
 
 def test_a_factor_made_of_results_is_pointed_to_own_outputs():
     factors = {**HEAD["factors"], "friction_coefficient": {"expression": "friction_power_2 / 1000"}}
-    with pytest.raises(tr.InputError, match="computed before the solution.*under own:"):
+    with pytest.raises(tr.InputError, match=r"computed before the solution.*under own:"):
         tr.load_study({**HEAD, "factors": factors})
 
 
@@ -95,7 +95,7 @@ def test_the_file_of_a_roller_takes_a_requirement():
     found = requirement_of(with_beside(tr.solve(case, **options), beside))
     assert found["pair_life_to_first_limit_hours"].least == 12000
     assert found["peak_stress_roller"].most == pytest.approx(600)
-    with pytest.raises(tr.InputError, match="probability.*one roller has one condition"):
+    with pytest.raises(tr.InputError, match=r"probability.*one roller has one condition"):
         checked_case({"requirement": {"max_pressure": {"max": 900, "probability": 0.9}}})
     with pytest.raises(tr.InputError, match="Did you mean 'max_pressure'"):
         checked_case({"requirement": {"max_presure": {"max": 900}}})

@@ -49,6 +49,9 @@ def judged_by(goal: str) -> tuple[str, str]:
 def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check the goals of a search, and refuse them in every other design."""
     if not config.method.proposes:
+        if config.question == "best":
+            remedy = "Write method: optimise and goals, or question: decide."
+            raise InputError("question", config.question, "another question: only a search finds the best", remedy)
         if config.goals:
             remedy = "Use design: optimise, or name the goals under pareto."
             raise InputError("goals", config.design, "design: optimise", remedy)
