@@ -13,12 +13,13 @@ from trackroller.roller.aliases import ALIASES, RADII, renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.fields import other_than_default
+from trackroller.roller.log_answers import checked_log
 
 if TYPE_CHECKING:
     import xarray as xr
 
 SHEET_FIELDS = ("project", "part", "revision", "date", "author", "checker")  # texts at the head of a sheet
-BESIDE = ("duty", "sheet")  # entries that change no result, and that a result keeps as attributes
+BESIDE = ("duty", "sheet", "log")  # entries that change no result, and that a result keeps as attributes
 LONGEST = 200  # signs of a text at the head of a sheet
 
 
@@ -76,7 +77,7 @@ def parts_for_spectrum(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
         The fields that describe the roller, without its loads, options, duty and sheet; and the options that a
         spectrum file takes.
     """
-    fields = {key: value for key, value in given.items() if key not in (*OPTIONS, "duty", "sheet")}
+    fields = {key: value for key, value in given.items() if key not in (*OPTIONS, *BESIDE)}
     options = {key: given[key] for key, option in OPTIONS.items() if key in given and "spectrum" in option.files}
     return {key: value for key, value in renamed(fields).items() if key not in LOADS}, options
 
@@ -103,7 +104,7 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     left = dict(values)
     wrong, beside = Collector(), {}
     options = {key: left.pop(key) for key in OPTIONS if key in left}
-    for key, checked in zip(BESIDE, (checked_duty, checked_sheet), strict=True):
+    for key, checked in zip(BESIDE, (checked_duty, checked_sheet, checked_log), strict=True):
         if key in left:
             with wrong.part():
                 beside[key] = checked(left.pop(key))
