@@ -232,10 +232,15 @@ def _number_of(cell: str, unit: str, wanted: str, name: str) -> float:
     """Return the number of a cell in a unit; NaN for a cell without one, and one that is not clear."""
     if isinstance(cell, Refused):
         return math.nan
-    number = number_or_nan(cell)
-    if math.isnan(number):
-        return number_or_nan(cell, wanted, name)
-    return in_unit(number, unit, wanted, name) if unit and math.isfinite(number) else number
+    parts = split_quantity(cell)
+    number = number_or_nan(parts[0] if parts else cell)
+    own = parts[1] if parts else unit
+    if not own or not math.isfinite(number):
+        return number
+    try:
+        return in_unit(number, own, wanted, name)
+    except InputError:  # of a unit that is unknown or measures something else
+        return math.nan
 
 
 def _refused(name: str, cell: str, path: Path, line: int) -> InputError:

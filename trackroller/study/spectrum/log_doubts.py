@@ -244,11 +244,12 @@ def force_doubts(column: str, force: np.ndarray, size: float, lines: np.ndarray)
 
 
 def _clipped(column: str, force: np.ndarray, lines: np.ndarray) -> list[Doubt]:
-    """Return a doubt for each end of a force at which many lines stand exactly, while the others vary."""
+    """Return a doubt for each sign of a force at whose largest value many lines stand, while the others vary."""
     different, counts = np.unique(force, return_counts=True)
     doubts = []
-    for end, next_one in ((0, 1), (-1, -2)):
-        if different.size < 10 or abs(different[end]) < 0.5 * np.abs(different).max():
+    for end, next_one, sign in ((0, 1, -1), (-1, -2, 1)):
+        outward = sign * different[end]
+        if different.size < 10 or outward < 0.5 * np.abs(different).max():
             continue
         if counts[end] < 5 or counts[end] < CLIPPED * force.size or counts[end] < 4 * counts[next_one]:
             continue

@@ -56,13 +56,13 @@ class Steps:
         count = int(gaps.sum())
         lost = float(steps[gaps].sum())
         lines = log.lines[np.flatnonzero(gaps) + 1]
+        other = float(np.mean(np.abs(moving / usual - 1) > DIFFERENT - 1e-9))
         many = count > SHARE_OF_GAPS * steps.size or (count > FEW_GAPS and lost > LOST * steps.sum())
-        if hold is None and count and many:
+        if hold is None and count and (many or other > UNEVEN):
             question = hold_question(self.name, count, lost, float(steps.sum()), unit)
             questions.errors.append(question.at(log.path, int(lines[0])))
-        other = 100 * float(np.mean(np.abs(moving / usual - 1) > DIFFERENT))
-        if hold is None and other > 100 * UNEVEN:
-            doubts.append(Doubt("uneven", values={"share": other, "usual": usual, "unit": unit}))
+        elif hold is None and other > UNEVEN:
+            doubts.append(Doubt("uneven", values={"share": 100 * other, "usual": usual, "unit": unit}))
         if not count or hold in ("last", "middle"):
             return
         self.usual = ~gaps
