@@ -11,7 +11,6 @@ from scipy.optimize import brentq
 from scipy.stats import norm
 
 import trackroller as tr
-from trackroller.report.words.verdict import verdict_sentences
 from trackroller.roller.requirement import checked_requirement
 from trackroller.study.file.load import parse_study
 

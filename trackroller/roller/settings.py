@@ -89,6 +89,8 @@ def _checked_beside(key: str, value: Any, duty: Mapping[str, float] | None) -> A
         return checked_duty(value)
     if key == "sheet":
         return checked_sheet(value)
+    if key == "log":
+        return checked_log(value)
     required = checked_requirement(value, duty)
     for name, own in required.items():
         if name not in PARTS:
