@@ -13,6 +13,7 @@ from trackroller.roller.aliases import ALIASES, RADII, renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.fields import other_than_default
+from trackroller.roller.log_answers import checked_log
 from trackroller.roller.output_names import PARTS
 from trackroller.roller.requirement import checked_requirement, written
 
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     import xarray as xr
 
 SHEET_FIELDS = ("project", "part", "revision", "date", "author", "checker")  # texts at the head of a sheet
-BESIDE = ("duty", "sheet", "requirement")  # entries that change no result, and that a result keeps as attributes
+BESIDE = ("duty", "sheet", "requirement", "log")  # entries that change no result, and that a result keeps as attributes
 LONGEST = 200  # signs of a text at the head of a sheet
 
 
