@@ -9,7 +9,6 @@ import trackroller as tr
 from trackroller.report.figures.maps import life_map
 from trackroller.report.numbers import percent
 from trackroller.report.pages.sheet import collect
-from trackroller.results.findings import most_frequent
 
 FIRST = "pair_life_to_first_limit_hours"
 FAST = {"contact_model": "sliding", "accuracy": "preview"}
@@ -95,20 +94,6 @@ def test_a_map_of_lives_is_left_out_where_every_body_breaks(tmp_path):
     assert (results.column(FIRST)[results.rolling] == 0).all() and results.rolling.any()
     assert life_map(results) is None
     assert results.report(tmp_path / "report.html").is_file()
-
-
-def test_levels_with_few_cases_do_not_hide_the_one_with_most():
-    """Nine valid cases of 27 at the first level, eight of them hits: no other level is told to have most."""
-    factors = {"contact_angle": {"values": [30, 35, 40]}, "radial_force": {"linspace": [-200, -100, 27]}}
-    results = run(base=BASE, factors=factors)
-    angle = results.table["contact_angle"].to_numpy()
-    number = np.concatenate([np.arange(27)[: (angle == level).sum()] for level in (30, 35, 40)])
-    place = np.empty(len(angle), dtype=int)
-    for level, own in zip((30, 35, 40), number.reshape(3, 27), strict=True):
-        place[angle == level] = own
-    among = (angle > 33) | (place < 9)
-    hit = among & np.where(angle < 33, place < 8, np.where(angle < 38, place < 17, place < 3))
-    assert most_frequent(results, hit, among) is None
 
 
 @pytest.mark.slow

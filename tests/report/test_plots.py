@@ -27,7 +27,6 @@ from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
 from trackroller.results.columns import at_surface
-from trackroller.results.effects import paired_effect
 from trackroller.results.groups import spaced_by_ratio
 from trackroller.results.sensitivity import analyse
 
@@ -180,16 +179,6 @@ def test_every_case_failed_still_leaves_an_index(tmp_path):
 
 def test_one_case_alone_draws_nothing_and_raises_nothing(tmp_path):
     assert drawn(sampled_study(1), tmp_path) == set()
-
-
-def test_an_effect_is_the_median_of_pairs():
-    results = results_of(grid_study(SMALL))
-    effect = paired_effect(results, "roller_life_hours", "motor_force", results.valid)
-    table = results.table[results.valid].set_index([f for f in SMALL if f != "motor_force"])
-    driven, free = (table[table["motor_force"] == level]["roller_life_hours"] for level in (-30.0, 0.0))
-    ratios = (driven / free).dropna()
-    assert {effect.low, effect.high} == {-30.0, 0.0} and effect.size == len(ratios) > 5
-    assert max(effect.ratio, 1 / effect.ratio) == pytest.approx(float(np.maximum(ratios, 1 / ratios).median()))
 
 
 def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():

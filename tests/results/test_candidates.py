@@ -108,7 +108,6 @@ def test_conditions_that_no_design_meets_are_left_out_of_the_life_that_nine_of_t
     found = results.candidates().table
     assert not met.all() and (expected == 0).any() and (expected > 0).any()
     np.testing.assert_allclose(found.set_index(choices)["b10"].sort_index(), expected.sort_index())
-    assert [one.low for one in results.verdict.candidates] == found["b10"].tolist() and found["rank"].max() > 1
 
 
 @pytest.mark.slow

@@ -13,8 +13,6 @@ from trackroller.errors import WorkError
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
 from trackroller.results.candidates import FEWEST, Candidates, lift_off_margin
-from trackroller.results.effects import _of_steps
-from trackroller.results.findings import _outwards
 from trackroller.results.groups import classes
 from trackroller.results.targets import _all, hits_of
 from trackroller.roller.requirement import Requirement
@@ -93,11 +91,6 @@ def test_the_rate_of_several_models_is_that_of_their_times_together(monkeypatch)
     assert cost.study_rate(study) == pytest.approx(2 / (1 / 100 + 1 / 1))
 
 
-def test_a_pair_without_a_change_neither_rises_nor_falls():
-    effect = _of_steps("axial_force", 0, 10, np.array([0.2, 0.0, 0.0, -0.1, 0.3]))
-    assert (effect.rising, effect.falling, effect.size) == (2, 1, 5)
-
-
 @pytest.mark.parametrize(("sizes", "comparable"), [((FEWEST, 90), True), ((FEWEST - 1, 90), False)])
 def test_each_design_needs_a_sample_of_its_conditions(sizes, comparable):
     candidates = SimpleNamespace(conditions=("axial_force",), matched=False, size=np.array(sizes), weighted=True)
@@ -107,11 +100,6 @@ def test_each_design_needs_a_sample_of_its_conditions(sizes, comparable):
 def test_the_margin_to_lift_off_is_the_light_contact_over_the_heavy_one():
     loads = {"normal_force_1": np.array([30.0, 80.0]), "normal_force_2": np.array([120.0, 20.0])}
     assert lift_off_margin(SimpleNamespace(column=loads.get, regime=np.zeros(2, dtype=int))).tolist() == [0.25, 0.25]
-
-
-@pytest.mark.parametrize(("value", "low", "high"), [(123.45, 123, 124), (-0.067891, -0.0679, -0.0678), (0.0, 0, 0)])
-def test_a_bound_is_rounded_away_from_the_values_inside_it(value, low, high):
-    assert (_outwards(value, -1), _outwards(value, 1)) == (low, high)
 
 
 def test_a_study_with_unsolved_cases_is_not_gathered(tmp_path):

@@ -30,7 +30,10 @@ def test_the_mixed_rows_of_saltelli_do_not_narrow_an_interval():
     results = run("saltelli", 32, second_order=False)
     frame = pd.DataFrame({n: results.table[n].to_numpy() for n in FACTORS}).assign(life=results.column(LIFE))
     own = frame[np.isin(np.arange(len(frame)) % 5, (0, 4))]
-    for one in results.verdict.candidates:
-        lives = np.sort(own["life"][own["roller_profile_radius"] == one.choices["roller_profile_radius"]])
-        assert one.conditions == len(lives) and one.low == lives[math.ceil(0.1 * len(lives)) - 1]
-        assert one.interval[1] in lives and one.interval[0] in lives
+    table = results.candidates().table
+    for _, one in table.iterrows():
+        lives = np.sort(own["life"][own["roller_profile_radius"] == one["roller_profile_radius"]])
+        assert one["cases"] == len(lives)
+        assert one["b10"] == lives[math.ceil(0.1 * len(lives)) - 1]
+        assert one["b10_high"] in lives
+        assert one["b10_low"] in lives

@@ -121,8 +121,9 @@ def _with(given):
 
 def test_the_verdict_speaks_of_the_carriage():
     results = tr.run(study(rolled(), factors={"carriage_wheelbase": {"values": [200, 400]}}), progress=False)
-    found = results.verdict
-    assert found.kind == "build" and found.best[0].choices == {"carriage_wheelbase": 400.0}
+    found = results.answer
+    assert found.kind == "build"
+    assert found.headline["names"] == [{"carriage_wheelbase": 400.0}]
     roles = {"carriage_payload": {"values": [20, 60]}, "carriage_wheelbase": {"values": [200, 400]}}
     judged = tr.run(study(rolled(), name="roles", factors=roles), progress=False)
     assert judged.candidates().conditions == ("carriage_payload",)

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy import stats
 
 from trackroller.methods.interactions import MAX_ROWS, ROWS_PER_TERM, best_fit
 from trackroller.methods.intervals import constant
@@ -15,11 +16,14 @@ from trackroller.parameters.of_carriage import long_name_of, parameter_of
 from trackroller.results.answer import Curve
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
-from trackroller.results.effects import DEGREES, FEWEST_ROWS, TOLD, _scaled
 from trackroller.results.groups import BINS, MOST_LEVELS, groups, spaced_by_ratio
 from trackroller.results.results import Results
 from trackroller.study.design.entries import OPTION_FACTORS
 
+FEWEST_ROWS = 30  # smallest number of cases that are fitted
+TOLD = 0.9  # share of the variance that a fit must predict before its effects are told
+DEGREES = ((8, 0), (5, 0), (3, 0), (2, 0), (1, 0))  # of a factor alone, none with another one; the best one wins
+SPANNED = 2.0, 20.0  # a number that spans so many times its smallest size is fitted by its logarithm
 PLACES = 24  # points of a fitted curve
 FLAT = 1.02  # height of a curve below which it counts as flat
 TURNS = 1.1  # change in the other direction from which on a curve is a hump or a dip
@@ -225,6 +229,19 @@ class _Fitted:
     whole: np.ndarray
     parts: dict[str, np.ndarray]
     values: dict[str, np.ndarray]
+
+
+def _scaled(values: pd.Series) -> np.ndarray:
+    """Return a number, or its logarithm: of a number that spans its smallest size several times, or is spread so."""
+    own = values.to_numpy(dtype=float)
+    sizes = np.abs(own)
+    one_sign = (own > 0).all() or (own < 0).all()
+    if not one_sign or sizes.max() <= SPANNED[0] * sizes.min():
+        return own
+    logs = np.sign(own) * np.log(sizes / sizes.max())
+    places = stats.rankdata(own)  # a sample that is even in its logarithm was drawn so
+    even = np.corrcoef(places, logs)[0, 1] > np.corrcoef(places, own)[0, 1]
+    return logs if even or sizes.max() < SPANNED[1] * sizes.min() else own
 
 
 def _size(height: float, by_ratio: bool) -> float:

@@ -36,8 +36,6 @@ if TYPE_CHECKING:
     from trackroller.results.answer import Answer
     from trackroller.results.by_tests import ByTests
     from trackroller.results.candidates import Candidates
-    from trackroller.results.findings import Finding
-    from trackroller.results.verdict import Verdict
 
 log = logging.getLogger("trackroller")
 SAME_ENDS = 1e-6  # relative difference of the two ends of a life below which it is one number
@@ -194,19 +192,6 @@ class Results:
         return {}
 
     @cached_property
-    def verdict(self) -> Verdict | None:
-        """Return which candidate to build, or why the study cannot say so.
-
-        Returns
-        -------
-        Verdict or None
-            See `trackroller.results.verdict.Verdict`; None for a search, and without lives, stresses and targets.
-        """
-        from trackroller.results.verdict import verdict_of
-
-        return verdict_of(self)
-
-    @cached_property
     def answer(self) -> Answer | None:
         """Return the answer to the study as one record of numbers and names.
 
@@ -231,20 +216,6 @@ class Results:
         from trackroller.results.by_tests import by_tests_of
 
         return by_tests_of(self)
-
-    @cached_property
-    def findings(self) -> dict[str, list[Finding]]:
-        """Return what the study shows beside its verdict, as data.
-
-        Returns
-        -------
-        dict
-            `why` one design lasts longer than another, the most important finding first, and where rolling `ends`;
-            lists of `trackroller.results.findings.Finding`.
-        """
-        from trackroller.results.findings import ends, why
-
-        return {"why": why(self), "ends": ends(self)}
 
     def best(self, count: int = 5) -> pd.DataFrame:
         """Return the best designs over all their conditions, the best one first.
