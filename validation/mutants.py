@@ -12,17 +12,19 @@ VERDICT = ("results/test_study_verdict.py",)
 WEAR = ("damage/test_wear.py",)
 SOBOL = ("results/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
-CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_enough.py", "results/test_given_data.py")
+CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_given_data.py")
 WORDS = (
     BORDERS,
     "report/test_sentences.py",
-    "report/test_truth.py",
-    "report/test_truth_analysis.py",
-    "report/test_report.py",
+    "report/test_headlines.py",
+    "report/test_answer_page.py",
+    "report/test_golden_pages.py",
+    "report/test_plots.py",
 )
+DECISIONS = ("results/test_decisions.py",)
 FITTED = ("results/test_fitted_effects.py",)
-DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py", "report/test_truth.py")
-TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py", "report/test_truth_targets.py")
+DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py")
+TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py")
 PACKED = (BORDERS, "report/test_explorer.py")
 STORE = (BORDERS, "study/test_resume.py", "study/test_two_runs.py")
 ANALYSED = (BORDERS, "results/test_sensitivity.py", "results/test_robustness.py", "report/test_report.py")
@@ -136,7 +138,7 @@ FORMULAS = {
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
-    "converged": ("report/words/samples.py", "if times <= 1 else", "if times <= 4 else", CONVERGENCE),
+    "figures-of-error": ("report/numbers.py", "figures = 2 if error >= COARSE", "figures = 2 if error < COARSE", WORDS),
     "interval-of-a-fit": ("results/effects.py", "inverse * (rest @ rest / free)", "inverse * (rest @ rest)", FITTED),
     "rising": ("results/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
     "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
@@ -149,7 +151,12 @@ DECISIONS = {
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
-    "rounded-outwards": ("results/findings.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
+    "rounded-outwards": (
+        "results/findings.py",
+        "np.floor if way < 0",
+        "np.floor if way > 0",
+        ("results/test_decisions.py",),
+    ),
     "factors-that-go-together": ("results/effects.py", "> INFLATED:", "> 1e9 * INFLATED:", FITTED),
     "pareto-end": (
         "results/pareto.py",

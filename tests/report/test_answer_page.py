@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import base64
 import csv
+import dataclasses
 import io
 import re
 
@@ -88,6 +89,15 @@ def test_bars_stand_on_one_axis_in_the_order_of_their_numbers():
     assert places == sorted(places, reverse=True) and 0 < min(places) and max(places) < 100
     ratio = [bars.axis.place(10.0 * value) - bars.axis.place(value) for value in (1e3, 1e4)]
     assert ratio[0] == pytest.approx(ratio[1])
+
+
+def test_a_required_life_of_the_pair_is_drawn_beside_the_life_to_the_first_limit():
+    own = made_answers.required(20_000.0)
+    of_pair = dataclasses.replace(own, output="pair_life_hours", words="life of the pair")
+    bars = [Bars.of(made_answers.decide(required=(one,))) for one in (own, of_pair)]
+    assert bars[0].bounds == bars[1].bounds == ((20_000.0, "required 20,000"),)
+    stress = made_answers.stresses().required[0]
+    assert Bars.of(made_answers.decide(required=(stress,))).bounds == ()
 
 
 @pytest.mark.parametrize(

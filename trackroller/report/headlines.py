@@ -60,6 +60,7 @@ from typing import Any
 
 from trackroller.errors import listing
 from trackroller.parameters.of_carriage import parameter_of
+from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
     capital,
     carried,
@@ -600,7 +601,7 @@ def _value(answer: Answer, low: float, high: float | None = None, notes: Sequenc
     """Return a value or a range with its unit, and its years and other notes in brackets."""
     if high is None or math.isnan(high):
         high = low
-    bounds = [end for one in answer.required if one.output == answer.output[0] for end in (one.least, one.most)]
+    bounds = bounds_of_output(answer)
     if math.isinf(low) and low > 0:
         return _noted("unlimited", notes)
     text = carried_range(low, high, answer.headline.get("error", math.nan), bounds)

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from markupsafe import Markup
 
+from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import capital, carried, grouped, level_text, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.frame import (
@@ -44,7 +45,7 @@ def effects(answer: Answer) -> list[Effect]:
     if not curves:
         return []
     ends = [*(_inside(curve) for curve in curves)]
-    bounds = [bound for one in answer.required if one.output == answer.output[0] for bound in (one.least, one.most)]
+    bounds = bounds_of_output(answer)
     axis = Axis.of([*np.concatenate(ends), *bounds])
     return [Effect(capital(curve.title), height_words(curve), _drawn(answer, curve, axis)) for curve in curves]
 

@@ -8,6 +8,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from trackroller.report.bounds import required_of_output
 from trackroller.report.numbers import grouped, unit_text
 from trackroller.report.pictures.axis import Axis
 from trackroller.report.pictures.marks import (
@@ -101,7 +102,7 @@ def framed(content: Markup, height: float, words: str, left: float = 52, right: 
 
 def bounds_of(answer: Answer) -> list[tuple[float, str]]:
     """Return the bounds that are required of the output of an answer, with their words."""
-    return [bound for one in answer.required if one.output == answer.output[0] for bound in _bounds(one)]
+    return [bound for one in required_of_output(answer) for bound in _bounds(one)]
 
 
 def _bounds(required: Required) -> list[tuple[float, str]]:

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from trackroller.report.bounds import bounds_of_output
 from trackroller.report.numbers import (
     capital,
     carried_range,
@@ -198,7 +199,7 @@ def _error_of(row: Mapping[Any, Any], column: Column) -> float:
 def _bounds(answer: Answer, column: Column) -> list[float]:
     if column.role != "bar":
         return []
-    return [end for one in answer.required if one.output == answer.output[0] for end in (one.least, one.most)]
+    return bounds_of_output(answer)
 
 
 def _shared_text(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
