@@ -28,17 +28,6 @@ def test_a_drive_at_the_limit_of_friction_skids_in_both_directions(drive):
     assert int(tr.solve(case | {"motor_force": 1.999 * drive}, **FAST)["regime"]) == 0
 
 
-def test_of_levels_with_the_same_share_none_has_most():
-    """Events in half of the cases of two levels and in none of a third."""
-    factors = {"contact_angle": {"values": [30, 35, 40]}, "radial_force": {"linspace": [-200, -100, 30]}}
-    results = run(base=BASE, factors=factors)
-    angle, force = (results.table[name].to_numpy() for name in factors)
-    hit = (angle < 38) & (force < -150)
-    every = np.ones(len(angle), dtype=bool)
-    assert most_frequent(results, hit & (angle < 33), every)[:2] == ("contact_angle", (30.0, 15, 30))
-    assert most_frequent(results, hit, every) is None
-
-
 @pytest.mark.parametrize(
     ("value", "low", "high", "text"),
     [(1, 0.982, 1, "100 % (98 to 100 %)"), (0, 0, 0.028, "0 % (0 to 3 %)"), (0.5, 0.4, 0.6, "50 ± 10 %")],

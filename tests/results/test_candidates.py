@@ -96,17 +96,16 @@ def compared(frame, choices, life):
     return found.sort_values(["valid", "worst"], ascending=False)
 
 
-def test_conditions_that_no_design_meets_are_left_out_of_the_life_that_nine_of_ten_reach():
-    """The order statistic of the raw rows of the other conditions; the verdict and the table have the same number."""
-    factors = SAMPLE["factors"] | {"axial_force": {"uniform": [0, 250]}}
+def test_drawn_conditions_that_no_design_holds_count_as_a_life_of_0():
+    """The order statistic of the raw rows of all conditions."""
+    factors = SAMPLE["factors"] | {"axial_force": {"uniform": [0, 80]}}
     ds, frame = solved(**SAMPLE | {"factors": factors})
     results, choices = results_of(ds), ["roller_profile_radius", "contact_angle"]
-    met = frame.groupby("axial_force")["valid"].transform("any")
-    lives = frame["pair_life_hours"].where(frame["valid"], 0.0)[met]
-    groups = lives.groupby([frame[name][met] for name in choices])
+    lives = frame["pair_life_hours"].where(frame["valid"], 0.0)
+    groups = lives.groupby([frame[name] for name in choices])
     expected = groups.apply(lambda own: np.sort(own)[math.ceil(0.1 * len(own)) - 1])
     found = results.candidates().table
-    assert not met.all() and (expected == 0).any() and (expected > 0).any()
+    assert not frame["valid"].all()
     np.testing.assert_allclose(found.set_index(choices)["b10"].sort_index(), expected.sort_index())
 
 

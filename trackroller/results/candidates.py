@@ -264,6 +264,9 @@ class Candidates:
             table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
         key = sign * table["worst"]
+        if self.goal == FIRST_LIMIT:
+            case = self._least(results.sure_life, self.usable)
+            key = pd.Series(np.where(case < 0, np.nan, results.sure_life[case]), table.index)
         held = table["valid"] / table["cases"]
         if self.drawn and self.rising:
             table = table.assign(**self._quantile())
