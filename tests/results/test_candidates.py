@@ -98,7 +98,7 @@ def compared(frame, choices, life):
 
 def test_drawn_conditions_that_no_design_holds_count_as_a_life_of_0():
     """The order statistic of the raw rows of all conditions."""
-    factors = SAMPLE["factors"] | {"axial_force": {"uniform": [0, 80]}}
+    factors = SAMPLE["factors"] | {"axial_force": {"uniform": [0, 150]}}
     ds, frame = solved(**SAMPLE | {"factors": factors})
     results, choices = results_of(ds), ["roller_profile_radius", "contact_angle"]
     lives = frame["pair_life_hours"].where(frame["valid"], 0.0)

@@ -19,6 +19,7 @@ from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
 from trackroller.roller.output_names import PARTS
+from trackroller.study.design.levels import short
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
@@ -204,7 +205,7 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = 
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}", parameter) for kind, value in spec.items()}
     checked = parse(key, spec)
     if checked.text and not own:
-        refuse_results(checked.text, f"{where}.expression")
+        refuse_results(checked.text, f"{where}.expression", factors)
     if not own and parameter is None and checked.kind != "values":
         raise InputError(where, checked.kind, "names as {values: [...]}")
     if parameter is not None:
@@ -249,9 +250,12 @@ def _of_result(where: str, value: str, result: str) -> InputError:
     return InputError(where, value, "expressions of parameters and factors", remedy, wrong)
 
 
-def refuse_results(text: str, where: str) -> None:
-    """Refuse an expression of a factor that uses results, which are known after the solution only."""
-    for one in sorted(expressions.names(text, where)):
+def refuse_results(text: str, where: str, factors: Mapping[Any, Any]) -> None:
+    """Refuse an expression of a factor that uses results, which are known after the solution only.
+
+    A factor that has the name of a result is refused for this name.
+    """
+    for one in sorted(expressions.names(text, where) - {*map(str, factors)}):
         if one in PARTS or (one in VARIABLES and one not in FACTOR_NAMES):
             raise _of_result(where, text, one)
 
@@ -284,9 +288,10 @@ def _refuse_equal_names(key: str, levels: list[Any], where: str) -> None:
     """Refuse two levels of a factor that are mappings with the same name."""
     if key not in MAPPING_FIELDS:
         return
-    names = [json.loads(text).get("name") if text else None for text in levels]
+    given = [text for text in dict.fromkeys(levels) if text and "name" in json.loads(text)]
+    names = [short(key, text) for text in given]
     for name in names:
-        if name is not None and names.count(name) > 1:
+        if names.count(name) > 1:
             raise InputError(f"{where}.name", name, "a name of its own for each level", "Rename one of them.")
 
 
