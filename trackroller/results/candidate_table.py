@@ -125,7 +125,7 @@ def _ends(own: Comparison) -> dict[str, Any]:
     ranges = own.ranges
     rows = own.own if own.drawn else own.reachable
     worse, case = own.smallest(ranges.worse, rows)
-    better, case_better = own.smallest(ranges.better, rows)
+    better, case_better = _at_best_place(own, rows)
     low, high = (worse, better) if ranges.rises else (better, worse)
     best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.held)
     with np.errstate(invalid="ignore", over="ignore"):
@@ -150,6 +150,22 @@ def _ends(own: Comparison) -> dict[str, Any]:
         "error": np.where(case < 0, 0.0, ranges.error[case]),
         "extrapolated": _conditions_with(own, ranges.beyond & rows),
     }
+
+
+def _at_best_place(own: Comparison, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the better end at the worst condition of each candidate, and its case, shape (candidates,) each.
+
+    Where a factor spans the range of a placeholder, the place at which this end is best counts.
+    """
+    best = np.full(own.count, np.nan)
+    case = np.full(own.count, -1)
+    for level in np.unique(own.level[rows & own.own]):
+        values, cases = own.smallest(own.ranges.better, rows & (own.level == level))
+        with np.errstate(invalid="ignore"):
+            longer = np.isnan(best) | (own.ranges.sign * values > own.ranges.sign * best)
+        best = np.where(longer, values, best)
+        case = np.where(longer, cases, case)
+    return best, case
 
 
 def _least(own: Comparison, values: np.ndarray, rows: np.ndarray) -> np.ndarray:

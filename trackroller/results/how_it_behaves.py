@@ -109,7 +109,7 @@ def _row(results: Results, ranges: CaseRanges) -> dict[str, Any]:
         return row | empty | {"at_smallest": "", "at_largest": "", "row_smallest": -1, "row_largest": -1}
     values = ranges.value[rows]
     least, most = int(rows[values.argmin()]), int(rows[values.argmax()])
-    names = [name for name in results.factors if name not in results.labels]
+    names = list(results.labels) or list(results.factors)  # labels name the rows of a table
     return row | {
         "smallest": float(values.min()),
         "median": float(np.quantile(values, 0.5, method="inverted_cdf")),

@@ -185,32 +185,57 @@ class Turning:
         return None
 
     def of_span(self, leader: int, rivals: list[int]) -> dict[str, Any] | None:
-        """Return the factor that spans a placeholder if a rival leads at a tenth of its levels or more; None without.
+        """Return the placeholder whose range a factor spans if a rival leads over a tenth of it or more; None without.
 
-        Candidates stand at the same level of the factor.
+        The leader stands at each level of the factor in turn. Rivals of the same materials stand at the same level,
+        because they share the placeholder, and all others in the middle of their range.
         """
         own = self.own
-        if not own.spans:
+        if not own.spans or not rivals:
             return None
         levels = np.unique(own.level[own.own])
-        worst = np.stack([self._at_level(number, levels) for number in [leader, *rivals]])
-        ahead = worst[1:] > worst[0] * (1.0 + own.error_of_ratio(leader, leader))
-        if not rivals or ahead.any(axis=0).mean() < LEAST:
+        mine = self._at_level(leader, levels)
+        ahead = np.zeros(len(levels), dtype=bool)
+        overtaking: list[int] = []
+        for rival in rivals:
+            theirs = self._at_level(rival, levels)
+            if own.materials[rival] != own.materials[leader]:
+                theirs = np.full(len(levels), self._middle(rival, levels))
+            leads = theirs > mine * (1.0 + own.error_of_ratio(leader, rival))
+            ahead |= leads
+            if leads.any():
+                overtaking.append(rival)
+        if ahead.mean() < LEAST:
             return None
+        known = self._behind(leader, int(np.argmin(mine)), levels)
+        if own.spans[0] != COEFFICIENT and known is not None and 0 < mine.min() < mine.max():
+            target = max(self._middle(rival, levels) for rival in overtaking)
+            share = np.log(target / mine.min()) / np.log(mine.max() / mine.min())
+            return self.told(known, int(np.clip(np.searchsorted(STEPS, share), 0, len(STEPS) - 1)))
         name = own.spans[0]
         values = own.results.levels(name)
         what = "wear_coefficient" if name == COEFFICIENT else name
-        return {
-            "what": what,
-            "of": "",
-            "on": "",
-            "turn": np.nan,
-            "units": "times its value",
-            "low": values[0],
-            "high": values[-1],
-        }
+        found = {"what": what, "of": "", "on": "", "turn": np.nan, "units": "times its value"}
+        return found | {"low": values[0], "high": values[-1]}
+
+    def _middle(self, number: int, levels: np.ndarray) -> float:
+        """Return the geometric middle of the range of a candidate over the places of the placeholders."""
+        lives = self._at_level(number, levels)
+        return float(np.sqrt(lives.min()) * np.sqrt(lives.max()))
+
+    def _behind(self, number: int, place: int, levels: np.ndarray) -> Placeholder | None:
+        """Return the placeholder of the limit that ends a candidate at one place of the placeholders; None without."""
+        own = self.own
+        rows = own.rows[number]
+        rows = rows[own.reachable[rows] & (own.level[rows] == levels[place])]
+        row = int(rows[np.argmin(own.ranges.middle[rows])])
+        limit, guide = (part[row] for part in own.ranges.first)
+        material = str(self.materials[BODIES[int(guide)]][row])
+        known = [one for one in self.placeholders if (one.limit, one.material) == (limit, material)]
+        return known[0] if known else None
 
     def _at_level(self, number: int, levels: np.ndarray) -> np.ndarray:
+        """Return the life of a candidate at its worst condition at each level of the spanned placeholders."""
         own = self.own
         rows = own.rows[number]
         rows = rows[own.reachable[rows]]
