@@ -15,7 +15,7 @@ from pathlib import Path
 
 import pytest
 
-from trackroller.study.store.sources import ROOMS
+from trackroller.study.store.code_digest import ROOMS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"

@@ -135,7 +135,7 @@ def test_a_study_with_the_name_of_a_device_of_windows_is_refused(name):
 def test_files_with_windows_newlines_and_a_byte_order_mark_give_the_same_cases(tmp_path):
     """Study, table of cases and measured profile as editors on Windows save them have the same fingerprints."""
     from trackroller.study.file.load import load_study
-    from trackroller.study.store.identity import Cases
+    from trackroller.study.store.fingerprint import Cases
 
     profile = "x,z\n" + "".join(f"{x / 2},{x * x / 52}\n" for x in range(-8, 9))
     files = {

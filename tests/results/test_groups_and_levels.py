@@ -14,7 +14,7 @@ from trackroller.report.words.indices import part_tables
 from trackroller.results.findings import level_values
 from trackroller.results.sensitivity import analyse, within_levels
 from trackroller.study.design.sampling import sample
-from trackroller.study.file.load import parse_study, without_former
+from trackroller.study.file.load import parse_study
 from validation.benchmarks.known_indices import functions
 
 G = functions()["g-function"]
@@ -198,13 +198,6 @@ def test_groups_reach_analysis_table_and_summary(tmp_path):
     kinds = [s.kind for s in said]
     text = said[kinds.index("groups")].text
     assert text.index("roller material") < text.index("load") and "fitted" in kinds[kinds.index("groups") :]
-
-
-def test_the_key_exchange_of_earlier_versions_is_ignored_aloud():
-    with pytest.warns(UserWarning, match="Ignored: exchange, because saltelli"):
-        assert without_former(FILE | {"exchange": "groups", "analysis": {"scale": "log10"}}) == FILE | {
-            "analysis": {"scale": "log10"}
-        }
 
 
 def test_levels_reach_analysis_table_and_summary():

@@ -19,6 +19,8 @@ import pandas as pd
 import pytest
 import xarray as xr
 from test_edits import STUDY, command, draw_one
+from trackroller.study.store.digests import record_digest
+from trackroller.study.store.seal import put_text
 
 import trackroller as tr
 from trackroller.app import studies
@@ -28,10 +30,8 @@ from trackroller.report.build import build_report
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
 from trackroller.study.store import digests, ownership
-from trackroller.study.store.digests import record_digest
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.ledger import working_ledger
-from trackroller.study.store.seal import put_text
 from trackroller.yaml_file import parse_mapping
 
 ROOT = Path("results/edited")

@@ -18,15 +18,14 @@ import pytest
 import xarray as xr
 from test_edits import STUDY as EDITED
 from test_edits import command
+from trackroller.study.store.digests import METADATA, record_digest
+from trackroller.study.store.seal import sealing
 
 import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.study.file.load import load_study
 from trackroller.study.run import run_study
-from trackroller.study.store import sources
-from trackroller.study.store.digests import METADATA, record_digest
 from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
-from trackroller.study.store.seal import sealing
 
 STORED = Path(__file__).parents[1] / "data" / "sealed_study.zip"
 STUDY = EDITED.replace("name: edited", "name: sealed")

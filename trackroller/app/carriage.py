@@ -6,8 +6,6 @@ changed text, so that fields, picture and text show the same carriage.
 
 from __future__ import annotations
 
-import hashlib
-import os
 import re
 from pathlib import Path
 from typing import Any
@@ -16,7 +14,7 @@ import numpy as np
 import pydantic
 import xarray as xr
 
-from trackroller.app.studies import RESULTS, TEXTS, WRITTEN
+from trackroller.app.studies import RESULTS, TEXTS, WRITTEN, may_write, write_noted
 from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import Carriage, carriage_of
 from trackroller.carriage.files import spectrum_of
@@ -29,14 +27,12 @@ from trackroller.report.tables.table import Table, cell
 from trackroller.report.words.carriage import sentences, worst_place
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.record import doubts_of
-from trackroller.study.store import ownership
-from trackroller.study.store.digests import read_record
+from trackroller.study.store.manifest import Manifest
 from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, write_yaml
 
 LONGEST = 200_000  # bytes of a file that the list looks into
 HEADS = tuple(re.compile(rf"^{key}\s*:", re.M) for key in ("mass", "rollers", "cases"))
 WHAT = "carriage file"
-RECORD = WRITTEN / "carriages.sha256"  # which files the page has read or written
 
 
 class Change(pydantic.BaseModel):
@@ -65,7 +61,8 @@ def open_carriage(file: str) -> dict[str, Any]:
     """Return the text of a carriage file of the folder; the page may write this file from now on."""
     path = _place(file, "file")
     text = read_text(path, WHAT)
-    _note(path, {sha256(path)})
+    manifest = _manifest()
+    manifest.settle({manifest.name_of(path): sha256(path)})
     return {"text": text}
 
 
@@ -186,18 +183,17 @@ def _place(file: str, field: str) -> Path:
 
 def _write(path: Path, text: str) -> str:
     """Write a file, unless somebody else has changed it since the page read or wrote it."""
-    digest, known = hashlib.sha256(text.encode()).hexdigest(), read_record(RECORD)[1].get(path.as_posix(), set())
-    if os.path.lexists(path) and (not path.is_file() or sha256(path) not in known | {digest}):
+    manifest = _manifest()
+    known = {digest for digests in manifest.below(path).values() for digest in digests}
+    if not may_write(path, text, known):
         remedy = "Give it another name, or open the file first."
         raise InputError(
             "file", path.as_posix(), "a name whose file this page read or wrote", remedy, "is there already"
         )
-    _note(path, known | {digest})
-    ownership.write_text(path, text)
+    write_noted(manifest, path, text)
     return path.as_posix()
 
 
-def _note(path: Path, digests: set[str]) -> None:
-    """Note what this page has read or written, so that it may write the file again."""
-    known = read_record(RECORD)[1]
-    ownership.write_record(RECORD, known | {path.as_posix(): digests}, current=True)
+def _manifest() -> Manifest:
+    """Return the manifest of the carriage files that the page has read or written, so that it may write them again."""
+    return Manifest(Path(), (WRITTEN / "carriages.json").as_posix())

@@ -8,8 +8,6 @@ from __future__ import annotations
 import contextlib
 import datetime
 import functools
-import hashlib
-import json
 import math
 import os
 import subprocess
@@ -21,7 +19,7 @@ from typing import Any
 from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
-from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
+from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, write_text
 from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
@@ -35,14 +33,14 @@ from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import default_names, outputs
 from trackroller.study.status import plan_rows, status_of
-from trackroller.study.store import ownership
-from trackroller.study.store.digests import read_record
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.seal import altered, check_sealed
+from trackroller.study.store.manifest import Manifest, digest_of, digest_of_file, is_study, read_record
+from trackroller.study.store.replace import delete_study, remove_proved
+from trackroller.study.store.verify import check_unaltered, why_altered
 from trackroller.yaml_file import errors_by_line, parse_mapping, write_yaml
 
 TEXTS, RESULTS = Path("studies"), Path("results")
-WRITTEN = Path(".trackroller")  # where the page notes which study files it wrote
+WRITTEN = Path(".trackroller")  # where the page notes which files it wrote
 MOST_CASES = 200_000  # larger studies belong on the command line, where nobody waits for a page
 PAGES = ("report.html", "explorer.html")
 _REFUSED: dict[str, Any] = {  # what the list shows of a study with a link in its folder
@@ -128,9 +126,11 @@ def start(text: str) -> dict[str, Any]:
         raise WorkError(f"The study '{name}' runs already. Pause it first, or give this study another name.")
     folder.create()
     _write_text(name, text, folder)
-    for file in (PROGRESS, PAUSE):
-        ownership.clear(folder.root / file, folder.root)
-    ownership.make_way(log_file := folder.root / "page.log", folder.root)
+    log_file = folder.root / "page.log"
+    states = [folder.root / PROGRESS, folder.root / PAUSE]
+    Manifest(folder.root).check(*states, log_file)
+    for state in states:
+        remove_proved(state)
     with open_here(log_file, "ab") as log:
         log.write(f"trackroller: started {datetime.datetime.now().isoformat(' ', 'seconds')}\n".encode())
         log.flush()
@@ -149,17 +149,29 @@ def _write_text(name: str, text: str, folder: StudyFolder) -> None:
 
     The page wrote or read what stands in its own record, and what the study was planned from.
     """
-    path, record = TEXTS / f"{name}.yaml", WRITTEN / "studies.sha256"
-    known = read_record(record)[1]
-    planned = {one["sha256"] for one in folder.record().get("inputs", {}).values()}
-    if os.path.lexists(path) and (path.is_symlink() or not path.is_file() or path.read_bytes() != text.encode()):
-        if path.is_symlink() or not path.is_file() or sha256(path) not in known.get(path.name, set()) | planned:
-            remedy, wrong = "Give the study another name, or rename the file.", f"has a file {path} from elsewhere"
-            raise InputError("name", name, "a name whose file this page wrote", remedy, wrong)
-    digest = hashlib.sha256(text.encode()).hexdigest()
-    ownership.write_record(record, known | {path.name: known.get(path.name, set()) | {digest}}, current=True)
-    ownership.write_text(path, text)
-    ownership.write_record(record, known | {path.name: {digest}}, current=True)
+    path = TEXTS / f"{name}.yaml"
+    manifest = Manifest(Path(), (WRITTEN / "studies.json").as_posix())
+    planned = Manifest(folder.root).below(folder.inputs).values()
+    known = {digest for digests in (*planned, *manifest.below(path).values()) for digest in digests}
+    if not may_write(path, text, known):
+        remedy, wrong = "Give the study another name, or rename the file.", f"has a file {path} from elsewhere"
+        raise InputError("name", name, "a name whose file this page wrote", remedy, wrong)
+    write_noted(manifest, path, text)
+
+
+def may_write(path: Path, text: str, known: set[str]) -> bool:
+    """Return whether a text may be written to a file: it is free, holds the text, or has a digest that is known."""
+    if not os.path.lexists(path):
+        return True
+    return not path.is_symlink() and digest_of_file(path) in known | {digest_of(text)}
+
+
+def write_noted(manifest: Manifest, path: Path, text: str) -> None:
+    """Write a text file after its digest was written down."""
+    names = {manifest.name_of(path): digest_of(text)}
+    manifest.note(names)
+    write_text(path, text)
+    manifest.settle(names)
 
 
 def resume(name: str) -> dict[str, Any]:
@@ -172,7 +184,7 @@ def pause(name: str) -> None:
     folder = folder_of(name)
     if not (_starts(name) or is_held(folder.root / LOCK)):
         raise WorkError(f"The study '{name}' does not run from this page, so the page cannot pause it.")
-    ownership.make_way(folder.root / PAUSE, folder.root)
+    Manifest(folder.root).check(folder.root / PAUSE)
     (folder.root / PAUSE).touch()
 
 
@@ -186,7 +198,7 @@ def delete(name: str, confirm: str = "") -> None:
     if not folder.root.is_dir():
         remedy = "It may be deleted already."
         raise InputError("name", name, "a study of this folder", remedy, "is not there")
-    ownership.delete_study(folder.create().root)
+    delete_study(folder.create().root)
 
 
 def _works(name: str, folder: StudyFolder) -> bool:
@@ -216,13 +228,11 @@ def _entry(name: str) -> dict[str, Any] | None:
         if _is_link(RESULTS / check_name(name)):
             return None
         return _REFUSED | {"name": name, "error": str(exc)}
-    progress: dict[str, Any] = {}
-    with contextlib.suppress(OSError, ValueError):
-        progress = json.loads((folder.root / PROGRESS).read_text(encoding="utf-8"))
+    progress = read_record(folder.root / PROGRESS)
     works = _works(name, folder)
-    if not (works or progress or folder.gathered.is_file() or ownership.is_study(folder.root)):
+    if not (works or progress or folder.gathered.is_file() or is_study(folder.root)):
         return None
-    chunks = folder.record().get("chunks", {})
+    chunks = folder.plan().get("chunks", {})
     total = progress.get("total") or sum(chunks.values()) or None
     solved = sum(n for key, n in chunks.items() if folder.chunk(key).is_file())
     whole = folder.gathered.is_file() and solved == sum(chunks.values())
@@ -256,7 +266,7 @@ def _stats(root: Path) -> Iterator[os.stat_result]:
 @functools.lru_cache(1000)  # the list is made every few seconds, and a digest takes up to a second
 def _altered(path: Path, newest: float, size: int) -> str:
     """Return what is wrong with a result that was altered after it was written; date and size are of its folder."""
-    return (altered(path) if path.is_file() else "") or ""
+    return (why_altered(path) if path.is_file() else "") or ""
 
 
 def text_of(name: str) -> dict[str, Any]:
@@ -281,7 +291,7 @@ def page_of(name: str, page: str) -> Path:
     if page not in PAGES or path.is_symlink() or not path.is_file():
         allowed = f"{' or '.join(PAGES)} of a study that was run"
         raise InputError("page", f"{name}/{page}", allowed, "Let the study run to its end.")
-    return check_sealed(path)
+    return check_unaltered(path)
 
 
 def file_of_study(name: str, file: str) -> bytes:

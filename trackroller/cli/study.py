@@ -31,7 +31,7 @@ from trackroller.study.status import Status, find_folder, find_study, plan_rows,
 from trackroller.study.store.crate import compare_results, damaged_files, read_crate, study_of_crate, write_crate
 from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.ledger import study_folder
-from trackroller.study.store.ownership import check, is_study
+from trackroller.study.store.manifest import check_folder, is_study
 
 EXPLORER = "explorer.html"
 MOST = 20_000  # --explain examines at most this many cases of a study
@@ -242,8 +242,8 @@ def print_rerun(crate: Path, results: Path) -> int:
 
 def _check_unoccupied(study: Study, folder: StudyFolder) -> None:
     """Refuse a folder that holds anything but the unfinished results of the same study, which is then solved on."""
-    check(folder.root)
-    record = folder.record()
+    check_folder(folder.root)
+    record = folder.plan()
     begun = record.get("study") in (None, study.merged()) and not folder.gathered.exists()
     if folder.root.is_dir() and any(folder.root.iterdir()) and not (record and begun):
         wrong = "stands there already, and stays as it is"

@@ -19,10 +19,10 @@ from trackroller.materials.file import find_user_file
 from trackroller.study.cost import duration
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
+from trackroller.study.store.fingerprint import Cases
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, read_ledger, study_folder, working_ledger
-from trackroller.study.store.ownership import free_for_workflow
+from trackroller.study.store.replace import check_for_workflow
 
 CONFIG_KEYS = ("study", "results")
 _held = contextlib.ExitStack()  # keeps the lock of the study until this process ends
@@ -104,7 +104,7 @@ def workflow_ledger(config: Mapping[str, str], main: bool, tell: Tell = unheard)
     study, results = load_study(config["study"], planned=not main), config["results"]
     folder = study_folder(study.name, results)
     if main:
-        free_for_workflow(folder.create().root, tell)
+        check_for_workflow(folder.create().root)
     if study.decides:  # its rule plans each generation
         return Ledger(Cases(study), folder)
     if main:
@@ -167,7 +167,7 @@ def show_progress(folder: StudyFolder, to: TextIO = sys.stderr) -> None:
     to : text stream
         Where the message is written.
     """
-    plan = folder.record()
+    plan = folder.plan()
     total = plan["distinct"]
     done = total - sum(size for name, size in plan["chunks"].items() if not folder.chunk(name).is_file())
     line = f"{folder.root.name}: {done:,} of {total:,} cases solved ({100 * done // max(total, 1)} %)"

@@ -17,9 +17,9 @@ from trackroller.study.cost import duration
 from trackroller.study.design.growth import doubled
 from trackroller.study.file.study import Study
 from trackroller.study.run import Runner
+from trackroller.study.store.fingerprint import Cases
 from trackroller.study.store.folder import StudyFolder, Tell
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
 
 

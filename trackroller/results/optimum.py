@@ -30,11 +30,11 @@ from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
 from trackroller.study.run import Runner
+from trackroller.study.store.fingerprint import Cases
 from trackroller.study.store.folder import StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.seal import put_text
+from trackroller.study.store.replace import put_text
 
 TABLE, ELEMENTS = "kalker_table", "kalker"
 REPORTED = 10  # optima that are solved again at reference, spread along the front

@@ -21,20 +21,20 @@ from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part
-from trackroller.study.file.load import checked_keys, former_defaults, with_present_names, without_former
+from trackroller.study.file.load import checked_keys
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import STORE_FORMAT, StudyFolder
+from trackroller.study.store.code_digest import solver_digest
+from trackroller.study.store.fingerprint import Cases
+from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.gather import collect
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.inputs import MATERIALS, study_of_folder
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger
-from trackroller.study.store.ownership import check_readable
+from trackroller.study.store.manifest import STORE_FORMAT, check_readable
 from trackroller.study.store.provenance import DATE
-from trackroller.study.store.seal import digest_of, read_result
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.stored_inputs import MATERIALS, study_of_folder
+from trackroller.study.store.study_dataset import labelled
+from trackroller.study.store.verify import digests_of, read_result
 from trackroller.yaml_file import parse_mapping
 
 _REMEDY = "Run the study again."
@@ -105,7 +105,7 @@ def open_as_reported(root: Path) -> Results:
     Nothing is computed: a page or a figure that must not wait takes these results.
     """
     results, stored = open_study(root), root / "sensitivity.nc"
-    known = stored.is_file() and not results.unfinished and digest_of(stored)
+    known = stored.is_file() and not results.unfinished and digests_of(stored)
     return dataclasses.replace(results, known_indices=read_result(stored) if known else xr.Dataset())
 
 
@@ -126,15 +126,15 @@ def _gathered(path: Path) -> xr.Dataset | None:
     if path.is_dir():
         check_readable(path)
     file = StudyFolder(path).gathered if path.is_dir() else path
-    record = StudyFolder(path).record() if path.is_dir() else {}
-    planned = record.get("study")
+    plan = StudyFolder(path).plan() if path.is_dir() else {}
+    planned = plan.get("study")
     if not file.is_file() and planned is None:
         allowed = "a folder results/NAME with study.nc, or such a file"
         raise InputError("study", str(path), allowed, "Run the study to its end first.", "holds no results")
     data = read_result(file) if file.is_file() else None
     if data is None or planned not in (None, data.attrs.get("study")):
         return None
-    return data.assign_attrs({DATE: record["planned"]} if "planned" in record else {})
+    return data.assign_attrs({DATE: plan["planned"]} if "planned" in plan else {})
 
 
 def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results:
@@ -182,9 +182,8 @@ def _study(data: xr.Dataset) -> Study:
     text = data.attrs.get("study")
     if not isinstance(text, str):
         raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
-    written = parse_mapping(text, "stored study file")
-    stored, names = with_present_names(without_former(written)), json.loads(data.attrs.get(NOT_GIVEN, "[]"))
-    study = Study(checked_keys(stored), not_given=tuple(names or former_defaults(written)))
+    stored = parse_mapping(text, "stored study file")
+    study = Study(checked_keys(stored), not_given=tuple(json.loads(data.attrs.get(NOT_GIVEN, "[]"))))
     if changed := _changed(stored, study.as_dict()):
         allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"
         raise InputError("study", str(stored.get("name", "")), allowed, _REMEDY, wrong)

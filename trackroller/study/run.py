@@ -14,15 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import xarray as xr
 
-from trackroller.files import interrupts_wait_for_files
+from trackroller.files import interrupts_wait_for_files, locked
 from trackroller.study.cluster import workers
 from trackroller.study.solve_chunk import Executor, Solver, solve_chunk, solve_here
 from trackroller.study.store import chunks
-from trackroller.study.store.folder import Count, StudyFolder, Tell, locked, unheard
+from trackroller.study.store.fingerprint import Cases
+from trackroller.study.store.folder import Count, StudyFolder, Tell, unheard
 from trackroller.study.store.gather import gather
-from trackroller.study.store.identity import Cases
-from trackroller.study.store.labels import labelled
 from trackroller.study.store.ledger import Ledger, study_folder, working_ledger
+from trackroller.study.store.study_dataset import labelled
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

@@ -5,8 +5,8 @@ from pathlib import Path
 from trackroller.cli.workflow import log_to
 from trackroller.report.pages.study import write_report
 from trackroller.results.stored_study import open_study
-from trackroller.study.store.seal import check_sealed
+from trackroller.study.store.verify import check_unaltered
 
 log_to(snakemake.log[0], "write the report")
 results = open_study(snakemake.input.study, snakemake.input.sensitivity)
-write_report(results, check_sealed(Path(snakemake.input.figures)), Path(snakemake.output[0]))
+write_report(results, check_unaltered(Path(snakemake.input.figures)), Path(snakemake.output[0]))

@@ -10,7 +10,7 @@ import trackroller as tr
 from trackroller.parameters.example import EXAMPLE, drive_question, not_given, not_given_text
 from trackroller.report.words.in_short import in_short
 from trackroller.roller.record import not_given_of
-from trackroller.study.store.identity import Cases
+from trackroller.study.store.fingerprint import Cases
 
 STUDY = """
 name: hall

@@ -48,7 +48,7 @@ from trackroller.results.results import Results
 from trackroller.roller.dataset import solved_by
 from trackroller.roller.doubts import doubts
 from trackroller.roller.record import NOT_GIVEN, names_not_given
-from trackroller.study.store.seal import put_text, sealing
+from trackroller.study.store.replace import put_text, replacing
 
 MAX_SVG = 1_500_000  # bytes; a larger drawing goes in as PNG
 OPTIONS = tuple(option.name for option in parameters.OPTIONS.values() if option.recorded)
@@ -107,7 +107,7 @@ def write_report(results: Results, figures_dir: Path, out_html: Path) -> Path:
     """
     content = contents(results)
     put_text(Path(out_html), page_text(results, content, figures_dir))
-    with sealing(Path(out_html).with_name("tables")) as beside:
+    with replacing(Path(out_html).with_name("tables")) as beside:
         export([t for listed in content["tables"].values() for t in listed], beside)
     return Path(out_html)
 

@@ -19,10 +19,9 @@ import xarray as xr
 from trackroller.files import memory
 from trackroller.parameters import REGIMES
 from trackroller.roller.dataset import file_attributes, joined
-from trackroller.study.store.digests import sums_up
-from trackroller.study.store.identity import chunk_name
+from trackroller.study.store.fingerprint import chunk_name
 from trackroller.study.store.netcdf import too_large
-from trackroller.study.store.ownership import write as write_own
+from trackroller.study.store.replace import put_block
 
 FAILED = REGIMES.index("failed")
 _ATTRIBUTES = file_attributes("Cases of a parameter study of track rollers, named by their fingerprints", "solved")
@@ -79,7 +78,7 @@ def write(path: Path, block: xr.Dataset, packed: bool = False) -> None:
         with open(beside, "ab") as stream:
             stream.write(digest)
 
-    write_own(path, save)
+    put_block(path, save)
 
 
 @contextlib.contextmanager
@@ -89,10 +88,12 @@ def _opened(path: Path) -> Iterator[tuple[netCDF4.Dataset, np.ndarray]]:
     Raise `CorruptFile` if the file was altered or holds other cases than its name says: the name of a chunk and of its
     list is the hash of their cases.
     """
+    if path.exists() and not path.is_file():
+        raise CorruptFile(path, "it is no regular file")
     if path.stat().st_size > memory():
         raise CorruptFile(path, "it is larger than the memory")
     content = path.read_bytes()
-    if not sums_up(content):
+    if hashlib.sha256(content[:-32]).digest() != content[-32:]:
         raise CorruptFile(path, "its content does not fit its checksum")
     with netCDF4.Dataset(path.name, memory=content[:-32]) as file:
         if excess := too_large(file, len(content)):

@@ -14,7 +14,7 @@ import contextlib
 import hashlib
 import json
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from pathlib import Path
@@ -24,7 +24,7 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError, WorkError
-from trackroller.files import sha256, try_lock
+from trackroller.files import sha256, try_lock, wait_for_lock
 from trackroller.methods import METHODS
 from trackroller.numerics.numbers import all_equal
 from trackroller.study.cost import study_rate
@@ -32,15 +32,14 @@ from trackroller.study.design.build import case_columns
 from trackroller.study.design.growth import sample_of
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.config import check_name
-from trackroller.study.file.load import without_former
-from trackroller.study.store import chunks, digests, ownership
-from trackroller.study.store.folder import StudyFolder, Tell, unheard, wait_for_lock
-from trackroller.study.store.identity import Cases, chunk_name, solver_and_materials
-from trackroller.study.store.inputs import store_inputs
-from trackroller.study.store.ownership import MADE_BY
+from trackroller.study.store import chunks
+from trackroller.study.store.code_digest import solver_digest
+from trackroller.study.store.fingerprint import Cases, chunk_name, solver_and_materials
+from trackroller.study.store.folder import StudyFolder, Tell, unheard
+from trackroller.study.store.manifest import CRATE, Manifest
 from trackroller.study.store.provenance import now
-from trackroller.study.store.seal import discard
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.replace import remove, remove_proved, sweep
+from trackroller.study.store.stored_inputs import store_inputs
 from trackroller.yaml_file import parse_mapping
 
 if TYPE_CHECKING:
@@ -154,7 +153,7 @@ class Ledger:
             solved = block.isel(case=(block["regime"] != chunks.FAILED).values)
             if solved.sizes["case"]:
                 chunks.write(self.folder.chunk(chunk_name(solved["case"].values)), solved, packed=True)
-            ownership.remove(self.paths[number], self.folder.root)
+            remove_proved(self.paths[number])
         return len(failed)
 
 
@@ -185,29 +184,30 @@ def plan_key(study: Study) -> str:
 
 def read_ledger(study: Study, folder: StudyFolder) -> Ledger | None:
     """Return the ledger on the disk, or None if it is missing or was made for another version of the study."""
-    record = folder.record()
+    record = folder.plan()
     if record.get("key") != plan_key(study):
         return None
     return Ledger(Cases(study), folder, record["chunks"], record["size"], record["distinct"], tuple(record["uses"]))
 
 
-def sound_ledger(found: Ledger) -> tuple[Ledger | None, list[str]]:
-    """Return the ledger on the disk if it accounts for every case, and a line on each damaged case list.
+def sound_ledger(found: Ledger) -> Ledger | None:
+    """Return the ledger on the disk if it accounts for every case.
 
     Each case must be in a solved file or in the sound list of an open chunk, and no case of an open chunk may be solved
     already, as it is after a process was killed while it forgot failed cases.
     """
-    folder, ledger = found.folder, read_ledger(found.study, found.folder)
-    if ledger is None:
-        return None, []
-    sound, damaged = set(ledger.uses) <= {path.name for path in found.paths}, []
+    folder = found.folder
+    ledger = read_ledger(found.study, folder)
+    if ledger is None or not set(ledger.uses) <= {path.name for path in found.paths}:
+        return None
     for name in ledger.chunks:
         try:
             listed = chunks.check(folder.case_list(name))
-            sound &= folder.chunk(name).is_file() or bool((found.find(listed) < 0).all())
-        except (chunks.CorruptFile, FileNotFoundError) as exc:
-            damaged.append(f"corrupt or missing case list, its cases are planned anew: {exc}")
-    return (ledger if sound and not damaged else None), damaged
+        except (chunks.CorruptFile, FileNotFoundError):
+            return None
+        if not folder.chunk(name).is_file() and (found.find(listed) >= 0).any():
+            return None
+    return ledger
 
 
 def planned(found: Ledger) -> Ledger:
@@ -293,22 +293,25 @@ def _levels_of(study: Study, rows: np.ndarray) -> list[str]:
     return words
 
 
-def record_of(ledger: Ledger, inputs: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the record of a ledger, which `read_ledger` reads: what it was made from, and its chunks."""
-    return {
-        **MADE_BY,
-        "key": plan_key(ledger.study),
+def plan_of(ledger: Ledger) -> dict[str, Any]:
+    """Return the plan of a ledger, which `read_ledger` reads: what it was made from, and its chunks."""
+    study = ledger.study
+    plan = {
+        "key": plan_key(study),
         "solver_digest": solver_digest(),
-        "name": ledger.study.name,
-        "study": ledger.study.merged(),
-        "not_given": list(ledger.study.not_given),
-        "inputs": dict(inputs),
+        "name": study.name,
+        "study": study.merged(),
+        "not_given": list(study.not_given),
         "size": ledger.size,
         "distinct": ledger.distinct,
         "chunks": ledger.chunks,
         "uses": list(ledger.uses),
-        **({"grown": list(ledger.study.grown), "sample": sample_of(ledger.study)} if ledger.study.grown else {}),
     }
+    if study.grown:
+        plan |= {"grown": list(study.grown), "sample": sample_of(study)}
+    earlier = ledger.folder.plan()
+    same = earlier.get("study") == plan["study"]
+    return plan | {"planned": earlier.get("planned", now()) if same else now()}
 
 
 @contextlib.contextmanager
@@ -358,60 +361,59 @@ def working_ledger(
 
 
 def _plan(study: Study, folder: StudyFolder, tell: Tell, rerun_failed: bool) -> Ledger:
-    """Remove damaged files, and plan anew unless the ledger on the disk accounts for every case."""
+    """Plan anew, unless the ledger on the disk accounts for every case."""
     if folder.of_another_solver:
         tell(f"the solver's code has changed since {folder.root} was planned: all its cases are solved anew")
     _check_same_study(study, folder)
-    for path in (folder.design, folder.gathered, folder.root / digests.METADATA):
-        ownership.make_way(path, folder.root, lambda line: tell(f"{line}, and made anew"))
-    _set_damaged_aside(found := Ledger(Cases(study), folder), tell)
+    found = Ledger(Cases(study), folder)
+    _check_files(found)
+    sweep(folder.root)
     if rerun_failed:
         tell(f"{found.forget_failed()} failed cases are solved again")
         found = found.anew()
-    ledger, damaged = sound_ledger(found)
-    for line in damaged:
-        tell(line)
+    ledger = sound_ledger(found)
     if ledger is None:
         ledger = planned(found)
         if found.paths and (unused := unused_cases(found)):
             tell(unused)
-        discard(folder.design)
-    _keep(ledger, tell)
+        remove(folder.root, folder.design.name)
+    _keep(ledger)
     return ledger.anew()
 
 
 def _check_same_study(study: Study, folder: StudyFolder) -> None:
     """Refuse the folder of another study that was given the name of this one; a study may have been renamed itself."""
-    earlier, now = without_former(folder.earlier()), parse_mapping(study.merged(), "study file")
+    earlier = folder.earlier()
+    stated = parse_mapping(study.merged(), "study file")
     other = earlier.get("name", study.name)
-    if other != study.name and any(earlier.get(key) != now.get(key) for key in ("base", "factors")):
+    if other != study.name and any(earlier.get(key) != stated.get(key) for key in ("base", "factors")):
         remedy = "Give this study another name, choose another --results, or rename the folder."
         wrong = f"holds the study '{other}', which has other inputs"
         raise InputError("results folder", str(folder.root), "a folder of this study", remedy, wrong)
 
 
-def _set_damaged_aside(ledger: Ledger, tell: Tell) -> None:
-    """Move damaged files of solved cases away, and remove temporary files."""
-    for path, why in ledger.corrupt.items():
-        kept = ownership.set_aside(ledger.folder.root, path)
-        tell(f"corrupt results, their cases are solved again, and the file is kept as {kept}: {why}")
-    ownership.sweep(ledger.folder.root)
+def _check_files(found: Ledger) -> None:
+    """Refuse damaged files of solved or planned cases, and what stands in the place of a result."""
+    folder = found.folder
+    manifest = Manifest(folder.root)
+    results = [folder.design, folder.gathered, folder.root / CRATE]
+    results += [folder.root / name for name in manifest.below(folder.inputs)]
+    lists = [folder.case_list(name) for name in folder.plan().get("chunks", {})]
+    marks = [folder.mark(name) for name in folder.plan().get("chunks", {})]
+    manifest.check(*results, *lists, *marks, damaged=found.corrupt)
 
 
-def _keep(ledger: Ledger, tell: Tell) -> None:
-    """Write the record of a ledger after its inputs, and remove the files of earlier plans."""
-    folder, earlier = ledger.folder, ledger.folder.record()
-    record = record_of(ledger, store_inputs(ledger.study, folder, ledger.cases.design))
-    record["planned"] = earlier.get("planned", now()) if earlier.get("study") == record["study"] else now()
-    if record != earlier:
-        folder.write_record(record, tell)
+def _keep(ledger: Ledger) -> None:
+    """Write the plan of a ledger after its inputs, and remove the files of earlier plans."""
+    folder = ledger.folder
+    store_inputs(ledger.study, folder, ledger.cases.design)
+    folder.write_plan(plan_of(ledger))
     for path in folder.lock.parent.iterdir():
         of_chunk = path.suffix in (".nc", ".solved", ".lock") and not path.name.startswith(".")
         if of_chunk and path.stem not in ledger.chunks:
-            ownership.remove(path, folder.root)
+            remove_proved(path)
     for name in ledger.chunks:
         mark = folder.mark(name)
-        ownership.make_way(mark, folder.root)
         if not folder.chunk(name).is_file():
             mark.unlink(missing_ok=True)
         elif not mark.is_file():  # a mark keeps its date, on which the workflow's rules depend

@@ -17,8 +17,8 @@ from trackroller.damage.own import digests
 from trackroller.parameters import OPTIONS
 from trackroller.roller.dataset import file_attributes
 from trackroller.roller.record import NOT_GIVEN
-from trackroller.study.store.folder import STORE_FORMAT
-from trackroller.study.store.sources import solver_digest
+from trackroller.study.store.code_digest import solver_digest
+from trackroller.study.store.manifest import STORE_FORMAT
 
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study

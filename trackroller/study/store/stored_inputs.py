@@ -22,15 +22,16 @@ from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.study.design.growth import as_planned
 from trackroller.study.file.load import load_study
 from trackroller.study.file.study import Study
-from trackroller.study.store import ownership
 from trackroller.study.store.folder import StudyFolder
-from trackroller.study.store.seal import altered, recorded, sealing
+from trackroller.study.store.manifest import check_readable
+from trackroller.study.store.replace import replacing
+from trackroller.study.store.verify import check_unaltered
 
 MATERIALS = "materials.yaml"
 
 
-def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[str, dict[str, str]]:
-    """Write the inputs of a study into its folder, and remove the inputs of an earlier version.
+def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> None:
+    """Write the inputs of a study into its folder, and remove the inputs of an earlier plan.
 
     Parameters
     ----------
@@ -42,15 +43,10 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
         Its cases, which name its materials: the fits of these are stored as well, because the range of a life by tests
         rests on them.
 
-    Returns
-    -------
-    dict
-        For each file in `inputs/` its `sha256`.
-
     Raises
     ------
     InputError
-        If a file of somebody else stands in the place of an input.
+        If a file of somebody else, or a changed one, stands in the place of an input.
     WorkError
         If an input was edited after the study was loaded, or the folder cannot be written.
     """
@@ -66,14 +62,10 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
             contents |= {f"{FITS}/{fit.name}": read_bytes(fit, "fit") for fit in fits}
     table = None if study.config.table is None else Path(study.config.table).name
     contents[folder.study_file.name] = study.merged(table=table).encode()
-    stored = {name: hashlib.sha256(content).hexdigest() for name, content in contents.items()}
-    known = {f"{folder.inputs.name}/{name}": digest for name, digest in stored.items()}
-    if recorded(folder.inputs) != known or altered(folder.inputs):
-        with sealing(folder.inputs) as beside:
-            for name, content in contents.items():
-                (beside / name).parent.mkdir(parents=True, exist_ok=True)
-                (beside / name).write_bytes(content)
-    return {name: {"sha256": digest} for name, digest in stored.items()}
+    with replacing(folder.inputs) as beside:
+        for name, content in contents.items():
+            (beside / name).parent.mkdir(parents=True, exist_ok=True)
+            (beside / name).write_bytes(content)
 
 
 def check_inputs(folder: StudyFolder, inputs: Reads) -> None:
@@ -88,7 +80,7 @@ def check_inputs(folder: StudyFolder, inputs: Reads) -> None:
     """
     for path, (_, digest) in inputs.items():
         now = sha256(path) if path.is_file() else "no file"
-        if now != digest and not _says_the_same(path, folder.record().get("study", "")):
+        if now != digest and not _says_the_same(path, folder.plan().get("study", "")):
             _compare(path, digest, now)
 
 
@@ -114,27 +106,15 @@ def study_of_folder(folder: StudyFolder) -> Study:
     Raises
     ------
     WorkError
-        If a stored input or the record of the plan was altered.
+        If a stored input was altered.
     InputError
-        If the study file is not accepted.
+        If the study file is not accepted, or `plan.json` is not ours.
     """
-    record = folder.record()
-    ownership.check(folder.root)
-    if not record and folder.plan_file.exists():
-        raise WorkError(
-            f"{folder.plan_file} was altered or damaged (its digest differs), or another version wrote it. Start "
-            "`trackroller run` with the study file: it plans anew and keeps every case that is still valid."
-        )
-    for name, stored in record.get("inputs", {}).items():
-        path = folder.inputs / name
-        now = sha256(path) if path.is_file() else "no file"
-        if now != stored["sha256"]:
-            raise WorkError(
-                f"{path} was altered after it was written: its SHA-256 was {stored['sha256']} and is {now}. Start "
-                "`trackroller run` with the study file: it stores its inputs again."
-            )
+    check_readable(folder.root)
+    check_unaltered(folder.inputs)
+    plan = folder.plan()
     materials = folder.inputs / MATERIALS
     with noted_reads():
         database = load_database(materials) if materials.is_file() else builtin_database()
-        study = as_planned(load_study(folder.study_file, database), record)
-    return dataclasses.replace(study, not_given=tuple(record.get("not_given", study.not_given)))
+        study = as_planned(load_study(folder.study_file, database), plan)
+    return dataclasses.replace(study, not_given=tuple(plan.get("not_given", study.not_given)))

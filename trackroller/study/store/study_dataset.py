@@ -63,7 +63,7 @@ def labelled(study: Study, drawn: Design, cases: xr.Dataset, solved: xr.Dataset)
 
 def _attributes(study: Study, design: xr.Dataset, attrs: Mapping[str, Any]) -> dict[str, Any]:
     """Return the global attributes: what the solver wrote, and what is needed to repeat the study."""
-    own = {*study.factors, "seconds", "date_solved"}  # earlier versions dated their chunks
+    own = {*study.factors, "seconds"}
     kept = {k: v for k, v in attrs.items() if isinstance(v, (str, int, float)) and k not in own}
     # what `solve` recorded of its materials holds, whatever the database says by now
     materials = attrs[MATERIALS] if MATERIALS in attrs else materials_of_design(design, study.materials)

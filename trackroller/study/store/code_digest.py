@@ -7,7 +7,7 @@ versions of the program rarely differ by comments alone, and no rule has to say 
 The solver's digest is part of each case's fingerprint (`solver_digest`). Rules of the workflow depend on a digest file
 instead of on source files, because the date of a source file changes when a copy is made::
 
-    from trackroller.study.store.sources import digest_file
+    from trackroller.study.store.code_digest import digest_file
 
     rule sensitivity:
         input:
@@ -18,7 +18,7 @@ instead of on source files, because the date of a source file changes when a cop
 
 Examples
 --------
->>> from trackroller.study.store.sources import code_digest, room_files
+>>> from trackroller.study.store.code_digest import code_digest, room_files
 >>> [path.name for path in room_files("errors")]
 ['environment.py', 'errors.py']
 >>> len(code_digest("errors"))
@@ -33,7 +33,7 @@ from functools import cache
 from pathlib import Path
 
 from trackroller.damage.own import digests
-from trackroller.study.store.ownership import write_text
+from trackroller.study.store.replace import put_text
 
 PACKAGE = Path(__file__).resolve().parents[2]
 SOLVER = "roller"  # the last room that decides the numbers of a case
@@ -141,5 +141,5 @@ def digest_file(folder: str | Path, last: str, *beside: str, leave_out: Iterable
     path = Path(folder) / f"{'.'.join([last, *(Path(name).stem for name in beside[:1])])}.txt"
     digest = code_digest(last, *beside, leave_out=leave_out) + "\n"
     if not path.is_file() or path.read_text(encoding="utf-8") != digest:
-        write_text(path, digest)
+        put_text(path, digest)
     return str(path)
