@@ -66,7 +66,7 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
         Column("best", "Best", units, f"{words}: best condition that is held", role="bar"),
         Column("worst", "Worst condition", "", "the levels of the condition at the low end", "text"),
         Column("ends", "Ended by", "", "what ends the candidate at the low end of its worst condition", "text"),
-        Column("ends_high", "At the high end", "", "what ends the candidate at the high end of its range", "text"),
+        *_ends_apart(table),
         Column("holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"),
         Column("judged", "Judged", "", "conditions that the model can judge", "count"),
     ]
@@ -118,6 +118,13 @@ def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...
             Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
         )
     return tuple(columns)
+
+
+def _ends_apart(table: pd.DataFrame) -> list[Column]:
+    """Return the column of what ends candidates at the high end; none if it is the same as at the low end."""
+    if (table["ends"] == table["ends_high"]).all():
+        return []
+    return [Column("ends_high", "At the high end", "", "what ends the candidate at the high end of its range", "text")]
 
 
 def _ends(own: Comparison) -> dict[str, Any]:
