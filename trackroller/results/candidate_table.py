@@ -238,8 +238,8 @@ def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list
     if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
         return ["none" if gone else "" for gone in never]
     if own.drawn:
-        short, long = _share_ends(table) if not exact else (table["share"], table["share"])
-        surely, perhaps = np.asarray(short >= own.wanted_share), np.asarray(long >= own.wanted_share)
+        ends = ("share", "share") if exact else ("share_short", "share_long")
+        surely, perhaps = (table[name].to_numpy() >= own.wanted_share for name in ends)
     else:
         sure, may = own.met(exact)
         surely = _everywhere(own, sure)
@@ -280,14 +280,6 @@ def _shares(own: Comparison) -> dict[str, Any]:
         "median_low": middle[:, 0],
         "median_high": middle[:, 1],
     }
-
-
-def _share_ends(table: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
-    """Return the ends of the share of each candidate by both of its ranges together, shape (candidates,) each."""
-    size = table["n"].to_numpy()
-    low = wilson(table["share_short"].to_numpy() * size, size)[0]
-    high = wilson(table["share_long"].to_numpy() * size, size)[1]
-    return low, high
 
 
 def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:

@@ -153,8 +153,6 @@ class Decider:
             return Decision("cannot_tell", order, [], "model")
         leader = known[0]
         order = [leader, *(n for n in order if n != leader)]
-        if self.own.drawn:
-            return Decision("solve_finer", order, [leader], "sample")
         if states_of(self.own, self.table, exact=True)[leader] != "open":
             return Decision("solve_finer", order, [leader], "error")
         least = max((one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan)
@@ -337,7 +335,8 @@ def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
     met = (table["state"] == "met").to_numpy()
     order = np.argsort(levels)
     hits = np.flatnonzero(met[order])
-    if not len(hits) or len(hits) == len(levels) or hits[-1] - hits[0] + 1 != len(hits):
+    contiguous = len(hits) > 1 and hits[-1] - hits[0] + 1 == len(hits)
+    if not contiguous or len(hits) == len(levels):
         return {}
     told = {}
     if hits[0] > 0:
