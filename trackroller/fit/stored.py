@@ -13,9 +13,9 @@ import numpy as np
 import xarray as xr
 
 from trackroller.errors import InputError
-from trackroller.fit.bench import DEFAULTS
 from trackroller.fit.line import Interval, Line, Tests
 from trackroller.fit.posterior import Posterior
+from trackroller.fit.solved_rollers import DEFAULTS
 from trackroller.materials.file import find_user_file, posterior_path
 from trackroller.parameters import BODIES
 from trackroller.roller.record import materials_of

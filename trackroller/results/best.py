@@ -43,7 +43,7 @@ from trackroller.results.judging import (
 )
 from trackroller.results.lives import OF_PAIR
 from trackroller.results.requirement import required_of
-from trackroller.results.results import SAME_ENDS, Results
+from trackroller.results.solved_cases import SAME_ENDS, SolvedCases
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import in_words
 from trackroller.study.file.search import judged_by
@@ -71,7 +71,7 @@ class _Found:
     search : what it found, see `optimum_of`
     """
 
-    results: Results
+    results: SolvedCases
     search: Mapping[str, Any]
 
     @cached_property
@@ -169,12 +169,12 @@ class _Found:
         return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
 
 
-def answer_of_search(results: Results) -> Answer:
+def answer_of_search(results: SolvedCases) -> Answer:
     """Return the answer of a search.
 
     Parameters
     ----------
-    results : Results
+    results : SolvedCases
         A solved study with `method: optimise`.
 
     Returns

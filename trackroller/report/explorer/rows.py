@@ -16,6 +16,7 @@ from trackroller.parameters.of_carriage import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import BEYOND, capital, level_text, long_name, plain, unit_text
 from trackroller.report.tables.inputs import stored_materials
+from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.columns import BODY_RESULTS, CONTACT_RESULTS, WHOLE_RESULTS
 from trackroller.results.first_limits import first_limit
 from trackroller.results.groups import spaced_by_ratio
@@ -126,7 +127,7 @@ def _beyond(results: Results, columns: Sequence[Column]) -> list[Column]:
     """
     remarks = []
     for column in (c for c in columns if c.role == "output" and is_life(c.name)):
-        marks = results.beyond_data(column.name) & ~np.isnan(column.values)
+        marks = beyond_sn_data(results, column.name) & ~np.isnan(column.values)
         if marks.any():
             name = f"{column.name}:beyond"
             remarks.append(Column(name, BEYOND, "", "remark", marks.astype(int), (0.0, 1.0), ("", BEYOND)))
