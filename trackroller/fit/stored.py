@@ -85,7 +85,11 @@ def stored_fit(name: str, values: Mapping[str, Any], file: Path | None = None) -
     path = None if file is None else posterior_path(file, name)
     if path is None or not path.is_file():
         return None
-    found = _read(path, name, path.stat().st_mtime_ns)
+    try:
+        found = _read(path, name, path.stat().st_mtime_ns)
+    except KeyError as missing:
+        allowed = "a file that `trackroller fit` of this version wrote"
+        raise InputError("fit", str(path), allowed, "Fit the tests again.", f"lacks {missing}") from None
     if found is None:
         return None
     fit, strength = found
