@@ -19,10 +19,10 @@ from trackroller.contact.wedge import determinant, own_change
 from trackroller.numerics.numbers import rounded
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
+from trackroller.roller.distinct_contacts import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.roller.expected_errors import expected_errors
 from trackroller.roller.geometry import contact_geometry, lever_arms
 from trackroller.roller.options import Options
-from trackroller.roller.requirements import Mirror, is_frictionless, is_mirror_symmetric
 from trackroller.roller.stages.models import bodies, model_of
 from trackroller.roller.stages.scene import Scene, StageResults, surface_tractions
 from trackroller.roller.stop import stops_at

@@ -16,7 +16,7 @@ from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
 from trackroller.roller.dataset import VARIABLES, validity_bit
-from trackroller.roller.requirements import Mirror
+from trackroller.roller.distinct_contacts import Mirror
 
 JAMMING = validity_bit("jamming")
 _LENGTHS = {"mm": 1, "mm2": 2, "N": 2, "J m-1": 2, "N mm": 3}  # N = MPa mm2, J m-1 = N
