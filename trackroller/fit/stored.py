@@ -18,7 +18,7 @@ from trackroller.fit.posterior import Posterior
 from trackroller.fit.solved_rollers import DEFAULTS
 from trackroller.materials.file import find_user_file, posterior_path
 from trackroller.parameters import BODIES
-from trackroller.roller.record import materials_of
+from trackroller.roller.stored_inputs import materials_of
 
 SAME = 1e-6  # relative difference of values of a material and of its fit that rounding may cause
 

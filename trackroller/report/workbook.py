@@ -27,7 +27,7 @@ from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.table import Table, cell
 from trackroller.results.answer import Answer
 from trackroller.results.results import Results
-from trackroller.roller import record
+from trackroller.roller import stored_inputs as record
 from trackroller.roller.aliases import RADII
 from trackroller.roller.dataset import FLAGS
 from trackroller.roller.duty import duty_of, years

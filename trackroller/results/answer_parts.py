@@ -21,7 +21,7 @@ from trackroller.results.places import level_text, places_of, places_text
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.limit_notes import given_in_vain
 from trackroller.roller.output_names import is_life
-from trackroller.roller.record import names_not_given
+from trackroller.roller.stored_inputs import names_not_given
 from trackroller.study.outputs import flat
 from trackroller.study.store.provenance import DATE
 

@@ -17,7 +17,7 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.results.results import Results
-from trackroller.roller.record import NOT_GIVEN
+from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part

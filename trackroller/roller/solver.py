@@ -24,7 +24,6 @@ from trackroller.roller.expected_errors import tell_errors
 from trackroller.roller.failures import with_reasons
 from trackroller.roller.limit_notes import notes_on_limits
 from trackroller.roller.options import Options, model_in_use, options_of_cases
-from trackroller.roller.record import with_coordinates, with_design, with_inputs
 from trackroller.roller.reflection import handed, reflect
 from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import outcome as stages_outcome
@@ -32,6 +31,7 @@ from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.models import depends_on_smoothing, finer_across
 from trackroller.roller.stages.scene import StageResults
+from trackroller.roller.stored_inputs import with_coordinates, with_design, with_inputs
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
 

@@ -23,7 +23,7 @@ from trackroller.results.groups import spaced_by_ratio
 from trackroller.results.results import Results
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
-from trackroller.roller.record import setting_text
+from trackroller.roller.stored_inputs import setting_text
 from trackroller.study.design.levels import NAMED
 from trackroller.study.file import goals
 from trackroller.study.outputs import Output, default_names, flat, outputs, parts_in
