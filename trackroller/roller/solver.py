@@ -17,7 +17,7 @@ from trackroller.parameters import CONTACT_MODELS, MECHANICAL_MAPPINGS, OPTIONS
 from trackroller.parameters.accuracy import RUNGS, Accuracy
 from trackroller.parameters.contact_models import DECLARED
 from trackroller.roller import distinct_contacts, temperature
-from trackroller.roller.blocks import Block, join
+from trackroller.roller.block_results import Block, join
 from trackroller.roller.case import Case, CaseTable, is_single, to_table
 from trackroller.roller.dataset import NOTES, VARIABLES, build, file_attributes, joined
 from trackroller.roller.expected_errors import tell_errors

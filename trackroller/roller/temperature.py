@@ -20,7 +20,7 @@ import numpy as np
 
 from trackroller.materials.temperature import FOLLOW_STRENGTH, TABLED, TemperatureTable
 from trackroller.parameters import BODIES
-from trackroller.roller.blocks import Block, join
+from trackroller.roller.block_results import Block, join
 
 if TYPE_CHECKING:
     import xarray as xr

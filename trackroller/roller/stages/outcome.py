@@ -24,7 +24,7 @@ from trackroller.roller.stages.scene import StageResults, surface_tractions
 from trackroller.roller.table import TEXTS
 
 if TYPE_CHECKING:
-    from trackroller.roller.blocks import Block
+    from trackroller.roller.block_results import Block
     from trackroller.roller.options import Options
 
 LIFE_CONVENTIONS = (
