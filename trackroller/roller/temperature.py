@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     import xarray as xr
     from numpy.typing import ArrayLike
 
+    from trackroller.roller.case_table import CaseTable, MaterialArrays
     from trackroller.roller.options import Options
-    from trackroller.roller.table import CaseTable, MaterialArrays
 
 TOLERANCE = 0.005  # change of the temperature in the last pass [K]
 PASSES = 10

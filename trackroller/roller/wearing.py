@@ -24,13 +24,13 @@ from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, local_rate
 from trackroller.errors import InputError
 from trackroller.parameters import REGIMES
 from trackroller.roller import equilibrium as eq
+from trackroller.roller.case_table import CaseTable
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.options import Options, model_in_use
 from trackroller.roller.stages.balance import balance
 from trackroller.roller.stages.mechanics import dissipation, prepare
 from trackroller.roller.stages.models import bodies, finer_across
 from trackroller.roller.stages.scene import StageResults, surface_tractions
-from trackroller.roller.table import CaseTable
 
 REACH = 20.0  # half width of the cells over the lateral semi-axis of the new patch
 TOLERANCE = 0.02  # largest error of the depth in a step over the elastic approach of the new bodies

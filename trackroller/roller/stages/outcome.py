@@ -19,9 +19,9 @@ from trackroller.numerics.rows import distinct
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.case import CaseTable
+from trackroller.roller.case_table import TEXTS
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.stages.scene import StageResults, surface_tractions
-from trackroller.roller.table import TEXTS
 
 if TYPE_CHECKING:
     from trackroller.roller.block_results import Block
