@@ -9,10 +9,10 @@ import xarray as xr
 from reference_cases import solve_sliding
 
 import trackroller as tr
-from trackroller.contact.common import Elastic, Ellipse, Resultants
 from trackroller.contact.friction_laws import constant, exponential_falling, law_of, linear_falling, table
 from trackroller.contact.hertz import HertzShape
 from trackroller.contact.models import contact_model
+from trackroller.contact.quantities import Elastic, Ellipse, Resultants
 from trackroller.contact.sliding import integrals
 from trackroller.contact.slip import Slip
 from trackroller.errors import InputError

@@ -13,11 +13,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
 from trackroller.contact.friction_laws import FrictionLaw, constant
 from trackroller.contact.kalker.kalker_model import KalkerModel
 from trackroller.contact.normal.patches import Patches
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Elastic
 from trackroller.contact.rollers import Rollers
 from trackroller.contact.sliding_model import SlidingModel
 from trackroller.contact.table.table_model import TableModel

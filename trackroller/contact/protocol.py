@@ -1,7 +1,7 @@
 """Interface of a contact model: the methods of every model, and the capabilities that it declares.
 
 The solver uses this interface and that of a `Patch` only, and never asks for the class of a model or of a patch.
-Arrays, units and the contact frame are those of `trackroller.contact.common`.
+Arrays, units and the contact frame are those of `trackroller.contact.quantities`.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import ModelDeclaration
 

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Patch, Resultants, SurfaceTractions
 from trackroller.contact.friction_laws import FrictionLaw, constant
+from trackroller.contact.quantities import Ellipse, Patch, Resultants, SurfaceTractions
 from trackroller.contact.sliding_kernels import Patches, Rule, Sums, integrate
 from trackroller.contact.slip import (
     Slip,

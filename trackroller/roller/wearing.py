@@ -13,12 +13,12 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Resultants
 from trackroller.contact.cross_sections import Gap
 from trackroller.contact.drawn_profiles import gap, treats_sides_alike, with_wear
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.wearing import WearingPatch, evened_at_rims, on_cells, smoothed
+from trackroller.contact.quantities import Resultants
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, local_rates
 from trackroller.errors import InputError

@@ -12,7 +12,6 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact import kalker
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.grid_patch import GridPatch
 from trackroller.contact.kalker.law import KalkerLaw
 from trackroller.contact.normal import patch_sliding as normal_sliding
@@ -20,6 +19,7 @@ from trackroller.contact.normal.measure import roughness
 from trackroller.contact.normal.patches import Patches, Pressing
 from trackroller.contact.normal.pressure import TOLERANCE
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions, Works
 from trackroller.contact.rollers import Rollers
 from trackroller.contact.slip import Slip
 from trackroller.parameters.contact_models import DECLARED

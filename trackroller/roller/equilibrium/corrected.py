@@ -7,7 +7,7 @@ from dataclasses import fields, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants
+from trackroller.contact.quantities import Resultants
 from trackroller.roller.equilibrium.newton import Bounds, digits_of_forces, newton_polish, settled
 from trackroller.roller.equilibrium.roller import LAST_SLIP, ContactLaw, Loads, Roller
 from trackroller.roller.equilibrium.solution import FAILED, ROLLING, Equilibrium, solve_equilibrium

@@ -11,8 +11,8 @@ from functools import cached_property
 
 import numpy as np
 
-from trackroller.contact.common import Ellipse, Resultants
 from trackroller.contact.hertz import HertzShape
+from trackroller.contact.quantities import Ellipse, Resultants
 from trackroller.contact.slip import Slip
 from trackroller.contact.wedge import determinant
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from trackroller.contact.common import Resultants
+from trackroller.contact.quantities import Resultants
 from trackroller.contact.sliding import tractions_full_slip
 from trackroller.parameters import REGIMES
 from trackroller.roller.equilibrium.branch import follow_friction, self_locking

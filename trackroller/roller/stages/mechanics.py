@@ -9,11 +9,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from trackroller.contact.common import Elastic, error_of_work
 from trackroller.contact.drawn_profiles import inclined
 from trackroller.contact.friction_laws import law_of
 from trackroller.contact.hertz import contact_modulus, shape
 from trackroller.contact.normal.patches import Boxes
+from trackroller.contact.quantities import Elastic, error_of_work
 from trackroller.contact.slip import pole_rolling, turning_of
 from trackroller.contact.wedge import determinant, own_change
 from trackroller.numerics.numbers import rounded

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.contact.common import Elastic
 from trackroller.contact.drawn_profiles import gap, has_details, smoothed_otherwise, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
@@ -16,6 +15,7 @@ from trackroller.contact.models import contact_model
 from trackroller.contact.normal.family import Family, nearest_lattice
 from trackroller.contact.normal.patches import Boxes, GapOf, Patches
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Elastic
 from trackroller.errors import ShapeError
 from trackroller.roller.case import CaseTable
 from trackroller.roller.geometry import contact_geometry

@@ -10,8 +10,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from trackroller.contact.common import Patch, Resultants, SurfaceTractions
 from trackroller.contact.protocol import ContactModel
+from trackroller.contact.quantities import Patch, Resultants, SurfaceTractions
 from trackroller.contact.slip import Slip
 from trackroller.roller import equilibrium as eq
 from trackroller.roller.case import CaseTable
