@@ -18,7 +18,7 @@ import xarray as xr
 from trackroller.damage.verdict import STATES
 from trackroller.errors import InputError
 from trackroller.parameters import REGIME_LABELS
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
 from trackroller.report.headlines import headline_of

@@ -10,7 +10,7 @@ import pandas as pd
 
 from trackroller.damage import LIMITS
 from trackroller.parameters import BODIES, PARAMETERS
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Caution
 from trackroller.results.candidate_table import title_of
 from trackroller.results.candidates import slip_margin

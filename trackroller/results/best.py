@@ -15,7 +15,7 @@ from trackroller.damage import LIMITS
 from trackroller.errors import InputError, listing
 from trackroller.methods.optimise import nondominated_ranks
 from trackroller.parameters import BODIES, REGIMES
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Answer, Caution, Column
 from trackroller.results.answer_parts import (
     case_cautions,

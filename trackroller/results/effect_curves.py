@@ -12,7 +12,7 @@ from scipy import stats
 
 from trackroller.methods.interactions import MAX_ROWS, ROWS_PER_TERM, best_fit
 from trackroller.methods.intervals import constant
-from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.parameters.carriage_fields import long_name_of, parameter_of
 from trackroller.results.answer import Curve
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from trackroller.parameters import BODIES
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.candidate_table import title_of
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.groups import BINS, classes

@@ -12,7 +12,7 @@ from trackroller.errors import InputError
 from trackroller.methods import Design
 from trackroller.methods.factor import readable
 from trackroller.parameters import EXACTNESS, REGIME_LABELS, REGIMES
-from trackroller.parameters.of_carriage import parameter_of
+from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.results.by_tests import beyond_sn_data
 from trackroller.results.candidates import Candidates, candidates_of
 from trackroller.results.columns import codes

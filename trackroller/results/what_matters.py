@@ -9,7 +9,7 @@ import pandas as pd
 import xarray as xr
 
 from trackroller.parameters import REGIMES
-from trackroller.parameters.of_carriage import long_name_of
+from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.results.answer import Answer, Column, Curve
 from trackroller.results.answer_parts import (
     case_cautions,

@@ -18,8 +18,8 @@ from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import MATERIAL_FIELDS
+from trackroller.parameters.carriage_fields import field_of
 from trackroller.parameters.example import not_given
-from trackroller.parameters.of_carriage import field_of
 from trackroller.roller.aliases import ALIASES, study_with_radii
 from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
