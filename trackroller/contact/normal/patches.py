@@ -52,7 +52,7 @@ class Pressing:
         return family.pressed(load, apart[:, flip], t.pressure[k][:, flip])
 
 
-class Patches:
+class NormalSolver:
     """Solver of the normal problem of n rollers under any load.
 
     Parameters
@@ -110,7 +110,7 @@ class Patches:
         fine : bool
             False interpolates between solved loads.
         pressing : Pressing, optional
-            Patches whose pressures shear changes.
+            NormalSolver whose pressures shear changes.
 
         Returns
         -------

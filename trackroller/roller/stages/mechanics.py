@@ -60,7 +60,7 @@ def prepare(table: CaseTable, options: Options, across: int = 1, near: Boxes | N
         hertz = replace(hertz, lateral=np.where(np.isnan(turning), np.nan, hertz.lateral))
     law = law_of(table.friction_law[0] if len(table) else None)
     model = model_of(table, options, r_a, law, table.velocity * MM_PER_S, across, near)
-    loads = eq.Loads(
+    loads = eq.RollerLoads(
         rounded(table.radial_force / unit**2),
         rounded(table.axial_force / unit**2),
         rounded(table.motor_force / unit**2),

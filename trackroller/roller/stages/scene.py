@@ -40,7 +40,7 @@ class Scene:
     """
 
     table: CaseTable
-    loads: eq.Loads
+    loads: eq.RollerLoads
     model: ContactModel
     unit: np.ndarray
     mirror: Mirror
