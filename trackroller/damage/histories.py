@@ -13,6 +13,8 @@ from typing import Any
 
 import numpy as np
 
+from trackroller.halfspace.tractions import Tractions
+
 PADDING = 0.18  # nodes beyond the patch along y over those of the patch, on each side
 # over the smaller half side of the patch; the stresses that decide lie at 0.3 to 0.8, or under high friction higher
 DEPTHS = np.array([0.05, 0.1, 0.17, 0.26, 0.37, 0.5, 0.66, 0.9])
@@ -20,28 +22,15 @@ RUNG = 0.07  # step of the logarithm of the ratio of sides
 
 
 @dataclass(frozen=True)
-class Tractions:
-    """Tractions on the roller over the patches of n cases, and the slip; NaN where a patch does not exist.
+class RollerTractions(Tractions):
+    """Tractions on the rollers of n cases, (n, contact, ...); NaN where there is no patch, slips in full slip as well.
 
-    Parameters
+    Attributes
     ----------
-    x, y : numpy.ndarray
-        Coordinates of the grids, (n, contact, nx) and (n, contact, ny) [mm].
-    pressure, shear_lateral, shear_rolling : numpy.ndarray
-        Tractions, (n, contact, ny, nx) [MPa].
-    slip_lateral, slip_rolling : numpy.ndarray
-        Slip velocity over travel speed, (n, contact, ny, nx) [1]; NaN in full slip.
     mirrored : numpy.ndarray of bool
         Cases whose contact 2 is the mirror image of contact 1, (n,).
     """
 
-    x: np.ndarray
-    y: np.ndarray
-    pressure: np.ndarray
-    shear_lateral: np.ndarray
-    shear_rolling: np.ndarray
-    slip_lateral: np.ndarray
-    slip_rolling: np.ndarray
     mirrored: np.ndarray
 
     def by_patch(self, values: Callable[[int, int], Any], *shape: int) -> np.ndarray:

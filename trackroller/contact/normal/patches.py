@@ -110,7 +110,7 @@ class NormalSolver:
         fine : bool
             False interpolates between solved loads.
         pressing : Pressing, optional
-            NormalSolver whose pressures shear changes.
+            Patches whose pressures shear changes.
 
         Returns
         -------
