@@ -11,7 +11,7 @@ from trackroller.errors import InputError
 from trackroller.methods.saltelli import pairs_sharing, sobol
 from trackroller.results.sensitivity import analyse, within_levels
 from trackroller.study.design.sampling import sample
-from trackroller.study.file.load import parse_study, without_former
+from trackroller.study.file.load import parse_study
 from validation.benchmarks.known_indices import functions
 
 G = functions()["g-function"]
@@ -179,13 +179,6 @@ def solved(data):
     ds["roller_life_hours"] = ("case", 10 ** (4 - log_life.values), {"units": "h", "long_name": "life"})
     ds.attrs["study"] = study.merged()
     return ds
-
-
-def test_the_key_exchange_of_earlier_versions_is_ignored_aloud():
-    with pytest.warns(UserWarning, match="Ignored: exchange, because saltelli"):
-        assert without_former(FILE | {"exchange": "groups", "analysis": {"scale": "log10"}}) == FILE | {
-            "analysis": {"scale": "log10"}
-        }
 
 
 def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):

@@ -18,7 +18,8 @@ import numpy as np
 from trackroller.contact.profiles import PointRows
 from trackroller.errors import Collector, InputError
 from trackroller.files import find_beside, read_bytes, text_of
-from trackroller.numerics.cells import (
+from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import (
     DASHES,
     Refused,
     decimal_signs,
@@ -27,7 +28,6 @@ from trackroller.numerics.cells import (
     split_head,
     stated_separator,
 )
-from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.roller.simpack_profile import is_simpack, simpack_points
 

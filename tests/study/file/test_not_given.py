@@ -8,7 +8,7 @@ from command_line import trackroller
 
 import trackroller as tr
 from trackroller.parameters.example import EXAMPLE, drive_question, not_given, not_given_text
-from trackroller.roller.record import not_given_of
+from trackroller.roller.stored_inputs import not_given_of
 from trackroller.study.store.identity import Cases
 
 STUDY = """

@@ -13,7 +13,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from trackroller.errors import InputError
-from trackroller.numerics.cells import SEPARATORS, Refused, stated_separator
+from trackroller.numerics.table_cells import SEPARATORS, Refused, stated_separator
 
 
 def csv_lines(text: str, path: Path, field: str) -> tuple[Iterator[tuple[int, list[str]]], str]:

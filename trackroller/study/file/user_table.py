@@ -21,7 +21,8 @@ from types import MappingProxyType
 
 from trackroller.errors import Collector, InputError, listing, raise_all
 from trackroller.files import read_bytes, text_of
-from trackroller.numerics.cells import (
+from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.table_cells import (
     Refused,
     Stored,
     decimal_signs,
@@ -31,7 +32,6 @@ from trackroller.numerics.cells import (
     split_head,
     unbracketed,
 )
-from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS
 from trackroller.roller.aliases import ALIASES

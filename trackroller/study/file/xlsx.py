@@ -17,7 +17,7 @@ from typing import Any
 from xml.etree import ElementTree
 
 from trackroller.errors import InputError, raise_all
-from trackroller.numerics.cells import Refused, Stored
+from trackroller.numerics.table_cells import Refused, Stored
 
 MAX_UNPACKED = 50_000_000  # bytes of all parts
 MAX_CELLS = 500_000  # also empty ones between others
