@@ -10,7 +10,6 @@ from __future__ import annotations
 import itertools
 import math
 import re
-import statistics
 import unicodedata
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
@@ -56,22 +55,8 @@ FAR = 1.8  # times the largest addend
 HEAD_ROWS = 1_000  # rows of a workbook among which the line of names is sought for its names alone
 Lines = Iterable[tuple[int, list[str]]]
 
-_SUMS = (
-    "sums? totals? sub-?totals? summen? gesamt gesamtsumme zwischensumme insgesamt ergebnis gesamtergebnis somme "
-    "totale totaux suma summa totaal totalt razem celkem toplam итого всего сумма 合计 总计 合計 総計 Σ ∑"
-)
 _SUM = re.compile(
-    r"\W*(?:{0})(?![\w-]).*|.*(?<!\w)(?:{0})\W*".format("|".join(_SUMS.split())), re.IGNORECASE | re.DOTALL
-)
-_STATISTICS = (
-    "mean average avg mittel mittelwert mw schnitt durchschnitt ø moyenne media median min minimum max maximum sd std "
-    "stdev stddev standardabweichung count anzahl p05 p5 p10 p25 p50 p75 p90 p95 p99 perzentil percentile quantil "
-    "quantile"
-)
-# a statistic with further words, such as 'arithm. Mittel', or a compound such as 'Gesamtweg'
-_STATISTIC = re.compile(
-    r"(?:.*(?<!\w))?(?:(?:{})(?!\w)|(?:gesamt|summen)\w).*".format("|".join(_STATISTICS.split())),
-    re.IGNORECASE | re.DOTALL,
+    r"(?:grand |sub-?)?totals?|sum|summe|gesamt(?:summe)?|zwischensumme|mean|average|mittelwert|[Σ∑]", re.IGNORECASE
 )
 _EXCEL_ERROR = re.compile(r"#(?:DIV/0!|N/A|NAME\?|NULL!|NUM!|REF!|VALUE!|#+)", re.IGNORECASE)
 _STATED_UNIT = re.compile(
@@ -463,54 +448,34 @@ def _with_unit(cell: str) -> bool:
 
 
 def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, what: str, wrong: Collector) -> None:
-    """Move lines that sum up the lines above to the errors."""
+    """Move lines that are named as a total, and a last line that surely is one, to the errors."""
     labels = [j for j, name in enumerate(table.names) if name not in table.known and j not in numbers]
-    above: list[list[str]] = []
     last = next(reversed(table.lines), None)
     for number, line in list(table.lines.items()):
-        own = [line[j] for j in labels] or line[:1]
-        words = [word for word in own if math.isnan(_value(word))]  # '5 min' is no minimum
-        sums = any(_SUM.fullmatch(word) for word in words)
-        if not sums and any(_STATISTIC.fullmatch(word) for word in words):
-            sums = _sums_up(above, line, numbers)
-        if not sums and number == last:
-            sums = _sums_up(above, line, numbers, surely=bool(not labels or any(own)), one=True)
-        if not above and sums:  # totals may stand above what they sum up
-            below = [other for place, other in table.lines.items() if place != number]
-            sums = _sums_up(below, line, numbers, one=True)
-        if sums:
+        named = any(_SUM.fullmatch(line[j].strip(" :")) for j in labels or [0])
+        above = [cells for place, cells in table.lines.items() if place < number]
+        if named or (number == last and _sums_up(above, line, numbers)):
             del table.lines[number]
-            allowed = f"one {what} a line; this line sums up the lines {'above' if above else 'below'}"
-            remedy = f"Remove the line; if it is a {what}, " + ("rename it." if any(own) else "put it further up.")
+            allowed = f"one {what} a line; this line sums up the lines above or below"
+            remedy = f"Remove the line; if it is a {what}, rename it or put it further up."
             wrong.errors.append(InputError(field, ", ".join(line), allowed, remedy).at(path, number))
-        else:
-            above.append(line)
 
 
-def _sums_up(
-    above: list[list[str]], line: list[str], numbers: list[int], one: bool = False, surely: bool = False
-) -> bool:
-    """Return whether the numbers of a line are sums or statistics of the lines above, maybe rounded, or empty.
+def _sums_up(above: list[list[str]], line: list[str], numbers: list[int]) -> bool:
+    """Return whether the numbers of a line are sums of the lines above, maybe rounded, of three addends at least.
 
-    With `one`, at least one of them must be a sum other than 0. With `surely`, that sum must have three addends and
-    exceed the largest by far, because levels such as 0, 10, 20 and 30 or 0, 3, 0 and 3 often add up.
+    Levels such as 0, 10, 20 and 30 or 0, 3, 0 and 3 often add up; their sum is not far above the largest.
     """
-    sums, kinds = 0, (sum, statistics.fmean, statistics.median, min, max, len, _deviation)
+    sums = 0
     for j in numbers:
-        if not line[j]:
-            continue
-        values = [_value(cells[j]) for cells in above]
+        addends = [value for value in (_value(cells[j]) for cells in above) if value]
         value = _value(line[j])
-        if len(values) < 2 or not any(math.isclose(kind(values), value, rel_tol=ROUNDED) for kind in kinds):
+        if not line[j] or value == 0:
+            continue
+        if len(addends) < 3 or not math.isclose(sum(addends), value, rel_tol=ROUNDED):
             return False
-        plain = value != 0 and math.isclose(sum(values), value, rel_tol=ROUNDED)
-        addends = [abs(one) for one in values if one]
-        sums += plain and (not surely or (len(addends) > 2 and abs(value) > FAR * max(addends)))
-    return sums > 0 or not one
-
-
-def _deviation(values: list[float]) -> float:
-    return statistics.stdev(values) if all(map(math.isfinite, values)) else math.nan
+        sums += abs(value) > FAR * max(map(abs, addends))
+    return sums > 0
 
 
 def _value(cell: str) -> float:
