@@ -14,7 +14,7 @@ from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.plain import rows_of
 from trackroller.numerics.units import PLAIN, in_unit
-from trackroller.study.file.user_table import UNITS, read_table
+from trackroller.study.file.user_columns import UNITS, read_table
 
 FIELD = "tests"
 

@@ -15,7 +15,7 @@ import trackroller as tr
 from trackroller.errors import Collector
 from trackroller.report.workbook import write_cases, write_results
 from trackroller.study.design.read_table import table
-from trackroller.study.file.user_table import column_names, read_table
+from trackroller.study.file.user_columns import column_names, read_table
 from trackroller.study.spectrum.file import load_spectrum
 
 openpyxl = pytest.importorskip("openpyxl")

@@ -17,7 +17,8 @@ from trackroller.numerics.cells import Refused, decimal_signs, plain_column
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.units import in_unit, split_quantity
 from trackroller.roller.log_answers import LogAnswers
-from trackroller.study.file.user_table import UserTable, is_workbook, read_table
+from trackroller.study.file.user_columns import read_table
+from trackroller.tables.user_table import UserTable, is_workbook
 
 COLUMNS = {"time": "s", "distance": "m", "radial_force": "N", "axial_force": "N", "velocity": "m/min", "speed": "m/s"}
 FIELD = "--from"

@@ -92,9 +92,8 @@ def _check_size(content: bytes, path: Path, field: str) -> None:
     with zipfile.ZipFile(io.BytesIO(content)) as archive:
         size = sum(entry.file_size for entry in archive.infolist())
     if size > MAX_UNPACKED:
-        allowed = (
-            f"a workbook that unpacks to at most {MAX_UNPACKED // 1_000_000} MB; this one takes {size / 1e6:.0f} MB"
-        )
+        most = MAX_UNPACKED // 1_000_000
+        allowed = f"a workbook that unpacks to at most {most} MB; this one takes {size / 1e6:.0f} MB"
         raise InputError(field, str(path), allowed, "Save the sheet as CSV.")
 
 
@@ -110,7 +109,12 @@ def _chosen(sheets: list[Any], path: Path, field: str, what: str) -> Any:
     shown = [sheet for sheet in sheets if sheet.sheet_state == "visible"]
     named = [sheet for sheet in sheets if sheet.title.strip().lower() in (what, f"{what}s")]
     if len(named) == 1 and named[0] not in shown:
-        raise InputError(field, f"sheet {named[0].title!r} of {path}", "a visible sheet; this one is hidden", _SHOW)
+        raise InputError(
+            field,
+            f"sheet {named[0].title!r} of {path}",
+            "a visible sheet; this one is hidden",
+            _SHOW,
+        )
     if len(named) == 1:
         return named[0]
     meant = shown if len(shown) == 1 else [sheet for sheet in shown if _holds(sheet)]
@@ -188,7 +192,12 @@ def _filled_up(rows: Iterator[list[str]]) -> Lines:
         letters += sum(map(len, cells))
         if letters > MOST_LETTERS:
             allowed = f"cells of at most {MOST_LETTERS // 1_000_000} million characters in all"
-            raise InputError("sheet", f"row {number}", allowed, "Remove the long texts, or save the sheet as CSV.")
+            raise InputError(
+                "sheet",
+                f"row {number}",
+                allowed,
+                "Remove the long texts, or save the sheet as CSV.",
+            )
         while len(cells) > width and not cells[-1]:
             cells.pop()
         cells += [""] * (width - len(cells))
