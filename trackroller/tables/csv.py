@@ -16,6 +16,8 @@ from trackroller.errors import InputError
 from trackroller.numerics.cells import SEPARATORS, Refused, is_number, stated_separator
 
 BLANK = " "
+_QUOTED = re.compile(r'"[^"]*"')
+_WORD = re.compile(r'"([^"]*)"|(\S+)')
 _END_OF_DOS = re.compile(r"\s*\x1a\s*\Z")  # Ctrl-Z
 
 
@@ -71,7 +73,7 @@ def _head(text: str) -> str:
 
 def _separator(head: str, blanks: bool) -> str:
     """Return what separates the cells of the line of names, or of the first line of numbers."""
-    unquoted = re.sub(r'"[^"]*"', "", head)
+    unquoted = _QUOTED.sub("0", head)
     words = unquoted.split()
     if blanks and len(words) > 1 and all(map(is_number, words)):  # maybe with decimal commas
         return BLANK if "\t" not in unquoted else "\t"
@@ -85,14 +87,16 @@ def _words(text: str) -> Iterator[tuple[int, list[str]]]:
     """Yield the words of each line; a unit in brackets belongs to the name before it, and '#' to the word behind it."""
     for number, line in enumerate(_lines(text), start=1):
         line = re.sub(r"^#\s*", "#", line)
-        yield number, re.sub(r"\s+(?=[\[(])", "", line).split()
+        line = re.sub(r"\s+(?=[\[(])", "", line)
+        yield number, [quoted or bare for quoted, bare in _WORD.findall(line)]
 
 
 def _cells(
     text: str, path: Path, field: str, separator: str, skip_first: bool = False
 ) -> Iterator[tuple[int, list[str]]]:
     """Yield number and cells of each line; the number of a cell over several lines is that of its last line."""
-    reader = csv.reader(io.StringIO(text, newline=""), delimiter=separator, strict=True)
+    stream = io.StringIO(text, newline="")
+    reader = csv.reader(stream, delimiter=separator, skipinitialspace=True, strict=True)
     try:
         for row in reader:
             if not (skip_first and reader.line_num == 1):

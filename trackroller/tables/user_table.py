@@ -36,6 +36,7 @@ from trackroller.numerics.cells import (
     is_number,
     plain_column,
     plain_labels,
+    plain_quantity,
     split_head,
     unbracketed,
 )
@@ -213,6 +214,7 @@ def read_user_table(
     for line in rows.values():
         line[:] = [line[j] for j in named]
     table = UserTable(names, head, rows, kind.units, units, separator=separator, places=named)
+    _check_commas(table, source)
     table.width = max(len(cells) for _, cells in filled)
     table.remarks = {n: _joined(cells) for n, cells in filled if _is_comment(cells)}
     table.remarks = {n: text for n, text in table.remarks.items() if n != head and n not in rows}
@@ -301,7 +303,7 @@ def _split(lines: Iterable[Row], kind: TableKind) -> tuple[int, list[str], list[
         commented = [mark.lstrip("# "), *others]
         if _are_names(commented, kind):
             return before, _without_end(commented), lines[first:]
-    if kind.names and any(_is_quantity(cell) for cell in cells):
+    if kind.names and _is_quantity(cells[0]):
         return number, list(kind.names), lines[first:]
     return number, _without_end(cells), lines[first + 1 :]
 
@@ -311,7 +313,8 @@ def _are_names(cells: Iterable[str], kind: TableKind) -> bool:
 
 
 def _is_quantity(cell: str) -> bool:
-    return is_number(cell) or not math.isnan(_value(cell))
+    """Return whether a cell holds a number, maybe with a decimal comma and a unit."""
+    return is_number(cell) or not math.isnan(_value(plain_quantity(cell) or cell))
 
 
 def _without_end(heads: list[str]) -> list[str]:
@@ -399,6 +402,18 @@ def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, sourc
         del rows[number]
 
 
+def _check_commas(table: UserTable, source: _Source) -> None:
+    """Refuse numbers between commas without names and points: `-4,472` may be one number."""
+    number, line = next(iter(table.lines.items()))
+    if table.separator != "," or table.head != number:
+        return
+    if not any(mark in cell for _, _, cell in table.cells() for mark in ".,"):
+        wrong = "may have commas between columns or decimal commas"
+        remedy = "Separate the columns by semicolons, or write the names of the columns."
+        error = InputError(source.kind.field, ",".join(line), "numbers that are clear", remedy, wrong)
+        raise error.at(source.path, number)
+
+
 def _is_unnamed(head: str) -> bool:
     return not head or re.fullmatch(r"Unnamed: \d+", head) is not None
 
@@ -453,6 +468,9 @@ def _names(heads: list[str], used: Collection[str], kind: TableKind) -> tuple[li
             _check_named(head, name, unit, used, kind)
         names.append(name if known or plain else whole)
         units.append(unit if known and not plain else "")
+    for name, beside in itertools.pairwise(names):
+        with wrong.part():
+            _check_unit_beside(name, beside, kind)
     wrong.check()
     counts = Counter(names)
     doubled = [name for name in names if counts[name] > 1]
@@ -472,6 +490,13 @@ def _check_named(head: str, name: str, unit: str, used: Collection[str], kind: T
         allowed = f"a column without a unit, because an expression uses {name} and knows no units"
         remedy = f"Convert the numbers to the unit that the expression needs, and name the column {name}."
         raise InputError("column", head, allowed, remedy)
+
+
+def _check_unit_beside(name: str, beside: str, kind: TableKind) -> None:
+    """Refuse a unit in a cell of its own: with decimal commas its column would hold the decimals."""
+    if name in kind.units and not kind.knows(beside) and _is_unit(name, beside, kind.units):
+        wrong = f"is a unit in a cell of its own, beside {name}"
+        raise InputError("column", beside, "names of columns", f"Write {name} [{beside}], or rename it.", wrong)
 
 
 def _check_unit(name: str, unit: str, known: Mapping[str, str]) -> None:

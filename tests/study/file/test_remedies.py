@@ -36,6 +36,8 @@ def read(path):
             "or at the head of the column",
             "radial_force [kN];part\n-0.2;a\n-0.3;b\n",
         ),
+        ("radial_force,kN\n-2,5\n", r"Write radial_force \[kN\]", "radial_force [kN]\n-2.5\n"),
+        ("radial_force,kN\n-2,5\n", "or rename it", "radial_force,lot\n-2,5\n"),
         ("Loads;\nradial_force;part\n-200;a\n", "Remove the lines above", "radial_force;part\n-200;a\n"),
         ("radial_force part\n-200 a\n", "No: one column", "radial_force;part\n-200;a\n"),
         ("radial_force axial_force\n-200 9\n", "Separate the columns", "radial_force|axial_force\n-200|9\n"),
