@@ -338,8 +338,9 @@ def _without_comments(lines: list[Row], heads: list[str], source: _Source) -> It
 
 def _is_row_behind_a_mark(cells: list[str], width: int) -> bool:
     """Return whether a comment has the cells of a row."""
-    whole = len(cells) >= width and any(cells[1:])
-    return whole or any(map(is_number, cells[1:]))
+    is_number_alone = width == 1 and is_number(cells[0].lstrip("# "))
+    is_whole = len(cells) >= width and any(cells[1:])
+    return is_number_alone or is_whole or any(map(is_number, cells[1:]))
 
 
 def _check_rows(rows: dict[int, list[str]], heads: list[str], source: _Source) -> None:
@@ -486,10 +487,23 @@ def _check_named(head: str, name: str, unit: str, used: Collection[str], kind: T
         raise InputError(kind.field, head, *head.message)
     if name in kind.units and unit:
         _check_unit(name, unit, kind.units)
+    if not kind.knows(name):
+        _check_spelling(head, kind)
     if name in used and name not in kind.units and unit not in PLAIN:
         allowed = f"a column without a unit, because an expression uses {name} and knows no units"
         remedy = f"Convert the numbers to the unit that the expression needs, and name the column {name}."
         raise InputError("column", head, allowed, remedy)
+
+
+def _check_spelling(head: str, kind: TableKind) -> None:
+    """Refuse a known name with a unit that does not stand in brackets, such as `velocity_m/s`."""
+    for name, own in kind.units.items():
+        if not head.lower().startswith(name):
+            continue
+        unit = head[len(name) :].strip(" _:-<>{}[]()")
+        if unit == own or _is_unit(name, unit, kind.units):
+            wrong = "is no name with a unit in brackets"
+            raise InputError("column", head, "names of columns", f"Write {name} [{unit}].", wrong)
 
 
 def _check_unit_beside(name: str, beside: str, kind: TableKind) -> None:
