@@ -283,6 +283,20 @@ def test_a_clipped_sensor_is_told(tmp_path):
 NAMES = names_of(("time", "speed"))
 
 
+def test_a_frozen_sensor_is_told(tmp_path):
+    whole = truth()
+    whole["radial_force"][150:230] = whole["radial_force"][150]
+    found = read(write(tmp_path / "log.csv", whole, NAMES))
+    doubt = next(doubt for doubt in found.doubts if doubt.code == "frozen")
+    assert doubt.count == 80 and doubt.line == 152 and "in 80 lines on end, the first line 152" in doubt.text
+    steps = truth()
+    steps["radial_force"] = np.repeat(steps["radial_force"][::20], 20)  # a load that changes now and then
+    stopped = truth()
+    stopped["radial_force"][150:230] = 0.0  # told as travel without a load
+    for columns in (truth(), steps, stopped):
+        assert "frozen" not in codes(read(write(tmp_path / "log.csv", columns, NAMES)))
+
+
 def test_few_lines_that_carry_the_life_are_told(tmp_path):
     whole = truth()
     radial = whole["radial_force"].copy()

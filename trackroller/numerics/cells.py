@@ -141,7 +141,9 @@ def plain_cell(cell: str, signs: Collection[str]) -> str:
         if len(signs) != 1:
             both = f"{whole}.{decimals} or {whole}{decimals}"
             why = f"a number that is clear: other cells do not tell whether this is {both}"
-            raise AmbiguousNumber(why, f"Write {sign}{whole}{decimals} or {sign}{whole}{mark}{decimals}0.")
+            clear = f"{sign}{whole}{mark}{decimals}0"
+            remedy = f"Write {sign}{whole}{decimals} or {clear}; one number such as {clear} decides for the whole file."
+            raise AmbiguousNumber(why, remedy)
         if mark not in signs:
             whole, decimals = whole + decimals, ""
     return f"{sign.strip('+')}{whole}{'.' * bool(decimals)}{decimals}{rest}"
