@@ -28,6 +28,10 @@ Lines = list[tuple[int, list[str]]]
 
 _SHOW = "Show what counts (clear the filter of the sheet), and delete what does not."
 _USUAL = ("General", "0", "0.00", "#,##0", "#,##0.00", "@", "0.00E+00", "0.0", "0.000")
+_WORDS = re.compile(r'"([^"]*)"|\\(.)')  # in the code of a format
+_DIGITS = re.compile(r"[0#?@]|General|Standard")
+_BEGINS_WITH_DIGITS = re.compile(r'[^"\\]*(?:[0#?@]|General|Standard)')
+_NO_LETTERS = re.compile(r"[Ee][-+]|General|Standard|[^A-Za-z€$£°µ]")
 _REFERENCE = re.compile(r"\$?([A-Z]{1,3})\$?(\d+)(?::\$?([A-Z]{1,3})\$?(\d+))?(?![\w(])", re.IGNORECASE)
 _WHOLE_COLUMN = re.compile(r"\w+\[[^\[\]]*\]|\$?([A-Z]{1,3}):\$?\1(?![\w(])", re.IGNORECASE)  # `Table1[Load]`, `A:A`
 
@@ -271,22 +275,48 @@ def _formatted(value: float, code: str) -> str:
     number = Stored(value if isinstance(value, int) else repr(value))
     if code in _USUAL:
         return number
-    sections = code.split(";")
-    place = 1 if value < 0 else 2 if value == 0 else 0
-    own = place if place < len(sections) else 0
-    section = re.sub(r"\[\$([^-\]]*)[^\]]*\]", r'"\1"', sections[own])  # a currency
-    section = re.sub(r"\[[^\]]*\]|[_*].", "", section)  # colours, conditions, room
-    words = "".join(a or b for a, b in re.findall(r'"([^"]*)"|\\(.)', section))
-    bare = re.sub(r'"[^"]*"|\\.', "", section)
-    minus = own != 1 or re.search(r"[-(\[]", sections[1] + words)  # in brackets, in red
-    if not minus or not re.search(r"[0#?@]|General|Standard", bare) or re.search(r"[0#?],+(?![,0#?])", bare):
+    section = _section(value, code)
+    words = "".join(quoted or escaped for quoted, escaped in _WORDS.findall(section))
+    digits = _WORDS.sub("", section)
+    if not _shows_number(digits) or not _shows_minus(value, code, words):
         allowed = "a number that is shown; the format of this cell hides it, or a part of it"
         return Refused(number, allowed, "Give the cell the format General.")
-    if "%" in bare:
+    if "%" in digits:
         return f"{100 * value:.15g} %"
-    if words := words.strip(" -+()") or re.sub(r"[Ee][-+]|General|Standard|[^A-Za-z€$£°µ]", "", bare):
-        if re.match(r'[^"\\]*(?:[0#?@]|General|Standard)', section):
-            return f"{number} {words}"
-        zeros = re.fullmatch(r'"([^"]*)"(0+)', section)  # a label such as P-007
-        return f"{zeros[1]}{int(value):0{len(zeros[2])}d}" if zeros and value == int(value) else f"{words} {number}"
-    return f"{int(value):0{len(bare)}d}" if re.fullmatch("0{2,}", bare) and value == int(value) else number
+    if re.fullmatch("0{2,}", digits) and value == int(value):  # a label such as 007 or P-007
+        label = f"{int(value):0{len(digits)}d}"
+        if not words or section.startswith('"'):
+            return words + label
+    unit = words.strip(" -+()") or _NO_LETTERS.sub("", digits)
+    if not unit:
+        return number
+    return f"{number} {unit}" if _BEGINS_WITH_DIGITS.match(section) else f"{unit} {number}"
+
+
+def _section(value: float, code: str) -> str:
+    """Return the part of the code of a format that shows a number, with the sign of a currency as a word."""
+    section = code.split(";")[_own_section(value, code)]
+    section = re.sub(r"\[\$([^-\]]*)[^\]]*\]", r'"\1"', section)  # a currency
+    return re.sub(r"\[[^\]]*\]|[_*].", "", section)  # colours, conditions, room
+
+
+def _own_section(value: float, code: str) -> int:
+    """Return the place of the part that shows a number: above 0, below 0, or 0; the first one if there is no such."""
+    place = 0
+    if value < 0:
+        place = 1
+    elif value == 0:
+        place = 2
+    return place if place < len(code.split(";")) else 0
+
+
+def _shows_number(digits: str) -> bool:
+    """Return whether a format shows a number, and no thousandth of it."""
+    return bool(_DIGITS.search(digits)) and not re.search(r"[0#?],+(?![,0#?])", digits)
+
+
+def _shows_minus(value: float, code: str, words: str) -> bool:
+    """Return whether a format shows that a number is below 0: by a sign, in brackets, or in a colour."""
+    if _own_section(value, code) != 1:
+        return True
+    return re.search(r"[-(\[]", code.split(";")[1] + words) is not None
