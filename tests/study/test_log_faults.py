@@ -381,7 +381,8 @@ def test_a_long_log_with_decimal_commas_comments_and_empty_lines(tmp_path, monke
         ("1,2,3,4,5", "4 cells, one for each name"),
         ("1,2,3,4,5,6", "lines of 4 cells"),
         ("1,2,3", "line 301: axial_force = ''.*a finite number"),
-        ('1,2,3,"4', "quotation marks that close"),
+        ('1,2,3,"4', "line 301: axial_force = '\"4'.*a finite number"),
+        ('1,2,3,"4"5', "line 301: axial_force = '\"4\"5'.*a finite number"),
         ("1,2,3,1_0", "line 301: axial_force = '1_0'"),
     ],
 )
