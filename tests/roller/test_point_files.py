@@ -130,8 +130,8 @@ LENGTHS = r"cells?, one for each name; there (is|are)"
         ("# Profile of a rail (in)", "{x} {z}", r"line 1.*names the unit in,"),
         ("all values in inch", "{x} {z}", NO_NAMES),
         ("Profile 7", "{x};{z}", NO_NAMES),
-        ("x_um,z_mm", "{x},{z}", NO_NAMES),
-        ("xum;zmm", "{x};{z}", NO_NAMES),
+        ("x_um,z_mm", "{x},{z}", r"line 1: column = 'x_um'.*Write x \[um\]"),
+        ("xum;zmm", "{x};{z}", r"line 1: column = 'xum'.*Write x \[um\]"),
         ("mm;um", "{x};{z}", NO_NAMES),
         ("Position [mm]\tHöhe [µm]", "{x}\t{z}", NO_NAMES),
         ("Scale 1:2\n1;2", "{x};{z}", NO_NAMES),
@@ -146,6 +146,37 @@ LENGTHS = r"cells?, one for each name; there (is|are)"
 def test_what_a_person_would_ask_about_is_refused_with_its_line(read, head, form, words):
     with pytest.raises(tr.InputError, match=words):
         read(lines_of(form, head))
+
+
+@pytest.mark.parametrize(
+    ("wrong", "remedy", "mended"),
+    [
+        ("Profile 7\n1;2\n3;4", "otherwise remove such lines", "1;2\n3;4"),
+        ("Profile 7\n1;2\n3;4", "or put '#' before them", "# Profile 7\n1;2\n3;4"),
+        ("no 5;\nx;z\n1;2\n3;4", "Remove the lines above it", "x;z\n1;2\n3;4"),
+        ("x;10*z\n1;20\n3;40", "Name them x and z", "x;z\n1;2\n3;4"),
+        ("x;y;z\n1;5;2\n3;9;4", "of x, y and z one has to be constant", "x;y;z\n1;5;2\n3;5;4"),
+        ("x;z [um]\n1;2000\n3;4000", r"such as x \[um\]; z \[um\]", "x [mm];z [um]\n1;2000\n3;4000"),
+        ("# Scale 1:2\n1;4\n3;8", "Multiply the numbers, or remove this line", "1;2\n3;4"),
+        ("# in um\n1000;2000\n3000;4000", r"Write x \[um\]", "# in um\nx [um];z [um]\n1000;2000\n3000;4000"),
+        ("1;2\n2;***\n3;4", "Leave out the lines of lost points", "1;2\n3;4"),
+        ("1;2\n2;\n3;4", "or remove the line", "1;2\n3;4"),
+        ("1,2\n3,4", "Separate the columns by semicolons", "1;2\n3;4"),
+        ("1,2\n3,4", "or write the names", "x,z\n1,2\n3,4"),
+        ("1;2 mm\n3;4", "Write the unit behind 4", "1;2 mm\n3;4 mm"),
+        ("x_um;z_um\n1000;2000\n3000;4000", r"Write x \[um\]", "x [um];z [um]\n1000;2000\n3000;4000"),
+        (
+            "pos [um];h [um]\n1000;2000\n3000;4000",
+            "write x and z with their units",
+            "x [um];z [um]\n1000;2000\n3000;4000",
+        ),
+        ("x um;z um\n1000;2000\n3000;4000", r"Write x \[um\]", "x [um];z [um]\n1000;2000\n3000;4000"),
+    ],
+)
+def test_a_remedy_for_a_file_of_points_is_tried(read, wrong, remedy, mended):
+    with pytest.raises(tr.InputError, match=remedy):
+        read(wrong)
+    assert read(mended) == [[1.0, 2.0], [3.0, 4.0]]
 
 
 @pytest.mark.parametrize("head", ["x,z", ""])

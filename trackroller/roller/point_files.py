@@ -25,7 +25,6 @@ from trackroller.tables.user_table import TableKind, UserTable, read_user_table
 AXES = {"x": "mm", "y": "mm", "z": "mm"}
 CAPITALS = {"X": "x", "Y": "y", "Z": "z"}
 EVEN = 1e-3  # variation of a column over that of the others up to which it only says where the section lies
-EXPORT = "Export the position across the profile and the height as two columns of text, such as `x [mm]; z [mm]`."
 TEXT = "a text file with two columns"
 
 _PACKED = {

@@ -365,9 +365,15 @@ def _check_head(heads: list[str], rows: dict[int, list[str]], head: int, source:
             remedy = "Remove the lines above it, or put '#' before them."
             raise InputError(kind.field, shown, allowed, remedy).at(source.path, head)
     if kind.names:
+        with source.in_line(head):
+            for name in heads:
+                _check_spelling(name, kind)
         example = "; ".join(f"{name} [{kind.units[name]}]" for name in kind.names)
         allowed = f"a {kind.row}, or the names of the columns, such as {example}"
-        remedy = "Remove such lines, or put '#' before them."
+        remedy = (
+            f"If it names the columns, write {listing(kind.names)} with their units; otherwise remove such lines, or "
+            "put '#' before them."
+        )
         wrong = f"is neither a {kind.row} nor the names of the columns"
         raise InputError(kind.field, shown, allowed, remedy, wrong).at(source.path, head)
     _check_separated(heads, head, source)
