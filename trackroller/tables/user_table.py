@@ -397,13 +397,13 @@ def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, sourc
         while len(line) > width and not line[-1]:
             line.pop()
     others = {number: line for number, line in rows.items() if len(line) != width}
-    shown = list(others.items())[: 1 if len(others) == len(rows) else MOST_ERRORS]
+    most = 1 if len(others) == len(rows) else MOST_ERRORS
     remedy = "Write one name for each column, and one cell for each name."
     if separator == ",":
         remedy = "Write decimal points, or separate the columns by semicolons."
-    names = "1 cell, one for each name" if width == 1 else f"{width} cells, one for each name"
-    for number, line in shown:
-        allowed = f"{names}; there are {len(line)}"
+    cells = "1 cell" if width == 1 else f"{width} cells"
+    for number, line in itertools.islice(others.items(), most):
+        allowed = f"{cells}, one for each name; there are {len(line)}"
         source.refuse(number, source.kind.field, ", ".join(line), allowed, remedy)
     for number in others:
         del rows[number]
@@ -631,27 +631,27 @@ def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
     table.signs = decimal_signs(cells)
     if small and not table.signs and _in_own_units(table):
         table.signs = frozenset(mark for mark in ".," if any(mark in cell for cell in cells))
-    if len(table.signs) > 1:
-        columns = [_with_one_sign(column, cells) if j in numbers else column for j, column in enumerate(columns)]
     for j, column in enumerate(columns):
         if j in numbers:
-            read = _plain_numbers(column, j, table)
+            read = _plain_numbers(_with_one_sign(column, cells, table.signs), j, table)
         else:
             read = plain_labels(column, table.signs)
-        if read is not column or len(table.signs) > 1:
+        if read is not column:
             for line, cell in zip(table.lines.values(), read, strict=True):
                 line[j] = cell
 
 
-def _with_one_sign(column: list[str], cells: list[str]) -> list[str]:
+def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -> list[str]:
     """Return a column in which numbers with another decimal sign than the first of all cells are `Refused`."""
+    if len(signs) < 2:
+        return column
     first = next(cell for cell in cells if decimal_signs([cell]))
-    signs = decimal_signs([first])
+    own = decimal_signs([first])
     allowed = f"one decimal sign in the file; {first} has another one"
     remedy = "Write all numbers in the same way."
     read = []
     for cell in column:
-        is_other = bool(decimal_signs([cell]) - signs)
+        is_other = bool(decimal_signs([cell]) - own)
         read.append(Refused(cell, allowed, remedy) if is_other else cell)
     return read
 

@@ -27,6 +27,8 @@ MOST_NAMED = 5  # rows or columns that a message names
 Lines = list[tuple[int, list[str]]]
 
 _SHOW = "Show what counts (clear the filter of the sheet), and delete what does not."
+_UNSTRIKE = "Delete what does not count, and give the rest another font."
+_SPLIT = "Split the cells and fill each of them."
 _USUAL = ("General", "0", "0.00", "#,##0", "#,##0.00", "@", "0.00E+00", "0.0", "0.000")
 _WORDS = re.compile(r'"([^"]*)"|\\(.)')  # in the code of a format
 _DIGITS = re.compile(r"[0#?@]|General|Standard")
@@ -112,15 +114,11 @@ def _chosen(sheets: list[Any], path: Path, field: str, what: str) -> Any:
     """Return the only visible sheet that holds cells, or the one that is named for what its rows describe."""
     shown = [sheet for sheet in sheets if sheet.sheet_state == "visible"]
     named = [sheet for sheet in sheets if sheet.title.strip().lower() in (what, f"{what}s")]
-    if len(named) == 1 and named[0] not in shown:
-        raise InputError(
-            field,
-            f"sheet {named[0].title!r} of {path}",
-            "a visible sheet; this one is hidden",
-            _SHOW,
-        )
-    if len(named) == 1:
+    if len(named) == 1 and named[0] in shown:
         return named[0]
+    if len(named) == 1:
+        title = f"sheet {named[0].title!r} of {path}"
+        raise InputError(field, title, "a visible sheet; this one is hidden", _SHOW)
     meant = shown if len(shown) == 1 else [sheet for sheet in shown if _holds(sheet)]
     if len(meant) != 1:
         titles = ", ".join(sheet.title for sheet in meant or sheets)
@@ -137,32 +135,36 @@ def _holds(sheet: Any) -> bool:
 
 def _check_sheet(sheet: Any, path: Path, field: str) -> None:
     """Refuse a sheet that is too large, or that a person sees otherwise than the program."""
-    if sheet.max_column > MAX_COLUMNS or sheet.max_row * sheet.max_column > MAX_CELLS:
-        allowed = f"a sheet of at most {MAX_COLUMNS:,} columns and {MAX_CELLS:,} cells"
-        size = f"{sheet.max_column:,} columns, {sheet.max_row:,} rows"
-        remedy = "Remove what does not belong to the table, or save the sheet as CSV."
-        raise InputError(field, size, allowed, remedy).at(path, sheet.max_row)
+    _check_extent(sheet, path, field)
     filled = [cell for row in sheet.rows for cell in row if cell.value not in (None, "")]
-    rows = sorted({cell.row for cell in filled})
-    hidden = [row for row in rows if _is_hidden(sheet.row_dimensions[row], "height")]
+    rows = {cell.row for cell in filled}
+    hidden = sorted(row for row in rows if _is_hidden(sheet.row_dimensions[row], "height"))
     struck = sorted({cell.row for cell in filled if cell.font.strike})
-    hidden_letters = _hidden_letters(sheet, {cell.column for cell in filled})
+    letters = _hidden_letters(sheet, {cell.column for cell in filled})
+    merged = list(sheet.merged_cells.ranges)[:MOST_NAMED]
     wrong = []
     if hidden:
         allowed = "rows that are shown; hidden and filtered rows may count or not"
         wrong.append(InputError(field, _few("row", hidden), allowed, _SHOW).at(path, hidden[0]))
     if struck:
-        remedy = "Delete what does not count, and give the rest another font."
         allowed = "rows that are not struck through; these may count or not"
-        wrong.append(InputError(field, _few("row", struck), allowed, remedy).at(path, struck[0]))
-    if hidden_letters:
+        wrong.append(InputError(field, _few("row", struck), allowed, _UNSTRIKE).at(path, struck[0]))
+    if letters:
         allowed = "columns that are shown; hidden columns may count or not"
-        wrong.append(InputError(field, _few("column", hidden_letters), allowed, _SHOW).at(path, 1))
-    for merged in list(sheet.merged_cells.ranges)[:MOST_NAMED]:
+        wrong.append(InputError(field, _few("column", letters), allowed, _SHOW).at(path, 1))
+    for place in merged:
         allowed = "a cell for each line and column; these are merged"
-        remedy = "Split the cells and fill each of them."
-        wrong.append(InputError(field, f"cells {merged}", allowed, remedy).at(path, merged.min_row))
+        wrong.append(InputError(field, f"cells {place}", allowed, _SPLIT).at(path, place.min_row))
     raise_all(wrong)
+
+
+def _check_extent(sheet: Any, path: Path, field: str) -> None:
+    """Refuse a sheet of too many columns or cells."""
+    if sheet.max_column > MAX_COLUMNS or sheet.max_row * sheet.max_column > MAX_CELLS:
+        allowed = f"a sheet of at most {MAX_COLUMNS:,} columns and {MAX_CELLS:,} cells"
+        size = f"{sheet.max_column:,} columns, {sheet.max_row:,} rows"
+        remedy = "Remove what does not belong to the table, or save the sheet as CSV."
+        raise InputError(field, size, allowed, remedy).at(path, sheet.max_row)
 
 
 def _is_hidden(dimension: Any, size: str) -> bool:
@@ -182,9 +184,10 @@ def _hidden_letters(sheet: Any, columns: set[int]) -> list[str]:
 
 def _few(noun: str, names: Sequence[object]) -> str:
     """Return the first names behind their noun, and how many follow."""
+    if len(names) == 1:
+        return f"{noun} {names[0]}"
+    first = f"{noun}s {', '.join(map(str, names[:MOST_NAMED]))}"
     more = len(names) - MOST_NAMED
-    several = noun if len(names) == 1 else f"{noun}s"
-    first = f"{several} {', '.join(map(str, names[:MOST_NAMED]))}"
     return f"{first} and {more} more" if more > 0 else first
 
 
@@ -196,12 +199,8 @@ def _filled_up(rows: Iterator[list[str]]) -> Lines:
         letters += sum(map(len, cells))
         if letters > MOST_LETTERS:
             allowed = f"cells of at most {MOST_LETTERS // 1_000_000} million characters in all"
-            raise InputError(
-                "sheet",
-                f"row {number}",
-                allowed,
-                "Remove the long texts, or save the sheet as CSV.",
-            )
+            remedy = "Remove the long texts, or save the sheet as CSV."
+            raise InputError("sheet", f"row {number}", allowed, remedy)
         while len(cells) > width and not cells[-1]:
             cells.pop()
         cells += [""] * (width - len(cells))
@@ -225,7 +224,8 @@ def _checked(values: Sequence[Any], formulas: Sequence[Any], computed_on_load: b
             continue
         text = str(getattr(formula.value, "text", formula.value))
         stored = values[j].value
-        if (stored is None and values[j].data_type == "n") or (computed_on_load and stored == 0):
+        is_empty = stored is None and values[j].data_type == "n"
+        if is_empty or (computed_on_load and stored == 0):
             remedy = "Open the workbook in Excel or LibreOffice and save it there."
             cells[j] = Refused(text, "a value; the workbook holds a formula without its value", remedy)
         elif _takes_several(text, formula.column_letter) and not isinstance(cells[j], Refused):
