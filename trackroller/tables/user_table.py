@@ -248,12 +248,14 @@ def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, sourc
             line.pop()
     others = {number: line for number, line in rows.items() if len(line) != width}
     most = 1 if len(others) == len(rows) else MOST_ERRORS
-    remedy = "Write one name for each column, and one cell for each name."
+    longer = "Write one name for each column, and one cell for each name."
     if separator == ",":
-        remedy = "Write decimal points, or separate the columns by semicolons."
+        longer = "Write decimal points, or separate the columns by semicolons."
+    shorter = "Write one cell for each name, or remove the line."
     cells = "1 cell" if width == 1 else f"{width} cells"
     for number, line in itertools.islice(others.items(), most):
         allowed = f"{cells}, one for each name; there are {len(line)}"
+        remedy = shorter if len(line) < width else longer
         source.refuse(number, source.kind.field, ", ".join(line), allowed, remedy)
     for number in others:
         del rows[number]
