@@ -379,16 +379,15 @@ def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
 
 def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -> list[str]:
     """Return a column in which numbers with another decimal sign than the first of all cells are `Refused`."""
-    if len(signs) < 2:
+    certain = [cell for cell in cells if decimal_signs([cell])] if len(signs) > 1 else []
+    if not certain:
         return column
-    first = next(cell for cell in cells if decimal_signs([cell]))
-    own = decimal_signs([first])
-    allowed = f"one decimal sign in the file; {first} has another one"
-    remedy = "Write all numbers in the same way."
+    own = decimal_signs(certain[:1])
+    allowed = f"one decimal sign in the file; {certain[0]} has another one"
     read = []
     for cell in column:
         is_other = bool(decimal_signs([cell]) - own)
-        read.append(Refused(cell, allowed, remedy) if is_other else cell)
+        read.append(Refused(cell, allowed, "Write all numbers in the same way.") if is_other else cell)
     return read
 
 
