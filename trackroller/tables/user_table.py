@@ -137,6 +137,20 @@ def read_user_table(
     if content is None:
         content = read_bytes(path, kind.field)
     lines, separator = _file_lines(content, path, kind)
+    table = _named_columns_of(lines, separator, used, source)
+    _read_line_of_units(table, used, source)
+    numbers = _columns_of_numbers(table, used)
+    _read_numbers(table, numbers, kind.small)
+    _check_remarks(table, source)
+    _refuse_totals(table, numbers, source)
+    _refuse_mixtures(table, numbers, used)
+    _check_cells(table, source)
+    return table
+
+
+def _named_columns_of(lines: Iterable[Row], separator: str, used: Collection[str], source: Source) -> UserTable:
+    """Return the lines of a file as a table of named columns, whose cells are as they stand in the file."""
+    kind = source.kind
     filled = [(number, cells) for number, cells in lines if any(cells)]
     head, heads, below = split_lines(filled, kind)
     rows = dict(_without_comments(below, heads, source))
@@ -147,20 +161,12 @@ def read_user_table(
     with source.in_line(head):
         named = named_columns(heads, rows, kind.field)
         names, units = head_names_and_units([heads[j] for j in named], used, kind)
-    for line in rows.values():
-        line[:] = [line[j] for j in named]
+    rows = {number: [line[j] for j in named] for number, line in rows.items()}
+    comments = {number: cells for number, cells in filled if is_comment(cells)}
     table = UserTable(names, head, rows, kind.units, units, separator=separator, places=named)
-    _check_commas(table, source)
     table.width = max(len(cells) for _, cells in filled)
-    table.remarks = {n: _joined(cells) for n, cells in filled if is_comment(cells)}
-    table.remarks = {n: text for n, text in table.remarks.items() if n != head and n not in rows}
-    _read_line_of_units(table, used, source)
-    numbers = _columns_of_numbers(table, used)
-    _read_numbers(table, numbers, kind.small)
-    _check_remarks(table, source)
-    _refuse_totals(table, numbers, source)
-    _refuse_mixtures(table, numbers, used)
-    _check_cells(table, source)
+    table.remarks = {n: _joined(cells) for n, cells in comments.items() if n != head and n not in rows}
+    _check_commas(table, source)
     return table
 
 
