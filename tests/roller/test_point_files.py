@@ -351,6 +351,8 @@ def test_a_number_that_stays_ambiguous_is_refused(read):
 
 
 def test_two_decimal_signs_are_refused(read):
+    with pytest.raises(tr.InputError, match=r"line 1: x = '1\.500'.*1\.500 or 1500"):
+        read("1.500;2,250\n2.500;3,250")
     with pytest.raises(tr.InputError, match=r"line 12: x = '-2,0'.*one decimal sign in the file; -4.50000000"):
         read(lines_of("{x};{z}", "x;z").replace("-2.00000000;5.65685425", "-2,0;5,6569"))
 

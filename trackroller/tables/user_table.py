@@ -20,14 +20,11 @@ import dataclasses
 import itertools
 import math
 import re
-import unicodedata
-from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 
-from trackroller.errors import Collector, InputError, listing, raise_all
+from trackroller.errors import Collector, InputError, listing
 from trackroller.files import read_bytes, text_of
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import (
@@ -37,25 +34,27 @@ from trackroller.numerics.table_cells import (
     is_number,
     plain_column,
     plain_labels,
-    plain_quantity,
-    split_head,
     unbracketed,
 )
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
 from trackroller.tables.csv import csv_lines
-from trackroller.tables.xlsx import MAX_COLUMNS, sheet_lines
+from trackroller.tables.heads import (
+    check_head,
+    check_unit,
+    head_names_and_units,
+    is_comment,
+    is_unit,
+    named_columns,
+    split_lines,
+    until_names,
+)
+from trackroller.tables.kind import Row, Source, TableKind
+from trackroller.tables.totals import total_lines, value_of
+from trackroller.tables.xlsx import sheet_lines
 
 MOST_ERRORS = 1_000  # of a table; a message shows fewer
-ROUNDED = 0.01  # relative difference between a sum and what a line of totals states
-FAR = 1.8  # times the largest addend
 HEAD_ROWS = 1_000  # rows of a workbook among which the line of names is sought for its names alone
-Row = tuple[int, list[str]]  # number and cells of a line
 
-_SUM = re.compile(
-    r"(?:grand |sub-?)?totals?|sum|summe|gesamt(?:summe)?|zwischensumme|mean|average|mittelwert|[Σ∑]",
-    re.IGNORECASE,
-)
-_EXCEL_ERROR = re.compile(r"#(?:DIV/0!|N/A|NAME\?|NULL!|NUM!|REF!|VALUE!|#+)", re.IGNORECASE)
 _STATED_UNIT = re.compile(
     r"\[([^\[\]]{1,20})\]|\(([^()]{1,20})\)"
     r"|\b(?:in|units?|einheit|einheiten)\b(?: is| =|:|=)? *([^\s,;:]{1,20})",
@@ -65,47 +64,6 @@ _BARE_UNITS = ("N", "%", "lbf", "kgf", "kp")
 _OTHER_FORMATS = (".xls", ".xlsb", ".ods", ".fods", ".numbers")
 _OLD = "a workbook of the old format .xls, or one with a password"
 _ZIP, _OLE = b"PK\x03\x04", b"\xd0\xcf\x11\xe0"  # first bytes of new and of old workbooks
-
-
-@dataclass(frozen=True)
-class TableKind:
-    """What a table of users holds.
-
-    Parameters
-    ----------
-    field : str
-        Key of the study or spectrum that names the file, for messages.
-    row : str
-        What a row describes, such as 'case'.
-    units : mapping
-        Units of the known columns of numbers by their names.
-    words : collection of str
-        Names of known columns of words.
-    aliases : mapping
-        Names that stand for known ones.
-    optional : collection of str
-        Names of columns whose cells may be empty.
-    names : sequence of str
-        Names of the columns of a file without a line of names; () if it needs one.
-    blanks : bool
-        Whether blanks may separate the cells.
-    small : bool
-        Whether no number reaches 1000 in the unit of its column, so that `4.472` has decimals if no cell decides.
-    """
-
-    field: str
-    row: str
-    units: Mapping[str, str]
-    words: Collection[str] = ()
-    aliases: Mapping[str, str] = dataclasses.field(default_factory=dict)
-    optional: Collection[str] = ()
-    names: Sequence[str] = ()
-    blanks: bool = False
-    small: bool = False
-
-    def knows(self, name: str) -> bool:
-        """Return whether a name is that of a known column."""
-        return name in self.units or name in self.words or name in self.aliases
 
 
 @dataclass
@@ -145,28 +103,6 @@ class UserTable:
                 yield number, name, cell
 
 
-@dataclass(frozen=True)
-class _Source:
-    """The file of a table, what it holds, and the errors of its lines and cells."""
-
-    path: Path
-    kind: TableKind
-    wrong: Collector
-
-    def refuse(self, number: int, name: str, value: object, allowed: str, remedy: str = "", wrong: str = "") -> None:
-        """Add the error of a line."""
-        error = InputError(name, value, allowed, remedy, wrong)
-        self.wrong.errors.append(error.at(self.path, number))
-
-    @contextmanager
-    def in_line(self, number: int) -> Iterator[None]:
-        """Name file and line in the errors of a block."""
-        try:
-            yield
-        except InputError as error:
-            raise_all(one.at(self.path, number) for one in error.errors)
-
-
 def read_user_table(
     path: Path,
     kind: TableKind,
@@ -197,27 +133,11 @@ def read_user_table(
     InputError
         If the file is not readable, has only one line, or has heads that are no names.
     """
-    source = _Source(path, kind, wrong)
+    source = Source(path, kind, wrong)
     if content is None:
         content = read_bytes(path, kind.field)
     lines, separator = _file_lines(content, path, kind)
-    filled = [(number, cells) for number, cells in lines if any(cells)]
-    head, heads, below = _split(filled, kind)
-    rows = dict(_without_comments(below, heads, source))
-    _check_rows(rows, heads, source)
-    _check_head(heads, rows, head, source)
-    _check_lengths(rows, len(heads), separator, source)
-    _check_rows(rows, heads, source)
-    with source.in_line(head):
-        named = _named_columns(heads, rows, kind.field)
-        names, units = _names([heads[j] for j in named], used, kind)
-    for line in rows.values():
-        line[:] = [line[j] for j in named]
-    table = UserTable(names, head, rows, kind.units, units, separator=separator, places=named)
-    _check_commas(table, source)
-    table.width = max(len(cells) for _, cells in filled)
-    table.remarks = {n: _joined(cells) for n, cells in filled if _is_comment(cells)}
-    table.remarks = {n: text for n, text in table.remarks.items() if n != head and n not in rows}
+    table = _named_columns_of(lines, separator, used, source)
     _read_line_of_units(table, used, source)
     numbers = _columns_of_numbers(table, used)
     _read_numbers(table, numbers, kind.small)
@@ -228,12 +148,34 @@ def read_user_table(
     return table
 
 
+def _named_columns_of(lines: Iterable[Row], separator: str, used: Collection[str], source: Source) -> UserTable:
+    """Return the lines of a file as a table of named columns, whose cells are as they stand in the file."""
+    kind = source.kind
+    filled = [(number, cells) for number, cells in lines if any(cells)]
+    head, heads, below = split_lines(filled, kind)
+    rows = dict(_without_comments(below, heads, source))
+    _check_rows(rows, heads, source)
+    check_head(heads, rows, head, source)
+    _check_lengths(rows, len(heads), separator, source)
+    _check_rows(rows, heads, source)
+    with source.in_line(head):
+        named = named_columns(heads, rows, kind.field)
+        names, units = head_names_and_units([heads[j] for j in named], used, kind)
+    rows = {number: [line[j] for j in named] for number, line in rows.items()}
+    comments = {number: cells for number, cells in filled if is_comment(cells)}
+    table = UserTable(names, head, rows, kind.units, units, separator=separator, places=named)
+    table.width = max(len(cells) for _, cells in filled)
+    table.remarks = {n: _joined(cells) for n, cells in comments.items() if n != head and n not in rows}
+    _check_commas(table, source)
+    return table
+
+
 def head_names(content: bytes, path: Path, kind: TableKind) -> list[str]:
     """Return the names of the columns of a table; [] for an empty one."""
     lines, _ = _file_lines(content, path, kind, HEAD_ROWS)
-    number, heads, _ = _split(_until_names(lines), kind)
-    with _Source(path, kind, Collector()).in_line(number):
-        return _names([head for head in heads if head], (), kind)[0]
+    number, heads, _ = split_lines(until_names(lines), kind)
+    with Source(path, kind, Collector()).in_line(number):
+        return head_names_and_units([head for head in heads if head], (), kind)[0]
 
 
 def is_workbook(path: Path) -> bool:
@@ -274,61 +216,11 @@ def _joined(cells: Iterable[str]) -> str:
     return " ".join(filter(None, cells))
 
 
-def _is_comment(cells: Sequence[str]) -> bool:
-    first = cells[0]
-    return first.startswith("#") and not isinstance(first, Refused) and not _EXCEL_ERROR.match(first)
-
-
-def _until_names(lines: Iterable[Row]) -> Iterator[Row]:
-    """Yield the filled lines up to the first one that is no comment."""
-    for number, cells in lines:
-        if any(cells):
-            yield number, cells
-            if not _is_comment(cells):
-                return
-
-
-def _split(lines: Iterable[Row], kind: TableKind) -> tuple[int, list[str], list[Row]]:
-    """Return the number of the line of names, the names, and the lines below.
-
-    NumPy writes the names behind '#'. A file that needs no names may begin with its first row.
-    """
-    lines = list(lines)
-    first = next((i for i, (_, cells) in enumerate(lines) if not _is_comment(cells)), None)
-    if first is None:
-        return 0, [], []
-    number, cells = lines[first]
-    if first and not _are_names(cells, kind):
-        before, (mark, *others) = lines[first - 1]
-        commented = [mark.lstrip("# "), *others]
-        if _are_names(commented, kind):
-            return before, _without_end(commented), lines[first:]
-    if kind.names and _is_quantity(cells[0]):
-        return number, list(kind.names), lines[first:]
-    return number, _without_end(cells), lines[first + 1 :]
-
-
-def _are_names(cells: Iterable[str], kind: TableKind) -> bool:
-    return any(kind.knows(split_head(cell)[0]) for cell in cells)
-
-
-def _is_quantity(cell: str) -> bool:
-    """Return whether a cell holds a number, maybe with a decimal comma and a unit."""
-    return is_number(cell) or not math.isnan(_value(plain_quantity(cell) or cell))
-
-
-def _without_end(heads: list[str]) -> list[str]:
-    """Return heads without the empty ones behind the last name."""
-    while heads and not heads[-1]:
-        heads = heads[:-1]
-    return heads
-
-
-def _without_comments(lines: list[Row], heads: list[str], source: _Source) -> Iterator[Row]:
+def _without_comments(lines: list[Row], heads: list[str], source: Source) -> Iterator[Row]:
     """Yield the lines that are no comments; where all lines begin with '#', it belongs to their labels."""
-    labels = all(_is_comment(cells) for _, cells in lines)
+    labels = all(is_comment(cells) for _, cells in lines)
     for number, cells in lines:
-        if labels or not _is_comment(cells):
+        if labels or not is_comment(cells):
             yield number, cells
         elif _is_row_behind_a_mark(cells, len(heads)):
             remedy = "Remove the line if it does not count, and '#' if it does."
@@ -343,7 +235,7 @@ def _is_row_behind_a_mark(cells: list[str], width: int) -> bool:
     return is_number_alone or is_whole or any(map(is_number, cells[1:]))
 
 
-def _check_rows(rows: dict[int, list[str]], heads: list[str], source: _Source) -> None:
+def _check_rows(rows: dict[int, list[str]], heads: list[str], source: Source) -> None:
     """Refuse a table without names or rows."""
     if heads and rows:
         return
@@ -352,43 +244,7 @@ def _check_rows(rows: dict[int, list[str]], heads: list[str], source: _Source) -
     raise InputError(source.kind.field, str(source.path), allowed)
 
 
-def _check_head(heads: list[str], rows: dict[int, list[str]], head: int, source: _Source) -> None:
-    """Refuse a line above the line of names, and names that blanks separate."""
-    kind = source.kind
-    if _are_names(heads, kind):
-        _check_separated(heads, head, source)
-        return
-    shown = ", ".join(filter(None, heads))
-    for number, line in itertools.islice(rows.items(), 20):
-        if _are_names(line, kind):
-            allowed = f"the names of the columns, which stand in line {number}"
-            remedy = "Remove the lines above it, or put '#' before them."
-            raise InputError(kind.field, shown, allowed, remedy).at(source.path, head)
-    if kind.names:
-        with source.in_line(head):
-            for name in heads:
-                _check_spelling(name, kind)
-        example = "; ".join(f"{name} [{kind.units[name]}]" for name in kind.names)
-        allowed = f"a {kind.row}, or the names of the columns, such as {example}"
-        remedy = (
-            f"If it names the columns, write {listing(kind.names)} with their units; otherwise remove such lines, or "
-            "put '#' before them."
-        )
-        wrong = f"is neither a {kind.row} nor the names of the columns"
-        raise InputError(kind.field, shown, allowed, remedy, wrong).at(source.path, head)
-    _check_separated(heads, head, source)
-
-
-def _check_separated(heads: list[str], head: int, source: _Source) -> None:
-    """Refuse names that blanks separate."""
-    words = heads[0].split()
-    if len(heads) == 1 and sum(map(source.kind.knows, words)) > 1:
-        allowed = "names with a semicolon, tab, bar or comma between them"
-        remedy = "Separate the columns by one of these."
-        raise InputError(source.kind.field, heads[0], allowed, remedy).at(source.path, head)
-
-
-def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, source: _Source) -> None:
+def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, source: Source) -> None:
     """Move lines with more or fewer cells than names to the errors; empty cells at the end of a line do not count.
 
     Where no line has a cell for each name, the first one is named alone.
@@ -398,18 +254,20 @@ def _check_lengths(rows: dict[int, list[str]], width: int, separator: str, sourc
             line.pop()
     others = {number: line for number, line in rows.items() if len(line) != width}
     most = 1 if len(others) == len(rows) else MOST_ERRORS
-    remedy = "Write one name for each column, and one cell for each name."
+    longer = "Write one name for each column, and one cell for each name."
     if separator == ",":
-        remedy = "Write decimal points, or separate the columns by semicolons."
+        longer = "Write decimal points, or separate the columns by semicolons."
+    shorter = "Write one cell for each name, or remove the line."
     cells = "1 cell" if width == 1 else f"{width} cells"
     for number, line in itertools.islice(others.items(), most):
         allowed = f"{cells}, one for each name; there are {len(line)}"
+        remedy = shorter if len(line) < width else longer
         source.refuse(number, source.kind.field, ", ".join(line), allowed, remedy)
     for number in others:
         del rows[number]
 
 
-def _check_commas(table: UserTable, source: _Source) -> None:
+def _check_commas(table: UserTable, source: Source) -> None:
     """Refuse numbers between commas without names and points: `-4,472` may be one number."""
     number, line = next(iter(table.lines.items()))
     if table.separator != "," or table.head != number:
@@ -421,112 +279,7 @@ def _check_commas(table: UserTable, source: _Source) -> None:
         raise error.at(source.path, number)
 
 
-def _is_unnamed(head: str) -> bool:
-    return not head or re.fullmatch(r"Unnamed: \d+", head) is not None
-
-
-def _named_columns(heads: list[str], rows: dict[int, list[str]], field: str) -> list[int]:
-    """Return the places of the columns with names; refuse cells without a name, and a second table."""
-    unnamed = [j for j, head in enumerate(heads) if _is_unnamed(head)]
-    named = [j for j, head in enumerate(heads) if not _is_unnamed(head)]
-    for j in unnamed:
-        cells = [line[j] for line in rows.values()]
-        if any(cells):
-            wrong = f"are cells of column {j + 1}, which has no name"
-            remedy = "Name it, or remove it."
-            if _counts(cells):
-                remedy = "Leave the index out (pandas: index=False), or name it."
-            shown = ", ".join(cells[:3])
-            raise InputError(field, shown, "a name for each column", remedy, wrong)
-    for j in unnamed:
-        beside = [heads[k] for k in named if k > j]
-        if beside and len(beside) < len(named):
-            stand = "stands" if len(beside) == 1 else "stand"
-            wrong = f"{stand} beside the empty column {j + 1}, as a second table does"
-            remedy = "Remove the empty column if these columns belong to the table, and these columns if not."
-            raise InputError(field, ", ".join(beside), "columns of one table", remedy, wrong)
-    return named
-
-
-def _counts(cells: list[str]) -> bool:
-    """Return whether cells count the rows from 0 or 1 on."""
-    from_zero = [str(i) for i in range(len(cells) + 1)]
-    return cells in (from_zero[:-1], from_zero[1:])
-
-
-def _names(heads: list[str], used: Collection[str], kind: TableKind) -> tuple[list[str], list[str]]:
-    """Return the names of the columns and their units; '' for a column without unit.
-
-    A column that is no number of the program keeps the unit as a part of its name, because no number is converted.
-    """
-    if len(heads) > MAX_COLUMNS:
-        allowed = f"at most {MAX_COLUMNS:,} columns"
-        raise InputError(kind.field, f"{len(heads)} columns", allowed, "Remove some of them.")
-    names = []
-    units = []
-    wrong = Collector()
-    for head in heads:
-        whole = unicodedata.normalize("NFC", head)
-        name, unit = split_head(whole)
-        name = kind.aliases.get(name, name)
-        known = name in kind.units
-        plain = unit in PLAIN
-        with wrong.part():
-            _check_named(head, name, unit, used, kind)
-        names.append(name if known or plain else whole)
-        units.append(unit if known and not plain else "")
-    for name, beside in itertools.pairwise(names):
-        with wrong.part():
-            _check_unit_beside(name, beside, kind)
-    wrong.check()
-    counts = Counter(names)
-    doubled = [name for name in names if counts[name] > 1]
-    if doubled:
-        allowed = "a different name for each column"
-        raise InputError(kind.field, ", ".join(doubled), allowed, "Rename or remove a column.")
-    return names, units
-
-
-def _check_named(head: str, name: str, unit: str, used: Collection[str], kind: TableKind) -> None:
-    """Refuse a head that is not clear, and a unit that nothing would convert."""
-    if isinstance(head, Refused):
-        raise InputError(kind.field, head, *head.message)
-    if name in kind.units and unit:
-        _check_unit(name, unit, kind.units)
-    if not kind.knows(name):
-        _check_spelling(head, kind)
-    if name in used and name not in kind.units and unit not in PLAIN:
-        allowed = f"a column without a unit, because an expression uses {name} and knows no units"
-        remedy = f"Convert the numbers to the unit that the expression needs, and name the column {name}."
-        raise InputError("column", head, allowed, remedy)
-
-
-def _check_spelling(head: str, kind: TableKind) -> None:
-    """Refuse a known name with a unit that does not stand in brackets, such as `velocity_m/s`."""
-    for name, own in kind.units.items():
-        if not head.lower().startswith(name):
-            continue
-        unit = head[len(name) :].strip(" _:-<>{}[]()")
-        if unit == own or _is_unit(name, unit, kind.units):
-            wrong = "is no name with a unit in brackets"
-            raise InputError("column", head, "names of columns", f"Write {name} [{unit}].", wrong)
-
-
-def _check_unit_beside(name: str, beside: str, kind: TableKind) -> None:
-    """Refuse a unit in a cell of its own: with decimal commas its column would hold the decimals."""
-    if name in kind.units and not kind.knows(beside) and _is_unit(name, beside, kind.units):
-        wrong = f"is a unit in a cell of its own, beside {name}"
-        raise InputError("column", beside, "names of columns", f"Write {name} [{beside}], or rename it.", wrong)
-
-
-def _check_unit(name: str, unit: str, known: Mapping[str, str]) -> None:
-    """Refuse a unit that measures something else than the column."""
-    same = unit == known[name] or (unit in PLAIN and known[name] in PLAIN)
-    if not same:
-        in_unit(1.0, unit, known[name], name)
-
-
-def _read_line_of_units(table: UserTable, used: Collection[str], source: _Source) -> None:
+def _read_line_of_units(table: UserTable, used: Collection[str], source: Source) -> None:
     """Take a line of units below the names out of the table, if there is one, and complete the units."""
     number, line = next(iter(table.lines.items()))
     if not _is_line_of_units(table, line, source.kind):
@@ -551,7 +304,7 @@ def _is_line_of_units(table: UserTable, line: list[str], kind: TableKind) -> boo
     if any(map(is_number, below.values())):
         return False
     known = {cell for name, cell in pairs if kind.knows(name)}
-    return known == {"-"} or any(_is_unit(name, unit, table.known) for name, unit in below.items())
+    return known == {"-"} or any(is_unit(name, unit, table.known) for name, unit in below.items())
 
 
 def _unit_below(name: str, cell: str, stated: str, used: Collection[str], known: Mapping[str, str]) -> str:
@@ -568,11 +321,11 @@ def _unit_below(name: str, cell: str, stated: str, used: Collection[str], known:
     if stated:
         allowed = f"the unit at the head of the column, {stated}"
         raise InputError(name, cell, allowed, "Remove one of them.")
-    _check_unit(name, unit, known)
+    check_unit(name, unit, known)
     return "" if unit in PLAIN else unit
 
 
-def _check_remarks(table: UserTable, source: _Source) -> None:
+def _check_remarks(table: UserTable, source: Source) -> None:
     """Refuse a comment that states another unit for numbers of which neither the head nor the cells state one."""
     bare = [
         name
@@ -594,7 +347,7 @@ def _check_remarks(table: UserTable, source: _Source) -> None:
 
 def _is_other_unit(name: str, unit: str, known: Mapping[str, str]) -> bool:
     """Return whether a text is a unit of a column's numbers, and of another size than their own."""
-    return _is_unit(name, unit, known) and in_unit(1.0, unit, known[name], name) != 1.0
+    return is_unit(name, unit, known) and in_unit(1.0, unit, known[name], name) != 1.0
 
 
 def _units_of(text: str) -> list[str]:
@@ -604,17 +357,6 @@ def _units_of(text: str) -> list[str]:
     others = [word.strip(".") for word in re.split(r"[\s,;:=#()\[\]]+", words)]
     bare = [word for word in others if re.search(r"[A-ZµμΩ/%°]", word[1:]) or word in _BARE_UNITS]
     return stated + bare
-
-
-def _is_unit(name: str, text: str, known: Mapping[str, str]) -> bool:
-    """Return whether a text is a unit of a column's numbers."""
-    if text in PLAIN or split_quantity(f"1 {text}") is None:
-        return False
-    try:
-        in_unit(1.0, text, known[name], name)
-    except InputError:
-        return False
-    return True
 
 
 def _columns_of_numbers(table: UserTable, used: Collection[str]) -> list[int]:
@@ -643,16 +385,15 @@ def _read_numbers(table: UserTable, numbers: list[int], small: bool) -> None:
 
 def _with_one_sign(column: list[str], cells: list[str], signs: frozenset[str]) -> list[str]:
     """Return a column in which numbers with another decimal sign than the first of all cells are `Refused`."""
-    if len(signs) < 2:
+    certain = [cell for cell in cells if decimal_signs([cell])] if len(signs) > 1 else []
+    if not certain:
         return column
-    first = next(cell for cell in cells if decimal_signs([cell]))
-    own = decimal_signs([first])
-    allowed = f"one decimal sign in the file; {first} has another one"
-    remedy = "Write all numbers in the same way."
+    own = decimal_signs(certain[:1])
+    allowed = f"one decimal sign in the file; {certain[0]} has another one"
     read = []
     for cell in column:
         is_other = bool(decimal_signs([cell]) - own)
-        read.append(Refused(cell, allowed, remedy) if is_other else cell)
+        read.append(Refused(cell, allowed, "Write all numbers in the same way.") if is_other else cell)
     return read
 
 
@@ -698,46 +439,15 @@ def _with_unit(cell: str) -> bool:
     return parts is not None and parts[1] != "" and not isinstance(cell, Refused)
 
 
-def _refuse_totals(table: UserTable, numbers: list[int], source: _Source) -> None:
-    """Move lines that are named as a total, and a last line that surely is one, to the errors."""
+def _refuse_totals(table: UserTable, numbers: list[int], source: Source) -> None:
+    """Move lines that sum up others to the errors."""
     labels = [j for j, name in enumerate(table.names) if name not in table.known and j not in numbers]
-    rows = list(table.lines.items())
-    totals = [number for number, line in rows if _is_named_total(line, labels or [0])]
-    if rows and _sums_up([line for _, line in rows[:-1]], rows[-1][1], numbers):
-        totals.append(rows[-1][0])
     row = source.kind.row
     allowed = f"one {row} a line; this line sums up the lines above or below"
     remedy = f"Remove the line; if it is a {row}, rename it or put it further up."
-    for number in dict.fromkeys(totals):
+    for number in total_lines(table.lines, numbers, labels or [0]):
         line = table.lines.pop(number)
         source.refuse(number, source.kind.field, ", ".join(line), allowed, remedy)
-
-
-def _is_named_total(line: list[str], labels: list[int]) -> bool:
-    return any(_SUM.fullmatch(line[j].strip(" :")) for j in labels)
-
-
-def _sums_up(above: list[list[str]], line: list[str], numbers: list[int]) -> bool:
-    """Return whether the numbers of a line are sums of the lines above, maybe rounded, of three addends at least.
-
-    Levels such as 0, 10, 20 and 30 or 0, 3, 0 and 3 often add up; their sum is not far above the largest.
-    """
-    is_far = False
-    for j in numbers:
-        value = _value(line[j])
-        if not line[j] or value == 0:
-            continue
-        addends = [number for number in (_value(cells[j]) for cells in above) if number]
-        if len(addends) < 3 or not math.isclose(sum(addends), value, rel_tol=ROUNDED):
-            return False
-        if abs(value) > FAR * max(map(abs, addends)):
-            is_far = True
-    return is_far
-
-
-def _value(cell: str) -> float:
-    parts = split_quantity(cell)
-    return number_or_nan(parts[0] if parts else cell)
 
 
 def _refuse_mixtures(table: UserTable, numbers: list[int], used: Collection[str]) -> None:
@@ -746,14 +456,14 @@ def _refuse_mixtures(table: UserTable, numbers: list[int], used: Collection[str]
     remedy = "Write a number without unit, or words in all of its cells."
     for j, name in enumerate(table.names):
         is_free = name in used and name not in table.known and j not in numbers
-        if not is_free or table.all(j, lambda cell: math.isnan(_value(cell))):
+        if not is_free or table.all(j, lambda cell: math.isnan(value_of(cell))):
             continue
         for line in table.lines.values():
             if line[j] and not isinstance(line[j], Refused) and not is_number(line[j]):
                 line[j] = Refused(line[j], allowed, remedy)
 
 
-def _check_cells(table: UserTable, source: _Source) -> None:
+def _check_cells(table: UserTable, source: Source) -> None:
     """Refuse cells that are empty or not clear."""
     optional = {*source.kind.optional}
     for j, name in enumerate(table.names):

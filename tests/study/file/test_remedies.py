@@ -23,6 +23,7 @@ def read(path):
         ("radial_force;part\n-1.200;a\n", "Write -1200 or -1.2000", "radial_force;part\n-1200;a\n"),
         ("radial_force;part\n-1.200;a\n", "Write -1200 or -1.2000", "radial_force;part\n-1.2000;a\n"),
         ("radial_force\n-1.200\n-1.300\n", "such as -1.2000 decides for the whole", "radial_force\n-1.2000\n-1.300\n"),
+        ("radial_force;part\n-2;a\npause\n-3;b\n", "or remove the line", "radial_force;part\n-2;a\n-3;b\n"),
         ("radial_force\n-200,5\n", "Write decimal points", "radial_force\n-200.5\n"),
         ("radial_force,part\n-200,5,a\n", "separate the columns by semicolons", "radial_force;part\n-200,5;a\n"),
         (",radial_force\n0,-200\n1,-300\n", "Leave the index out", "radial_force\n-200\n-300\n"),

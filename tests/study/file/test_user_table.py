@@ -214,6 +214,9 @@ def test_a_head_is_the_same_name_however_its_letters_are_composed(tmp_path):
 def test_labels_stay_as_they_are(tmp_path):
     read = cases("radial_force,part,order,size\n-200,00123,3E5,1.5\n-210,00124,1E2,2\n", tmp_path)
     assert read["part"] == ["00123", "00124"] and read["order"] == ["3E5", "1E2"] and read["size"] == [1.5, 2.0]
+    words = ["NA", "nan", "None", "null", "-", "TRUE"]
+    lines = "".join(f"{word};{-30 - i}\n" for i, word in enumerate(words))
+    assert cases(f"id;radial_force\n{lines}", tmp_path)["id"] == words
     assert cases("id;radial_force\n#1;-30\n#2;-40\n", tmp_path)["id"] == ["#1", "#2"]
 
 
