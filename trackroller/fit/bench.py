@@ -31,7 +31,9 @@ from trackroller.fit.line import Line, Tests
 from trackroller.fit.posterior import ln_range
 from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.materials import Material, load_database
-from trackroller.numerics.units import in_unit, split_quantity
+from trackroller.numerics.numbers import finite_number
+from trackroller.numerics.plain import plain
+from trackroller.numerics.units import split_quantity
 from trackroller.parameters import BODIES, LIMITS, MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.example import not_given_text
 from trackroller.parameters.validity import VALIDITY
@@ -148,9 +150,13 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> low < fit.material["fatigue_limit"] < high
     True
     """
-    wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else list(fit)
+    wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else plain(fit, "fit")
+    if not isinstance(wanted, list):
+        raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
+    if base is not None and not isinstance(base, Mapping):
+        raise InputError("base", base, "a mapping with fields of a case and options", "Give the values themselves.")
     check_names("fit", wanted, FITTED)
-    check_held(slope, scatter_in_cycles)
+    slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
     held = {"slope": slope, "scatter": scatter_in_cycles}
     wanted = [name for name in wanted if held.get(name) is None]
     if not wanted:
@@ -254,18 +260,19 @@ def _end(rows: TestTable, row: int) -> End:
     if parts is None:
         raise rows.error(row, "end", "wear, body and depth", remedy)
     try:
-        depth = in_unit(float(parts[0]), parts[1], "mm", "end")
+        depth = finite_number(" ".join(parts), "mm", "end")
     except InputError:
         raise rows.error(row, "end", "a depth as a length", remedy) from None
     if not depth > 0:
-        raise rows.error(row, "end", "a depth above 0", remedy)
+        raise rows.error(row, "end", "a finite depth above 0", remedy)
     return End(mode, body, depth)
 
 
 def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
     """Return the travels between which a test ended [km]; the second is inf for a suspension."""
     low = rows.number(row, "travel_from", 0.0)
-    high = rows.number(row, "travel_to", LEAST)
+    whole = "Write the travel of the end, or end = none and an empty travel_to for a roller that was stopped whole."
+    high = rows.number(row, "travel_to", LEAST, remedy=whole)
     if math.isnan(low):
         raise rows.error(row, "travel_from", "a travel [km]; the cell is empty", "Fill the cell.")
     if end.mode == "none":
@@ -395,6 +402,9 @@ def worst_stress(design: Any, given: Mapping[str, str], name: str) -> tuple[floa
     name : str
         Name of the fit, for messages.
     """
+    if not isinstance(design, (Case, Mapping)):
+        remedy = "Write tr.Case(...), or a mapping such as {'radial_force': -150}."
+        raise InputError("design", design, "a case, or a mapping with fields of a case and options", remedy)
     values = {n: getattr(design, n) for n in FIELDS} if isinstance(design, Case) else dict(design)
     case, options, _ = checked_case(values)
     check_same(given, options, name)
@@ -507,7 +517,7 @@ def _fatigue_group(
         raise rows.error(last, column, "failures at two loads or more, from which the slope follows", remedy)
     if slope is None:
         check_falls(rows, tests, "travel_from", origin)
-    line = Line(tests, slope=slope, scatter=scatter)
+    line = Line(tests, slope=slope, scatter=scatter, specimens=len(set(origin)))
     if len(rows) <= len(line.free):
         remedy = "Test more rollers, or fit fewer values."
         raise InputError("tests", len(rows), f"more rows than the {len(line.free)} fitted values", remedy)

@@ -23,7 +23,8 @@ from trackroller.fit.fitted import Fit, Group
 from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
 from trackroller.fit.table import LEAST, TestTable, read_tests
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.numbers import finite_number, number_or_nan
+from trackroller.numerics.plain import plain
 
 NEEDED = ("amplitude", "cycles", "failed")
 COLUMNS = (*NEEDED, "group", "test", "note")
@@ -37,6 +38,8 @@ LOAD_TYPES = {
 YES = ("1", "1.0", "true", "yes", "y", "failed", "failure", "fracture", "broken", "ja", "x")
 NO = ("0", "0.0", "false", "no", "n", "run-out", "runout", "run out", "survived", "suspended", "nein", "none")
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
+MOST_CYCLES, MOST_STRESS = 1e15, 1e5  # more is a mistake: 30,000 years at 1 kHz, and above any strength in MPa
+STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped, with failed = no."
 TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
 NO_LIMIT = (
     "No fatigue limit makes the tests likelier than the line alone, on which run-outs are long lives: the line was "
@@ -104,12 +107,12 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     tests = read_tests(table, NEEDED, COLUMNS, ("group", "test", "note"))
     if load_type is not None:
         check_names("load type", [load_type], LOAD_TYPES)
-    ratio = math.nan if stress_ratio is None else number_or_nan(stress_ratio)
+    ratio = math.nan if stress_ratio is None else finite_number(stress_ratio)
     if stress_ratio is not None and not ratio < 1.0:
-        raise InputError("stress ratio", stress_ratio, "a number below 1", "Give -1 for full reversal.")
+        raise InputError("stress ratio", stress_ratio, "a finite number below 1", "Give -1 for full reversal.")
     tests = _of_group(tests, group)
     factor = LOAD_TYPES[load_type][0] if load_type else 1.0
-    check_held(slope, scatter_in_cycles)
+    slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
     observed = _observed(tests, factor)
     _check_duplicates(tests)
     if slope is None:
@@ -145,19 +148,25 @@ def _too_flat(field: str, slope: Any) -> InputError:
 
 def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
     """Return the priors of a line by the names of its values, from those of a user; see `fit_sn`."""
-    given = dict(given or {})
-    check_names("prior", given, ("slope", "scatter_in_cycles", "fatigue_strength"))
+    given = {} if given is None else plain(given, "prior")
+    if not isinstance(given, Mapping):
+        remedy = "Name the value, such as {'slope': [8, 2]}."
+        raise InputError("prior", given, f"a mapping from {listing([*PRIORS], 'or')} to two numbers", remedy)
+    check_names("prior", given, PRIORS)
     found = {}
     for name, pair in given.items():
-        allowed = "[mean, standard deviation > 0] of the slope" if name == "slope" else "[median > 0, sd of ln > 0]"
-        if not isinstance(pair, Sequence) or isinstance(pair, str) or len(pair) != 2:
+        low, high = PRIORS[name]
+        first = "mean" if name == "slope" else "median"
+        second = "standard deviation" if name == "slope" else "standard deviation of ln"
+        allowed = f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to {MOST_SPREAD:g}]"
+        if not isinstance(pair, list) or len(pair) != 2:
             raise InputError(f"prior.{name}", pair, allowed)
-        middle, deviation = map(number_or_nan, pair)
-        if not (middle > 0 and deviation > 0):
-            raise InputError(f"prior.{name}", list(pair), allowed)
+        middle, deviation = map(finite_number, pair)
+        if name == "slope" and 0 < abs(middle) < low:
+            raise _too_flat("prior.slope", middle)
+        if not (low <= middle <= high and LEAST_SPREAD <= deviation <= MOST_SPREAD):
+            raise InputError(f"prior.{name}", pair, allowed)
         if name == "slope":
-            if middle < 1.0:
-                raise _too_flat("prior.slope", middle)
             found["slope"] = Normal(middle, deviation)
         elif name == "scatter_in_cycles":  # ln s of T_N = exp(2.563 s)
             own = math.log(middle) / math.log(ln_range(1.0))
@@ -167,10 +176,22 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
     return found
 
 
+def _range_of_scatter() -> tuple[float, float]:
+    """Return the bounds of the scatter T_N."""
+    low, high = (ln_range(math.exp(end)) for end in BOUNDS["log_scatter"])
+    return low, high
+
+
+# bounds of the middle of a prior
+PRIORS = {"slope": BOUNDS["slope"], "scatter_in_cycles": _range_of_scatter(), "fatigue_strength": (1.0, MOST_STRESS)}
+LEAST_SPREAD, MOST_SPREAD = 1e-4, 1e4  # of a prior
+
+
 def _of_group(tests: TestTable, group: str | None) -> TestTable:
     """Return the rows of one group; refuse a table with several groups of which none is asked for."""
     found = Counter(tests.text(row, "group") for row in tests)
     if group is not None:
+        group = str(group)
         rows = [row for row in tests if tests.text(row, "group") == group]
         if not rows:
             raise InputError("group", group, f"a group of the table: {listing(sorted(found), 'or')}")
@@ -187,16 +208,13 @@ def _observed(tests: TestTable, factor: float) -> Tests:
     """Return amplitude and cycles of each row as logarithms."""
     stress, low, high = [], [], []
     for row in tests:
-        amplitude = tests.number(row, "amplitude", LEAST)
-        cycles = tests.number(row, "cycles", LEAST)
+        amplitude = tests.number(row, "amplitude", LEAST, MOST_STRESS)
+        cycles = tests.number(row, "cycles", LEAST, MOST_CYCLES, STOPPED)
         for column, value in (("amplitude", amplitude), ("cycles", cycles)):
             if math.isnan(value):
                 raise tests.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")
         if cycles < FEWEST_CYCLES and not cycles.is_integer():
             raise tests.error(row, "cycles", "a whole number of load cycles", TRAVEL)
-        if math.isinf(cycles):
-            remedy = "Write the cycles at which the specimen was stopped, with failed = no."
-            raise tests.error(row, "cycles", "a finite number of load cycles", remedy)
         word = tests.text(row, "failed").lower()
         if word not in (*YES, *NO):
             raise tests.error(row, "failed", "yes or no, 1 or 0, failed or run-out", "Correct the cell.")
@@ -230,17 +248,24 @@ def deviation_of(scatter_in_cycles: float) -> float:
     return math.log(scatter_in_cycles) / math.log(ln_range(1.0))
 
 
-def check_held(slope: float | None, scatter_in_cycles: float | None) -> None:
-    """Refuse a slope or scatter that is held outside the bounds of a line."""
+def check_held(slope: Any, scatter_in_cycles: Any) -> tuple[float | None, float | None]:
+    """Return slope and scatter that are held as numbers; refuse those outside the bounds of a line."""
     low, high = BOUNDS["slope"]
-    if slope is not None and 0 < abs(number_or_nan(slope)) < low:
-        raise _too_flat("slope", slope)
-    if slope is not None and not low <= number_or_nan(slope) <= high:
-        raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
-    low, high = (ln_range(math.exp(end)) for end in BOUNDS["log_scatter"])
-    if scatter_in_cycles is not None and not low <= number_or_nan(scatter_in_cycles) <= high:
-        allowed = f"a number from {low:.3g} to {high:.3g}"
-        raise InputError("scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4.")
+    if slope is not None:
+        number = finite_number(slope)
+        if 0 < abs(number) < low:
+            raise _too_flat("slope", slope)
+        if not low <= number <= high:
+            raise InputError("slope", slope, f"a number from {low:g} to {high:g}", "Give k of N = c S^-k, such as 8.")
+        slope = number
+    low, high = _range_of_scatter()
+    if scatter_in_cycles is not None:
+        number = finite_number(scatter_in_cycles)
+        if not low <= number <= high:
+            allowed = f"a number from {low:.3g} to {high:.3g}"
+            raise InputError("scatter", scatter_in_cycles, allowed, "Give T_N = N_90/N_10, such as 4.")
+        scatter_in_cycles = number
+    return slope, scatter_in_cycles
 
 
 def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[int] | None = None) -> None:
@@ -336,8 +361,11 @@ def of_words(words: Collection[str], field: str) -> dict[str, list[float]]:
     found = {}
     for word in words:
         name, sign, pair = word.partition("=")
-        numbers = [number_or_nan(part) for part in pair.split(",")]
+        numbers = [finite_number(part) for part in pair.split(",")]
         if not sign or len(numbers) != 2 or any(map(math.isnan, numbers)):
-            raise InputError(field, word, "NAME=MIDDLE,DEVIATION", "For example slope=8,2")
+            raise InputError(field, word, "NAME=MIDDLE,DEVIATION, two finite numbers", "For example slope=8,2")
+        if name.strip() in found:
+            remedy = f"Give {name.strip()} once."
+            raise InputError(field, word, "one prior for each value", remedy, f"stands beside another {name.strip()}")
         found[name.strip()] = numbers
     return found

@@ -20,7 +20,7 @@ from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength,
 from trackroller.fit.table import TestTable
 from trackroller.materials import Material, add_material
 from trackroller.materials.file import posterior_path
-from trackroller.numerics.numbers import number_or_nan
+from trackroller.numerics.numbers import finite_number
 
 CONFIDENCE = 0.9
 # name in `.data` and in an entry of the database, by the value of a line of each kind
@@ -323,17 +323,12 @@ class Fit:
         InputError
             For an unknown quantity, or one that was not fitted.
         """
-        for field_name, value in (("failure_probability", failure_probability), ("confidence", confidence)):
-            if not 0.0 < number_or_nan(value) < 1.0:
-                raise InputError(field_name, value, "a number between 0 and 1", "Give 0.1 for 10 %.")
+        failure_probability = _share("failure_probability", failure_probability)
+        confidence = _share("confidence", confidence)
         if quantity in ("cycles", "amplitude"):
             line = self.group("fatigue").line
             given, name = (amplitude, "amplitude") if quantity == "cycles" else (cycles, "cycles")
-            number = (
-                number_or_nan(given, "MPa" if name == "amplitude" else "-", name) if given is not None else math.nan
-            )
-            if not number > 0:
-                raise InputError(name, given, f"a number above 0, for the interval of {quantity}")
+            number = _positive(name, given, f"the interval of {quantity}")
             call = line.interval_of_life if quantity == "cycles" else line.interval_of_strength
             found = call(math.log(number), failure_probability, confidence)
             return Interval(*(float(np.exp(end)) for end in found))
@@ -366,6 +361,8 @@ class Fit:
         """
         from trackroller.fit.bench import worst_stress
 
+        failure_probability = _share("failure_probability", failure_probability)
+        confidence = _share("confidence", confidence)
         stress, per_hour = worst_stress(design, self.given, self.name)
         found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
         return Interval(*(float(np.exp(end)) / per_hour for end in found))
@@ -374,7 +371,9 @@ class Fit:
         """Return the most likely value of a quantity, as `interval` names them."""
         if quantity == "cycles":
             line = self.group("fatigue").line
-            return float(np.exp(line.log_life(line.best, math.log(amplitude), failure_probability)))
+            log_stress = math.log(_positive("amplitude", amplitude, "the estimate of cycles"))
+            probability = _share("failure_probability", failure_probability)
+            return float(np.exp(line.log_life(line.best, log_stress, probability)))
         name = SPOKEN.get(quantity, quantity)
         known = {n: own for own in self.groups for n in own.names}
         check_names("quantity", [name], known)
@@ -413,10 +412,14 @@ class Fit:
         digest = f", sha256 {self.tests.digest[:16]}" if self.tests.digest else ""
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
-        material = add_material(file, self.name, replace=replace, source=source, note=under, **entry)
-        place.parent.mkdir(exist_ok=True)
-        write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
-        return material
+        made = []
+
+        def add() -> None:
+            """Write the material once the posterior is on the disk: a full disk leaves neither of them."""
+            made.append(add_material(file, self.name, replace=replace, source=source, note=under, **entry))
+
+        write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"), add)
+        return made[0]
 
     def _check_file(self, place: Path) -> None:
         """Refuse a name whose posterior would take the place of that of another material."""
@@ -452,6 +455,23 @@ class Fit:
         from trackroller.report.pages.fit import write_fit
 
         return write_fit(self, path)
+
+
+def _share(field: str, value: Any) -> float:
+    """Return a share between 0 and 1; refuse other values."""
+    number = finite_number(value)
+    if not 0.0 < number < 1.0:
+        raise InputError(field, value, "a number between 0 and 1", "Give 0.1 for 10 %.")
+    return number
+
+
+def _positive(name: str, value: Any, purpose: str) -> float:
+    """Return an amplitude [MPa] or a number of cycles; refuse other values."""
+    unit = "MPa" if name == "amplitude" else "-"
+    number = math.nan if value is None else finite_number(value, unit, name)
+    if not number > 0:
+        raise InputError(name, value, f"a finite number above 0, for {purpose}")
+    return number
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")

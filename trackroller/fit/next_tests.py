@@ -9,9 +9,9 @@ ASSUME: a test runs until its roller fails, or until the longest travel that is 
 
 from __future__ import annotations
 
-import dataclasses
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -207,6 +207,8 @@ def _fields(design: Any) -> dict[str, Any]:
     """Return the fields of a case or mapping."""
     if isinstance(design, Case):
         return {name: value for name, value in vars(design).items() if name in Case.__dataclass_fields__}
+    if not isinstance(design, Mapping):
+        raise InputError("design", design, "a case, or a mapping with fields of a case and options")
     return dict(design)
 
 
@@ -377,7 +379,8 @@ def _first(line: Line, tests: Tests, log_stress: float, probability: float, goal
             np.concatenate([a, b[:number]])
             for a, b in ((line.tests.stress, tests.stress), (line.tests.low, tests.low), (line.tests.high, tests.high))
         ]
-        return _ln_width(dataclasses.replace(line, tests=Tests(*every)), log_stress, probability) <= goal
+        specimens = line.size + number
+        return _ln_width(replace(line, tests=Tests(*every), specimens=specimens), log_stress, probability) <= goal
 
     low, high = 0, 1
     while not narrow(high):

@@ -11,8 +11,8 @@ from typing import Any
 from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.files import noted_reads
 from trackroller.numerics.cells import split_head
-from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.plain import rows_of
+from trackroller.numerics.numbers import finite_number, number_or_nan
+from trackroller.numerics.plain import plain, rows_of
 from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.study.file.user_table import UNITS, read_table
 
@@ -64,13 +64,20 @@ class TestTable:
         error = InputError(field, value, allowed, remedy, wrong)
         return error if self.path is None else error.at(self.path, self.lines[row])
 
-    def number(self, row: int, column: str, lower: float = -math.inf, upper: float = math.inf) -> float:
-        """Return a number in the unit of its column; NaN for an empty cell.
+    def number(
+        self,
+        row: int,
+        column: str,
+        lower: float = -math.inf,
+        upper: float = math.inf,
+        remedy: str = "Correct the cell.",
+    ) -> float:
+        """Return a finite number in the unit of its column; NaN for an empty cell.
 
         Raises
         ------
         InputError
-            If the cell is no number, or lies outside the bounds, which are allowed values themselves.
+            If the cell is no finite number, or lies outside the bounds, which are allowed values themselves.
         """
         cell = self.rows[row].get(column)
         if cell is None or cell == "" or (isinstance(cell, float) and math.isnan(cell)):
@@ -78,13 +85,15 @@ class TestTable:
         unit = UNITS.get(column, "-")
         shown = "" if unit in PLAIN else f" {unit}"
         low = "above 0" if lower == LEAST else f"of at least {lower:g}{shown}"
-        allowed = f"a number{f' in{shown}' if shown else ''} {low if lower > -math.inf else ''}".strip()
+        allowed = f"a finite number{f' in{shown}' if shown else ''} {low if lower > -math.inf else ''}".strip()
+        if math.isfinite(upper):
+            allowed += f"{' and' if lower > -math.inf else ''} of at most {upper:g}{shown}"
         try:
-            value = number_or_nan(cell, unit, column)
+            value = finite_number(cell, unit, column)
         except InputError:
             raise self.error(row, column, allowed, "Correct the cell, or its unit.") from None
-        if math.isnan(value) or not lower <= value <= upper:
-            raise self.error(row, column, allowed, "Correct the cell.")
+        if not lower <= value <= upper:
+            raise self.error(row, column, allowed, remedy)
         return float(value)
 
     def text(self, row: int, column: str) -> str:
@@ -185,15 +194,24 @@ def from_file(
 
 
 def _from_rows(table: Any) -> TestTable:
+    allowed = "the path of a table, a data frame, a list of rows (each a mapping), or a mapping of columns"
+    if table is None:
+        raise InputError(FIELD, None, allowed)
     if hasattr(table, "columns"):
         given = rows_of(table, FIELD)
     elif isinstance(table, Mapping):
-        columns = {name: list(values) for name, values in table.items()}
+        columns = {name: plain(values, str(name)) for name, values in table.items()}
+        for name, values in columns.items():
+            if not isinstance(values, list):
+                raise InputError(f"{FIELD}: {name}", values, "a list with one value for each test")
         if len({len(values) for values in columns.values()}) > 1:
             raise InputError(FIELD, list(columns), "columns of the same length")
         given = [dict(zip(columns, row, strict=True)) for row in zip(*columns.values(), strict=True)]
     else:
-        given = [dict(row) for row in table]
+        given = plain(table, FIELD)
+        if not isinstance(given, list) or not all(isinstance(row, Mapping) for row in given):
+            remedy = "Name the columns, such as {'amplitude': [...], 'cycles': [...], 'failed': [...]}."
+            raise InputError(FIELD, table, allowed, remedy)
     if not given:
         raise InputError(FIELD, None, "a table with at least one test")
     rows = [dict(_cell(str(head), value) for head, value in row.items()) for row in given]
@@ -205,4 +223,5 @@ def _cell(head: str, value: Any) -> tuple[str, Any]:
     name, unit = split_head(head)
     if name not in UNITS or unit in PLAIN or value is None or isinstance(value, str):
         return (name if name in UNITS or unit in PLAIN else head), value
-    return name, in_unit(float(value), unit, UNITS[name], name)
+    number = number_or_nan(value)
+    return name, value if math.isnan(number) else in_unit(number, unit, UNITS[name], name)

@@ -32,7 +32,7 @@ HEADER = """\
 FIELDS = (*NUMBERS, *TEXTS, POINTS, FIELD, "source", "placeholder")
 
 
-def add_material(path: Path | str, name: str, *, replace: bool = False, **values: Any) -> Material:
+def add_material(path: Path | str, name: str, /, *, replace: bool = False, **values: Any) -> Material:
     """Write a material into the user's file and return the material as the file now defines it.
 
     Parameters

@@ -1,0 +1,168 @@
+"""What fits refuse in words: numbers that are not finite, tables that are none, priors, and a disk that fills."""
+
+from __future__ import annotations
+
+import errno
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+
+import trackroller as tr
+from trackroller.fit.coupons import of_words
+from trackroller.fit.depths import fit_wear
+from trackroller.materials.file import posterior_path
+
+UNDER = {"load_type": "axial", "stress_ratio": -1, "like": "1.7225-normalised"}
+RIG = {"motor_force": 0, "friction_coefficient": 0.1, "axial_force": 20, "contact_model": "sliding"}
+ROWS = {
+    "amplitude": [900, 900, 800, 800, 700, 700], "cycles": [9e4, 1.3e5, 2e5, 3.5e5, 8e5, 1e6], "failed": [True] * 6,
+}  # fmt: skip
+BENCH = {
+    "radial_force": [-120, -120, -150, -150, -180, -180, -210, -210, -130, -165],
+    "travel_from": [130, 200, 100, 50, 41.5, 25, 43.4, 31.7, 90, 23.7],
+    "travel_to": [130, None, 150, 75, 41.5, 50, 43.4, 31.7, 90, 23.7],
+    "end": ["fatigue roller", "none", *["fatigue roller"] * 6, "bearing", "fatigue roller"],
+}
+
+
+def with_cell(rows, column, value, row=1):
+    cells = list(rows[column])
+    cells[row] = value
+    return rows | {column: cells}
+
+
+@pytest.mark.parametrize("value", [math.inf, -math.inf, "inf", "-inf", 1e300, np.float64(np.inf)])
+@pytest.mark.parametrize("column", ["amplitude", "cycles"])
+@pytest.mark.parametrize("kind", [dict, pd.DataFrame])
+def test_an_infinite_or_impossible_number_is_refused_by_row_and_column(column, value, kind):
+    with pytest.raises(tr.InputError, match=rf"row 2, {column} = .*a finite number"):
+        tr.fit_sn(kind(with_cell(ROWS, column, value)), **UNDER)
+
+
+@pytest.mark.parametrize("column", ["amplitude", "cycles"])
+def test_an_infinite_cell_of_a_file_is_refused_by_line(tmp_path, column):
+    path = tmp_path / "tests.csv"
+    pd.DataFrame(with_cell(ROWS, column, "inf")).to_csv(path, index=False)
+    with pytest.raises(tr.InputError, match=rf"tests\.csv, line 3: {column} = 'inf.*finite"):
+        tr.fit_sn(path, **UNDER)
+
+
+@pytest.mark.parametrize("column", ["travel_from", "travel_to"])
+def test_an_infinite_travel_is_no_suspension(column):
+    """An end at an infinite travel counts neither as an end nor as a suspension; the remedy gives a suspension."""
+    with pytest.raises(tr.InputError, match=rf"row 1, {column} = inf.*finite"):
+        tr.fit_bench(with_cell(BENCH, column, math.inf, 0), base=RIG)
+    mended = with_cell(with_cell(BENCH, "travel_to", None, 0), "end", "none", 0)
+    assert tr.fit_bench(mended, base=RIG).groups[0].line.tests.failed.sum() == 7
+
+
+def test_an_infinite_depth_or_travel_of_wear_is_refused():
+    table = {"travel": [100.0, 220.0, 400.0], "wear_depth": [0.01, 0.02, 0.03]}
+    for column in table:
+        with pytest.raises(tr.InputError, match=rf"row 2, {column} = inf.*finite"):
+            fit_wear(with_cell(table, column, math.inf))
+    with pytest.raises(tr.InputError, match=r"row 1, end = 'wear roller inf mm'.*finite depth"):
+        tr.fit_bench(with_cell(BENCH, "end", "wear roller inf mm", 0), base=RIG)
+
+
+@pytest.mark.parametrize("name", ["slope", "scatter_in_cycles", "fatigue_strength"])
+@pytest.mark.parametrize("place", [0, 1])
+@pytest.mark.parametrize("value", [math.inf, math.nan, 1e300, 0.0, -5.0, "many"])
+def test_a_prior_has_two_possible_numbers(name, place, value):
+    pair = [8.0, 2.0]
+    pair[place] = value
+    with pytest.raises(tr.InputError, match=rf"prior\.{name}"):
+        tr.fit_sn(ROWS, prior={name: pair}, **UNDER)
+
+
+@pytest.mark.parametrize("word", ["slope=inf,2", "slope=8,inf", "slope=8", "slope", "slope=8,2,1"])
+def test_words_of_a_prior_are_two_finite_numbers(word):
+    with pytest.raises(tr.InputError, match=r"--prior = .*For example slope=8,2"):
+        of_words([word], "--prior")
+
+
+def test_a_prior_that_stands_twice_is_refused():
+    with pytest.raises(tr.InputError, match=r"--prior = 'slope=9,1' stands beside another slope.*Give slope once"):
+        of_words(["slope=8,2", "slope=9,1"], "--prior")
+    assert of_words(["slope=8,2", "scatter_in_cycles=4,1"], "--prior")["slope"] == [8, 2]
+
+
+@pytest.mark.parametrize("prior", [[8, 2], "slope=8,2", 8, np.array([8, 2])])
+def test_priors_without_names_are_refused_and_the_remedy_works(prior):
+    with pytest.raises(tr.InputError, match=r"prior = .*such as \{'slope': \[8, 2\]\}"):
+        tr.fit_sn(ROWS, prior=prior, **UNDER)
+    assert tr.fit_sn(ROWS, prior={"slope": np.array([8, 2])}, **UNDER).groups[0].priors["slope"].mean == 8
+
+
+@pytest.mark.parametrize("table", [None, 5, True, np.ones((4, 3)), [[900, 9e4, True]], [1, 2], {"amplitude": 900}])
+@pytest.mark.parametrize("fitted", [tr.fit_sn, tr.fit_bench])
+def test_what_is_no_table_is_refused(table, fitted):
+    with pytest.raises(tr.InputError, match="tests"):
+        fitted(table)
+
+
+def test_columns_may_be_arrays_and_rows_mappings():
+    expected = tr.fit_sn(ROWS, **UNDER).material
+    arrays = {name: np.array(values) for name, values in ROWS.items()}
+    assert tr.fit_sn(arrays, **UNDER).material == expected
+    assert tr.fit_sn(pd.DataFrame(ROWS).to_dict("records"), **UNDER).material == expected
+
+
+@pytest.mark.parametrize("design", [None, 5, [1, 2], "case"])
+def test_a_life_is_asked_for_a_case(design):
+    fit = tr.fit_sn(ROWS, **UNDER)
+    with pytest.raises(tr.InputError, match=r"design.*a case, or a mapping"):
+        fit.life_hours(design)
+    assert fit.life_hours({"radial_force": -150, "motor_force": 0}).low > 0
+
+
+@pytest.mark.parametrize("value", [None, math.inf, 0, "much", [900]])
+def test_an_estimate_of_cycles_is_asked_for_a_finite_amplitude(value):
+    fit = tr.fit_sn(ROWS, **UNDER)
+    for call in (fit.estimate, fit.interval):
+        with pytest.raises(tr.InputError, match="amplitude"):
+            call("cycles", amplitude=value)
+
+
+@pytest.mark.parametrize("more", [{"slope": math.inf}, {"scatter_in_cycles": math.inf}, {"stress_ratio": -math.inf}])
+def test_a_choice_that_is_not_finite_is_refused(more):
+    with pytest.raises(tr.InputError, match="inf"):
+        tr.fit_sn(ROWS, **UNDER | more)
+
+
+def test_held_values_may_be_texts():
+    given = tr.fit_sn(ROWS, slope="8", scatter_in_cycles="4", **UNDER).material
+    assert given == tr.fit_sn(ROWS, slope=8, scatter_in_cycles=4, **UNDER).material
+
+
+def test_a_roller_with_two_contacts_is_one_test():
+    """The contact that is whole counts in the likelihood, but neither among the tests nor for the cut-off."""
+    fit = tr.fit_bench(BENCH | {"contact": [1] * 10}, base=RIG)
+    line = fit.groups[0].line
+    assert (line.size, len(line.tests.stress), int(line.tests.failed.sum())) == (10, 18, 8)
+    assert line.cut_off(0.9) == tr.fit_bench(BENCH, base=RIG).groups[0].line.cut_off(0.9)
+    assert fit.data.attrs["fatigue_tests"] == 10
+
+
+def test_a_disk_that_fills_leaves_neither_a_material_nor_its_posterior(tmp_path, monkeypatch):
+    """After that the same call writes both."""
+    file, fit = tmp_path / "materials.yaml", tr.fit_sn(ROWS, name="rail", **UNDER)
+
+    def full(*args, **more):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    with monkeypatch.context() as patch:
+        patch.setattr(xr.Dataset, "to_netcdf", full)
+        with pytest.raises(RuntimeError, match="rail"):
+            fit.write(file)
+    assert not file.exists()
+    assert not posterior_path(file, "rail").exists()
+    fit.write(file)
+    assert posterior_path(file, "rail").is_file()
+    before = posterior_path(file, "rail").read_bytes()
+    with pytest.raises(tr.InputError, match=r"--replace"):
+        tr.fit_sn(with_cell(ROWS, "cycles", 1.4e5), name="rail", **UNDER).write(file)
+    assert posterior_path(file, "rail").read_bytes() == before
