@@ -134,7 +134,7 @@ def test_basquins_exponent_is_no_slope(tmp_path, more):
         (GOOD.replace("1000000,yes", "inf,no"), HEAD, r"line 7: cycles = 'inf'.*finite.*was stopped"),
         (GOOD + "700,1000000,yes\n", HEAD, r"line 8: cycles = '1000000' stands in row 7 as well"),
         (GOOD, "amplitde [MPa],cycles,failed\n", r"amplitde.*is not known.*'amplitude'"),
-        (GOOD, "amplitude [MPa],cycles,broken\n", r"broken.*is not known.*amplitude, cycles, failed"),
+        (GOOD, "amplitude [MPa],cycles,outcome_code\n", r"outcome_code.*is not known.*amplitude, cycles, failed"),
         (GOOD.replace("yes", "maybe", 1), HEAD, r"line 2: failed = 'maybe'.*yes or no"),
         (GOOD.replace("900,9", "-900,9"), HEAD, r"line 2: amplitude = '-900 MPa'.*above 0"),
         (

@@ -54,7 +54,7 @@ def _finish(made: Fit, file: Path, replace: bool, page: Path | None) -> None:
     from trackroller.report.pages.fit import sentences
 
     target = writable_page(page or Path(f"fit-{slug(made.name)}.html"))
-    for text in [*sentences(made), *made.not_given]:
+    for text in [*sentences(made), *made.notes, *made.not_given]:
         print(text)
     if set(made.material) - {"name", "like"} and not made.unidentified:
         file.parent.mkdir(parents=True, exist_ok=True)

@@ -20,14 +20,15 @@ import numpy as np
 
 from trackroller.errors import InputError, check_names, listing
 from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.heads import OF_COUPONS, has_failed, only_marks, says_how, told_heads
 from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
 from trackroller.fit.table import LEAST, TestTable, read_tests
 from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.numerics.plain import plain
 
-NEEDED = ("amplitude", "cycles", "failed")
-COLUMNS = (*NEEDED, "group", "test", "note")
+NEEDED = ("amplitude", "cycles")
+COLUMNS = (*NEEDED, "failed", "group", "test", "note", "censored", "status")
 LOAD_TYPES = {
     "rotating bending": (1.0, "the bending amplitude is taken as von Mises amplitude"),
     "bending": (1.0, "the bending amplitude is taken as von Mises amplitude"),
@@ -35,8 +36,6 @@ LOAD_TYPES = {
     "torsion": (math.sqrt(3.0), "sqrt(3) times the amplitude of the shear stress is the von Mises amplitude"),
     "rolling contact": (1.0, "the amplitude is the peak von Mises stress of an overrolling"),
 }
-YES = ("1", "1.0", "true", "yes", "y", "failed", "failure", "fracture", "broken", "ja", "x")
-NO = ("0", "0.0", "false", "no", "n", "run-out", "runout", "run out", "survived", "suspended", "nein", "none")
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
 MOST_CYCLES, MOST_STRESS = 1e15, 1e5  # more is a mistake: 30,000 years at 1 kHz, and above any strength in MPa
 STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped, with failed = no."
@@ -66,7 +65,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     Parameters
     ----------
     table : path, data frame, list of mappings or mapping of columns
-        Columns `amplitude [MPa]`, `cycles` and `failed` (yes or no), and if wanted `group`, `test` and `note`.
+        Columns `amplitude [MPa]`, `cycles` and `failed` (yes or no), and if wanted `group`, `test` and `note`. A column
+        `censored` or `runout` is the opposite of `failed`; other usual names, such as `stress_amplitude_MPa`, `load`,
+        `N`, `specimen` and `fracture`, are taken, and the notes of the fit say so.
     name : str
         Name of the material that is made.
     load_type : str, optional
@@ -104,7 +105,8 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> round(fit.material["woehler_exponent"], 2)
     8.42
     """
-    tests = read_tests(table, NEEDED, COLUMNS, ("group", "test", "note"))
+    optional = [column for column in COLUMNS if column not in NEEDED]
+    tests = read_tests(table, NEEDED, COLUMNS, optional, OF_COUPONS)
     if load_type is not None:
         check_names("load type", [load_type], LOAD_TYPES)
     ratio = math.nan if stress_ratio is None else finite_number(stress_ratio)
@@ -113,8 +115,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     tests = _of_group(tests, group)
     factor = LOAD_TYPES[load_type][0] if load_type else 1.0
     slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
-    observed = _observed(tests, factor)
-    _check_duplicates(tests)
+    failed = _read_ends(tests)
+    observed = _observed(tests, factor, failed)
+    _check_duplicates(tests, failed)
     if slope is None:
         check_falls(tests, observed, "cycles")
     _check_identified(tests, observed, slope, scatter_in_cycles)
@@ -129,7 +132,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         "load type": load_type or "not given",
         "stress ratio": "not given" if stress_ratio is None else f"{ratio:g}",
     }
-    notes = _notes(load_type, ratio, meet, observed)
+    notes = [*_read_as(tests, failed), *_notes(load_type, ratio, meet, observed)]
     if knee is None and meet and not line.limit_matters:
         line = replace(line, knee=False)
         notes.append(NO_LIMIT)
@@ -204,7 +207,58 @@ def _of_group(tests: TestTable, group: str | None) -> TestTable:
     return tests
 
 
-def _observed(tests: TestTable, factor: float) -> Tests:
+def _column_of_ends(tests: TestTable) -> str:
+    """Return the column that says which specimens failed; refuse a table with none or two of them."""
+    names = tests.rows[0]
+    given = [column for column in ("failed", "censored") if column in names]
+    if len(given) == 2:
+        heads = [tests.heads.get(column, column) for column in given]
+        raise tests.error(
+            0, "censored", "one column that says which specimens failed", f"Remove {listing(heads, 'or')}."
+        )
+    said = [
+        column
+        for column in ("status", "note")
+        if column in names and all(says_how(tests.text(r, column)) for r in tests)
+    ]
+    if not given and not said:
+        allowed = "a column failed, with yes for a failure and no for a run-out; or a column runout, with the opposite"
+        remedy = f"The table has {', '.join(tests.heads.get(name, name) for name in names)}."
+        error = InputError("column failed", None, allowed, remedy)
+        raise error if tests.path is None else error.at(tests.path, 0)
+    return [*given, *said][0]
+
+
+def _read_ends(tests: TestTable) -> list[bool]:
+    """Return which specimens failed, by the codes and words of the table."""
+    column = _column_of_ends(tests)
+    cells = [tests.text(row, column) for row in tests]
+    marks, found = only_marks(cells), []
+    for row, cell in enumerate(cells):
+        failed = has_failed(cell, column, marks)
+        if failed is None:
+            yes = "yes for a failure" if column == "failed" else "yes for a run-out"
+            allowed = f"yes or no, 1 or 0, true or false, failed or run-out; {yes}"
+            remedy = "Correct the cell." if cell else "Fill the cell, or mark the others with x alone."
+            raise tests.error(row, column, allowed, remedy)
+        found.append(failed)
+    return found
+
+
+def _read_as(tests: TestTable, failed: Sequence[bool]) -> list[str]:
+    """Return sentences on how heads and codes were read that are not those of the documentation."""
+    column = _column_of_ends(tests)
+    heads = {name: head for name, head in tests.heads.items() if name in (*NEEDED, "failed", "censored", "group")}
+    if column in ("censored", "status", "note"):
+        heads[column] = tests.heads.get(column, column)
+    said = [told_heads(heads, {"amplitude": " [MPa]"})] if heads else []
+    if column != "failed" or only_marks(tests.text(row, column) for row in tests):
+        number = len(failed) - sum(failed)
+        said.append(f"By the column '{tests.heads.get(column, column)}' {number} of {len(failed)} specimens ran out.")
+    return said
+
+
+def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
     """Return amplitude and cycles of each row as logarithms."""
     stress, low, high = [], [], []
     for row in tests:
@@ -215,12 +269,9 @@ def _observed(tests: TestTable, factor: float) -> Tests:
                 raise tests.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")
         if cycles < FEWEST_CYCLES and not cycles.is_integer():
             raise tests.error(row, "cycles", "a whole number of load cycles", TRAVEL)
-        word = tests.text(row, "failed").lower()
-        if word not in (*YES, *NO):
-            raise tests.error(row, "failed", "yes or no, 1 or 0, failed or run-out", "Correct the cell.")
         stress.append(math.log(factor * amplitude))
         low.append(math.log(cycles))
-        high.append(math.log(cycles) if word in YES else math.inf)
+        high.append(math.log(cycles) if failed[row] else math.inf)
     if max(low) < math.log(FEWEST_CYCLES):
         longest = int(np.argmax(low))
         allowed = f"a life of at least {FEWEST_CYCLES:g} cycles in one row; this one is the longest"
@@ -228,14 +279,13 @@ def _observed(tests: TestTable, factor: float) -> Tests:
     return Tests(np.array(stress), np.array(low), np.array(high))
 
 
-def _check_duplicates(tests: TestTable) -> None:
+def _check_duplicates(tests: TestTable, failed: Sequence[bool]) -> None:
     """Refuse a name that stands twice, and two failures without names that are equal to the last digit."""
     seen: dict[tuple, int] = {}
     for row in tests:
         name = tests.text(row, "test")
-        failure = tests.text(row, "failed").lower() in YES
         key = ("test", name) if name else ("", *(tests.number(row, n) for n in ("amplitude", "cycles")))
-        if (name or failure) and key in seen:
+        if (name or failed[row]) and key in seen:
             other = tests.lines[seen[key]]
             remedy = "Remove one of the two; if both were tested, name them in a column `test`."
             wrong = f"stands in row {other} as well"
@@ -302,7 +352,7 @@ def _check_identified(tests: TestTable, observed: Tests, slope: float | None, sc
     if free and not observed.failed.any():
         allowed = "at least one failure; all specimens ran out"
         remedy = f"Hold {listing(free)} for a one-sided bound, or test at a higher amplitude."
-        raise tests.error(last, "failed", allowed, remedy)
+        raise tests.error(last, _column_of_ends(tests), allowed, remedy)
     if slope is None and np.ptp(observed.stress) < 1e-9:
         remedy = "Hold the slope (--slope 8), or test a second amplitude."
         raise tests.error(last, "amplitude", "a second level beside this one, from which the slope follows", remedy)

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 from trackroller.errors import Collector, InputError, unknown_name
 from trackroller.files import noted_reads
+from trackroller.fit.heads import NAMES_OF_TESTS, UNITS_OF_HEADS, Head, read_heads
 from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.numerics.plain import plain, rows_of
-from trackroller.numerics.units import PLAIN, in_unit
-from trackroller.study.file.user_table import UNITS, read_table
+from trackroller.numerics.units import PLAIN, in_unit, split_quantity
+from trackroller.study.file.user_table import UNITS, column_names, read_table
 
 FIELD = "tests"
 
@@ -33,12 +35,15 @@ class TestTable:
         The file; None for a data frame.
     digest : str
         SHA-256 of the file; "" for a data frame.
+    heads : mapping of str to str
+        Heads in the table by column, where they are another name of it.
     """
 
     rows: list[dict[str, Any]]
     lines: list[int]
     path: Path | None = None
     digest: str = ""
+    heads: Mapping[str, str] = field(default_factory=dict)
 
     __test__ = False  # pytest takes the name for that of a test
 
@@ -60,8 +65,9 @@ class TestTable:
             See `InputError`.
         """
         value = self.rows[row].get(column, "")
-        field = column if self.path is not None else f"row {self.lines[row]}, {column}"
-        error = InputError(field, value, allowed, remedy, wrong)
+        head = self.heads.get(column, column)
+        place = head if self.path is not None else f"row {self.lines[row]}, {head}"
+        error = InputError(place, value, allowed, remedy, wrong)
         return error if self.path is None else error.at(self.path, self.lines[row])
 
     def number(
@@ -103,7 +109,8 @@ class TestTable:
 
     def keep(self, rows: Sequence[int]) -> TestTable:
         """Return the table with some of its rows."""
-        return TestTable([self.rows[i] for i in rows], [self.lines[i] for i in rows], self.path, self.digest)
+        kept = [self.rows[i] for i in rows], [self.lines[i] for i in rows]
+        return TestTable(*kept, self.path, self.digest, self.heads)
 
     def __len__(self) -> int:
         return len(self.rows)
@@ -116,7 +123,11 @@ LEAST = 1e-300  # smallest number above 0
 
 
 def read_tests(
-    table: Any, needed: Collection[str], known: Collection[str], optional: Collection[str] = ()
+    table: Any,
+    needed: Collection[str],
+    known: Collection[str],
+    optional: Collection[str] = (),
+    others: Mapping[str, str] = NAMES_OF_TESTS,
 ) -> TestTable:
     """Read a table of tests.
 
@@ -130,11 +141,13 @@ def read_tests(
         Names of all columns that may be there.
     optional : collection of str
         Names of columns whose cells may be empty.
+    others : mapping of str to str
+        Other names of columns, see `trackroller.fit.heads`.
 
     Returns
     -------
     TestTable
-        The rows.
+        The rows, by the names of `known`.
 
     Raises
     ------
@@ -142,9 +155,9 @@ def read_tests(
         For a file that is not readable, a misspelt or missing column, and an empty table.
     """
     if isinstance(table, (str, Path)):
-        found, place = from_file(Path(table), optional)
+        found, place = _tests_of_file(Path(table), known, optional, others)
     else:
-        found, place = _from_rows(table), 0
+        found, place = _from_rows(table, known, others), 0
     names = list(dict.fromkeys(name for row in found.rows for name in row))
     wrong = Collector()
     for name in names:
@@ -171,8 +184,35 @@ def _placed(error: InputError, table: TestTable, line: Any) -> InputError:
     return error.at(table.path, line) if table.path is not None else error
 
 
+def _tests_of_file(
+    path: Path, known: Collection[str], optional: Collection[str], others: Mapping[str, str]
+) -> tuple[TestTable, int]:
+    """Return the rows of a file by the names of the columns, and the line of its head."""
+    heads = read_heads(column_names(path, FIELD), known, others)
+    names = {split_head(head)[0]: one for head, one in heads.items()}
+    numbers = {name: UNITS[one.column] for name, one in names.items() if one.column in UNITS}
+    empty = {head for head, one in heads.items() if one.column in optional}
+    found, place = from_file(path, {*optional, *empty}, further=numbers)
+    columns = {name: one for name, one in {**heads, **names}.items() if name in found.rows[0]}
+    rows = [dict(_renamed(name, cell, columns.get(name)) for name, cell in row.items()) for row in found.rows]
+    read_as = {one.column: name for name, one in columns.items()}
+    return TestTable(rows, found.lines, found.path, found.digest, read_as), place
+
+
+def _renamed(name: str, cell: Any, head: Head | None) -> tuple[str, Any]:
+    """Return name and value of a cell whose head is another name; a unit at the end of the head stands behind it."""
+    if head is None:
+        return name, cell
+    states_unit = head.unit in UNITS_OF_HEADS.values() and split_quantity(cell) is None
+    return head.column, f"{cell} {head.unit}" if cell and states_unit else cell
+
+
 def from_file(
-    path: Path, optional: Collection[str] = (), field: str = FIELD, row: str = "test"
+    path: Path,
+    optional: Collection[str] = (),
+    field: str = FIELD,
+    row: str = "test",
+    further: Mapping[str, str] = MappingProxyType({}),
 ) -> tuple[TestTable, int]:
     """Return the rows of a CSV file or a workbook, whatever its columns are, and the line of its head.
 
@@ -184,16 +224,18 @@ def from_file(
         Names of columns whose cells may be empty.
     field, row : str
         Words of messages for the table and for a row.
+    further : mapping of str to str
+        Units of further columns of numbers by their names.
     """
     wrong = Collector()
     with noted_reads() as read:
-        found = read_table(path, field, row, wrong, optional=optional)
+        found = read_table(path, field, row, wrong, optional=optional, further=further)
     wrong.check()
     rows = [dict(zip(found.names, line, strict=True)) for line in found.lines.values()]
     return TestTable(rows, list(found.lines), path, read[path.resolve()][1]), found.head
 
 
-def _from_rows(table: Any) -> TestTable:
+def _from_rows(table: Any, known: Collection[str], others: Mapping[str, str]) -> TestTable:
     allowed = "the path of a table, a data frame, a list of rows (each a mapping), or a mapping of columns"
     if table is None:
         raise InputError(FIELD, None, allowed)
@@ -214,8 +256,11 @@ def _from_rows(table: Any) -> TestTable:
             raise InputError(FIELD, table, allowed, remedy)
     if not given:
         raise InputError(FIELD, None, "a table with at least one test")
-    rows = [dict(_cell(str(head), value) for head, value in row.items()) for row in given]
-    return TestTable(rows, list(range(1, len(rows) + 1)))
+    heads = read_heads(dict.fromkeys(str(head) for row in given for head in row), known, others)
+    written = {head: f"{one.column} [{one.unit}]" if one.unit else one.column for head, one in heads.items()}
+    rows = [dict(_cell(written.get(str(head), str(head)), value) for head, value in row.items()) for row in given]
+    read_as = {one.column: head for head, one in heads.items()}
+    return TestTable(rows, list(range(1, len(rows) + 1)), heads=read_as)
 
 
 def _cell(head: str, value: Any) -> tuple[str, Any]:
