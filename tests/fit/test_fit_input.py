@@ -13,6 +13,7 @@ import xarray as xr
 import trackroller as tr
 from trackroller.fit.coupons import of_words
 from trackroller.fit.depths import fit_wear
+from trackroller.materials import edit
 from trackroller.materials.file import posterior_path
 
 UNDER = {"load_type": "axial", "stress_ratio": -1, "like": "1.7225-normalised"}
@@ -59,13 +60,35 @@ def test_an_infinite_travel_is_no_suspension(column):
     assert tr.fit_bench(mended, base=RIG).groups[0].line.tests.failed.sum() == 7
 
 
-def test_an_infinite_depth_or_travel_of_wear_is_refused():
+@pytest.mark.parametrize("value", [math.inf, 1e300])
+def test_an_infinite_or_impossible_depth_or_travel_is_refused(value):
     table = {"travel": [100.0, 220.0, 400.0], "wear_depth": [0.01, 0.02, 0.03]}
     for column in table:
-        with pytest.raises(tr.InputError, match=rf"row 2, {column} = inf.*finite"):
-            fit_wear(with_cell(table, column, math.inf))
-    with pytest.raises(tr.InputError, match=r"row 1, end = 'wear roller inf mm'.*finite depth"):
-        tr.fit_bench(with_cell(BENCH, "end", "wear roller inf mm", 0), base=RIG)
+        with pytest.raises(tr.InputError, match=rf"row 2, {column} = (inf|1e\+300).*a finite number"):
+            fit_wear(with_cell(table, column, value))
+    with pytest.raises(
+        tr.InputError, match=rf"row 1, end = 'wear roller {value:g} mm'.*finite depth".replace("+", r"\+")
+    ):
+        tr.fit_bench(with_cell(BENCH, "end", f"wear roller {value:g} mm", 0), base=RIG)
+    for column in ("travel_from", "travel_to"):
+        with pytest.raises(tr.InputError, match=rf"{column} = "):
+            tr.fit_bench(with_cell(BENCH, column, value, 2), base=RIG)
+
+
+@pytest.mark.parametrize("value", [pd.NA, pd.NaT, None, math.nan, " "])
+@pytest.mark.parametrize("column", ["amplitude", "cycles"])
+@pytest.mark.parametrize("kind", [dict, pd.DataFrame])
+def test_an_empty_cell_is_named_and_the_remedies_work(value, column, kind):
+    with pytest.raises(tr.InputError, match=rf"row 2, {column}.*the cell is empty. Fill the cell, or remove the row"):
+        tr.fit_sn(kind(with_cell(ROWS, column, value)), **UNDER)
+    removed = {name: cells[:1] + cells[2:] for name, cells in ROWS.items()}
+    assert tr.fit_sn(kind(removed), **UNDER).groups[0].line.size == 5
+
+
+@pytest.mark.parametrize("contact", [1.5, 3, "left", math.inf])
+def test_a_contact_is_one_of_two(contact):
+    with pytest.raises(tr.InputError, match=r"row 3, contact = "):
+        tr.fit_bench(BENCH | {"contact": [1, 1, contact, *[1] * 7]}, base=RIG)
 
 
 @pytest.mark.parametrize("name", ["slope", "scatter_in_cycles", "fatigue_strength"])
@@ -119,12 +142,43 @@ def test_a_life_is_asked_for_a_case(design):
     assert fit.life_hours({"radial_force": -150, "motor_force": 0}).low > 0
 
 
-@pytest.mark.parametrize("value", [None, math.inf, 0, "much", [900]])
+@pytest.mark.parametrize("base", [5, [1], "rig.yaml"])
+def test_a_base_is_a_mapping(base):
+    depths = {"travel": [100.0, 220.0], "wear_depth": [0.01, 0.02]}
+    for call in (lambda: tr.fit_bench(BENCH, base=base), lambda: fit_wear(depths, base)):
+        with pytest.raises(tr.InputError, match="base = .*a mapping with fields of a case"):
+            call()
+
+
+@pytest.mark.parametrize("name", ["name", "like", "load_type", "knee"])
+@pytest.mark.parametrize("value", [5, [1], np.array([1, 2]), math.inf, {"a": 1}])
+def test_a_choice_of_another_type_is_refused(name, value):
+    with pytest.raises(tr.InputError, match=name.replace("_", " ")):
+        tr.fit_sn(ROWS, **UNDER | {name: value})
+
+
+def test_a_group_of_a_table_without_groups_is_left_out():
+    with pytest.raises(tr.InputError, match=r"group = 'A'.*has none. Leave the group out"):
+        tr.fit_sn(ROWS, group="A", **UNDER)
+    assert tr.fit_sn(ROWS, **UNDER).groups[0].line.size == 6
+
+
+@pytest.mark.parametrize("quantity", [None, [1], np.array(["cycles", "slope"]), "zz"])
+def test_an_unknown_quantity_of_a_fit_is_refused(quantity):
+    fit = tr.fit_sn(ROWS, **UNDER)
+    for call in (fit.interval, fit.estimate):
+        with pytest.raises(tr.InputError, match="quantity"):
+            call(quantity)
+
+
+@pytest.mark.parametrize("value", [None, math.inf, 1e300, 1e-300, 0, "much", [900]])
 def test_an_estimate_of_cycles_is_asked_for_a_finite_amplitude(value):
     fit = tr.fit_sn(ROWS, **UNDER)
     for call in (fit.estimate, fit.interval):
         with pytest.raises(tr.InputError, match="amplitude"):
             call("cycles", amplitude=value)
+    with pytest.raises(tr.InputError, match=r"cycles.*a finite number from 1 to 1e\+15"):
+        fit.interval("amplitude", cycles=value)
 
 
 @pytest.mark.parametrize("more", [{"slope": math.inf}, {"scatter_in_cycles": math.inf}, {"stress_ratio": -math.inf}])
@@ -154,12 +208,12 @@ def test_a_disk_that_fills_leaves_neither_a_material_nor_its_posterior(tmp_path,
     def full(*args, **more):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    with monkeypatch.context() as patch:
-        patch.setattr(xr.Dataset, "to_netcdf", full)
-        with pytest.raises(RuntimeError, match="rail"):
-            fit.write(file)
-    assert not file.exists()
-    assert not posterior_path(file, "rail").exists()
+    for place, name in ((xr.Dataset, "to_netcdf"), (edit, "_write"), (edit, "write_whole")):
+        with monkeypatch.context() as patch:
+            patch.setattr(place, name, full)
+            with pytest.raises(RuntimeError, match="No space left"):
+                fit.write(file)
+        assert not [path for path in tmp_path.rglob("*") if path.is_file()]
     fit.write(file)
     assert posterior_path(file, "rail").is_file()
     before = posterior_path(file, "rail").read_bytes()

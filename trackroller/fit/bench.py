@@ -26,7 +26,7 @@ from trackroller.damage.wear import KM_PER_HOUR
 from trackroller.errors import Collector, InputError, check_names, listing
 from trackroller.files import files_beside, find_beside
 from trackroller.fit.coupons import check_falls, check_held, deviation_of, priors_of
-from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.fitted import Fit, Group, check_texts
 from trackroller.fit.line import Line, Tests
 from trackroller.fit.posterior import ln_range
 from trackroller.fit.table import LEAST, TestTable, read_tests
@@ -53,7 +53,7 @@ FRICTIONS = (0.01, 0.03, 0.06, 0.1, 0.15, 0.2, 0.3, 0.4, 0.55, 0.7, 0.9)  # at w
 UNIT_WEAR = 1e-6  # wear coefficient with which travels to a depth are computed [mm3/(N m)]
 LONGEST = 50_000.0  # h: nearly six years without a stop
 FLAG = {name: 1 << place for place, name in enumerate(VALIDITY)}
-FARTHEST = 1e6  # km, how far a depth is followed
+DEEPEST = 100.0  # mm, a wear depth above it is a mistake
 
 
 @dataclass(frozen=True)
@@ -153,8 +153,8 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else plain(fit, "fit")
     if not isinstance(wanted, list):
         raise InputError("fit", fit, f"a list of {', '.join(FITTED)}")
-    if base is not None and not isinstance(base, Mapping):
-        raise InputError("base", base, "a mapping with fields of a case and options", "Give the values themselves.")
+    check_texts(name=name, like=like)
+    check_base(base)
     check_names("fit", wanted, FITTED)
     slope, scatter_in_cycles = check_held(slope, scatter_in_cycles)
     held = {"slope": slope, "scatter": scatter_in_cycles}
@@ -198,6 +198,12 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
 
 
 DEFAULTS = {"contact_model": "kalker", "life_criterion": "von_mises_peak", "accuracy": "standard"}
+
+
+def check_base(base: Any) -> None:
+    """Refuse a base that is no mapping; None stands for the paper's example."""
+    if base is not None and not isinstance(base, Mapping):
+        raise InputError("base", base, "a mapping with fields of a case and options", "Give the values themselves.")
 
 
 def check_same(given: Mapping[str, str], options: Mapping[str, Any], name: str) -> None:
@@ -263,8 +269,8 @@ def _end(rows: TestTable, row: int) -> End:
         depth = finite_number(" ".join(parts), "mm", "end")
     except InputError:
         raise rows.error(row, "end", "a depth as a length", remedy) from None
-    if not depth > 0:
-        raise rows.error(row, "end", "a finite depth above 0", remedy)
+    if not 0 < depth <= DEEPEST:
+        raise rows.error(row, "end", f"a finite depth above 0 and of at most {DEEPEST:g} mm", remedy)
     return End(mode, body, depth)
 
 
@@ -423,14 +429,14 @@ def _rolling_radius(case: Case) -> float:
 
 def _check_hours(rows: TestTable, travels: Sequence[tuple[float, float]], cases: Sequence[Case]) -> None:
     """Refuse a travel that would take years without a stop, which is rather a number of overrollings."""
-    for row, ((low, _), case) in enumerate(zip(travels, cases, strict=True)):
-        hours = low / (KM_PER_HOUR * case.velocity)
-        if hours > LONGEST:
-            speed = f"{case.velocity:g} m/min"
-            allowed = f"a travel of at most {LONGEST:g} h without a stop; this one takes {hours:.3g} h at {speed}"
-            raise rows.error(
-                row, "travel_from", allowed, "Write km, not a number of overrollings, or correct the speed."
-            )
+    remedy = "Write km, not a number of overrollings, or correct the speed."
+    for row, (ends, case) in enumerate(zip(travels, cases, strict=True)):
+        for column, travel in zip(("travel_from", "travel_to"), ends, strict=True):
+            hours = travel / (KM_PER_HOUR * case.velocity)
+            if LONGEST < hours < math.inf:  # an infinite travel_to is that of a suspension
+                speed = f"{case.velocity:g} m/min"
+                allowed = f"a travel of at most {LONGEST:g} h without a stop; this one takes {hours:.3g} h at {speed}"
+                raise rows.error(row, column, allowed, remedy)
 
 
 def _solved(rows: TestTable, cases: Sequence[Case], options: Mapping[str, Any], body: str) -> Solved:
@@ -484,6 +490,8 @@ def _fatigue(
             raise rows.error(row, "base", f"a known number of overrollings of the {body}", remedy)
         worse = int(np.argmin(life))
         stated = rows.number(row, "contact", 1, 2)
+        if stated not in (1, 2) and not math.isnan(stated):
+            raise rows.error(row, "contact", "1 or 2, the contact that failed", "Correct the cell.")
         contact = worse if math.isnan(stated) else int(stated) - 1
         for c in {contact, 1 - contact} if ended and not math.isnan(stated) else {contact}:
             here = ended and c == contact

@@ -19,11 +19,11 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names, listing
-from trackroller.fit.fitted import Fit, Group
+from trackroller.fit.fitted import Fit, Group, check_texts
 from trackroller.fit.heads import OF_COUPONS, has_failed, only_marks, says_how, told_heads
 from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
-from trackroller.fit.table import LEAST, TestTable, read_tests
+from trackroller.fit.table import LEAST, LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable, read_tests
 from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.numerics.plain import plain
 
@@ -37,7 +37,6 @@ LOAD_TYPES = {
     "rolling contact": (1.0, "the amplitude is the peak von Mises stress of an overrolling"),
 }
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
-MOST_CYCLES, MOST_STRESS = 1e15, 1e5  # more is a mistake: 30,000 years at 1 kHz, and above any strength in MPa
 STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped, with failed = no."
 TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
 NO_LIMIT = (
@@ -106,6 +105,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     8.42
     """
     optional = [column for column in COLUMNS if column not in NEEDED]
+    check_texts(name=name, like=like)
+    if knee is not None and not isinstance(knee, (bool, np.bool_)):
+        raise InputError("knee", knee, "true or false", "Leave it out to let the tests decide.")
     tests = read_tests(table, NEEDED, COLUMNS, optional, OF_COUPONS)
     if load_type is not None:
         check_names("load type", [load_type], LOAD_TYPES)
@@ -197,7 +199,10 @@ def _of_group(tests: TestTable, group: str | None) -> TestTable:
         group = str(group)
         rows = [row for row in tests if tests.text(row, "group") == group]
         if not rows:
-            raise InputError("group", group, f"a group of the table: {listing(sorted(found), 'or')}")
+            names = sorted(filter(None, found))
+            if not names:
+                raise InputError("group", group, "a group of the table, which has none", "Leave the group out.")
+            raise InputError("group", group, f"a group of the table: {listing(names, 'or')}")
         return tests.keep(rows)
     if len(found) > 1:
         first = tests.text(0, "group")
@@ -262,7 +267,7 @@ def _observed(tests: TestTable, factor: float, failed: Sequence[bool]) -> Tests:
     """Return amplitude and cycles of each row as logarithms."""
     stress, low, high = [], [], []
     for row in tests:
-        amplitude = tests.number(row, "amplitude", LEAST, MOST_STRESS)
+        amplitude = tests.number(row, "amplitude", LEAST_STRESS, MOST_STRESS)
         cycles = tests.number(row, "cycles", LEAST, MOST_CYCLES, STOPPED)
         for column, value in (("amplitude", amplitude), ("cycles", cycles)):
             if math.isnan(value):

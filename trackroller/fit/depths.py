@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import InputError, check_names
-from trackroller.fit.bench import DEFAULTS, not_given_notes, wear_group, worn_alone
-from trackroller.fit.fitted import Fit
+from trackroller.fit.bench import DEEPEST, DEFAULTS, check_base, not_given_notes, wear_group, worn_alone
+from trackroller.fit.fitted import Fit, check_texts
 from trackroller.fit.table import LEAST, read_tests
 from trackroller.parameters import BODIES
 from trackroller.roller.settings import checked_case
@@ -58,9 +58,11 @@ def fit_wear(
     ASSUME: the other body keeps its profile, and errors of the depths are independent of each other.
     """
     check_names("body", [body], BODIES)
+    check_texts(name=name, like=like)
+    check_base(base)
     rows = read_tests(table, NEEDED, COLUMNS, ("test", "note"))
-    travel = np.array([rows.number(row, "travel", LEAST) for row in rows])
-    depth = np.array([rows.number(row, "wear_depth", LEAST) for row in rows])
+    travel = np.array([rows.number(row, "travel", LEAST, FARTHEST) for row in rows])
+    depth = np.array([rows.number(row, "wear_depth", LEAST, DEEPEST) for row in rows])
     for row, (km, mm) in enumerate(zip(travel, depth, strict=True)):
         for column, value in zip(NEEDED, (km, mm), strict=True):
             if math.isnan(value):

@@ -17,7 +17,7 @@ from trackroller.errors import InputError, check_names, listing
 from trackroller.files import write_whole
 from trackroller.fit.line import Interval, Line
 from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
-from trackroller.fit.table import TestTable
+from trackroller.fit.table import LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable
 from trackroller.materials import Material, add_material
 from trackroller.materials.file import posterior_path
 from trackroller.numerics.numbers import finite_number
@@ -325,6 +325,7 @@ class Fit:
         """
         failure_probability = _share("failure_probability", failure_probability)
         confidence = _share("confidence", confidence)
+        quantity = str(quantity)
         if quantity in ("cycles", "amplitude"):
             line = self.group("fatigue").line
             given, name = (amplitude, "amplitude") if quantity == "cycles" else (cycles, "cycles")
@@ -369,6 +370,7 @@ class Fit:
 
     def estimate(self, quantity: str, *, amplitude: float = math.nan, failure_probability: float = 0.5) -> float:
         """Return the most likely value of a quantity, as `interval` names them."""
+        quantity = str(quantity)
         if quantity == "cycles":
             line = self.group("fatigue").line
             log_stress = math.log(_positive("amplitude", amplitude, "the estimate of cycles"))
@@ -467,11 +469,19 @@ def _share(field: str, value: Any) -> float:
 
 def _positive(name: str, value: Any, purpose: str) -> float:
     """Return an amplitude [MPa] or a number of cycles; refuse other values."""
-    unit = "MPa" if name == "amplitude" else "-"
+    unit, low, high = ("MPa", LEAST_STRESS, MOST_STRESS) if name == "amplitude" else ("-", 1.0, MOST_CYCLES)
     number = math.nan if value is None else finite_number(value, unit, name)
-    if not number > 0:
-        raise InputError(name, value, f"a finite number above 0, for {purpose}")
+    if not low <= number <= high:
+        shown = " MPa" if name == "amplitude" else ""
+        raise InputError(name, value, f"a finite number from {low:g} to {high:g}{shown}, for {purpose}")
     return number
+
+
+def check_texts(**texts: Any) -> None:
+    """Refuse values of fields that are neither a text nor None."""
+    for field_name, text in texts.items():
+        if text is not None and not isinstance(text, str):
+            raise InputError(field_name, text, "a text", "Write the name in quotes.")
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")

@@ -86,7 +86,7 @@ class TestTable:
             If the cell is no finite number, or lies outside the bounds, which are allowed values themselves.
         """
         cell = self.rows[row].get(column)
-        if cell is None or cell == "" or (isinstance(cell, float) and math.isnan(cell)):
+        if _is_empty(cell):
             return math.nan
         unit = UNITS.get(column, "-")
         shown = "" if unit in PLAIN else f" {unit}"
@@ -105,7 +105,7 @@ class TestTable:
     def text(self, row: int, column: str) -> str:
         """Return the text of a cell without spaces around it, '' for an empty one."""
         cell = self.rows[row].get(column)
-        return "" if cell is None or (isinstance(cell, float) and math.isnan(cell)) else str(cell).strip()
+        return "" if _is_empty(cell) else str(cell).strip()
 
     def keep(self, rows: Sequence[int]) -> TestTable:
         """Return the table with some of its rows."""
@@ -120,6 +120,16 @@ class TestTable:
 
 
 LEAST = 1e-300  # smallest number above 0
+# more or less is a mistake: 30,000 years at 1 kHz, and stresses below any load cell and above any strength [MPa]
+MOST_CYCLES, LEAST_STRESS, MOST_STRESS = 1e15, 1e-3, 1e5
+MISSING = ("NAType", "NaTType")  # types of the values of pandas that say that a cell is empty
+
+
+def _is_empty(cell: Any) -> bool:
+    """Return whether a cell holds neither a number nor a text."""
+    if isinstance(cell, str):
+        return not cell.strip()
+    return cell is None or type(cell).__name__ in MISSING or (isinstance(cell, float) and math.isnan(cell))
 
 
 def read_tests(
