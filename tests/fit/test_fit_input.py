@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import errno
 import math
+import os
+import shutil
+from pathlib import Path
 
 import numpy as np
 import pandas as pd
@@ -11,9 +14,10 @@ import pytest
 import xarray as xr
 
 import trackroller as tr
+from trackroller.errors import WorkError
 from trackroller.fit.coupons import of_words
 from trackroller.fit.depths import fit_wear
-from trackroller.materials import edit
+from trackroller.fit.stored import stored_fit
 from trackroller.materials.file import posterior_path
 
 UNDER = {"load_type": "axial", "stress_ratio": -1, "like": "1.7225-normalised"}
@@ -146,7 +150,7 @@ def test_a_life_is_asked_for_a_case(design):
 def test_a_base_is_a_mapping(base):
     depths = {"travel": [100.0, 220.0], "wear_depth": [0.01, 0.02]}
     for call in (lambda: tr.fit_bench(BENCH, base=base), lambda: fit_wear(depths, base)):
-        with pytest.raises(tr.InputError, match="base = .*a mapping with fields of a case"):
+        with pytest.raises(tr.InputError, match=r"base = .*a mapping with fields of a case"):
             call()
 
 
@@ -201,22 +205,77 @@ def test_a_roller_with_two_contacts_is_one_test():
     assert fit.data.attrs["fatigue_tests"] == 10
 
 
-def test_a_disk_that_fills_leaves_neither_a_material_nor_its_posterior(tmp_path, monkeypatch):
-    """After that the same call writes both."""
-    file, fit = tmp_path / "materials.yaml", tr.fit_sn(ROWS, name="rail", **UNDER)
+WRITES = (
+    (xr.Dataset, "to_netcdf"), (Path, "write_text"), (Path, "write_bytes"), (os, "fsync"), (os, "replace"),
+    (shutil, "copy2"),
+)  # fmt: skip
 
-    def full(*args, **more):
-        raise OSError(errno.ENOSPC, "No space left on device")
 
-    for place, name in ((xr.Dataset, "to_netcdf"), (edit, "_write"), (edit, "write_whole")):
+def fails_at(patch, number):
+    """Let a write to the disk fail by its number, the first being 1; return the list of the writes so far."""
+    made = []
+
+    def counted(write):
+        def call(*args, **more):
+            made.append(write)
+            if len(made) == number:
+                raise OSError(errno.ENOSPC, "No space left on device")
+            return write(*args, **more)
+
+        return call
+
+    for place, name in WRITES:
+        patch.setattr(place, name, counted(getattr(place, name)))
+    return made
+
+
+def contents(folder):
+    return {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()}
+
+
+@pytest.mark.parametrize("existing", [False, True])
+def test_a_disk_that_fills_changes_neither_material_nor_posterior(tmp_path, monkeypatch, existing):
+    """Each write to the disk fails once; the same call then writes both."""
+    fit = tr.fit_sn(ROWS, name="rail", **UNDER)
+    failures = 0
+    for number in range(1, 100):
+        file = tmp_path / str(number) / "materials.yaml"
+        if existing:
+            tr.fit_sn(with_cell(ROWS, "cycles", 1.4e5), name="rail", **UNDER).write(file)
+        before = contents(tmp_path)
         with monkeypatch.context() as patch:
-            patch.setattr(place, name, full)
-            with pytest.raises(RuntimeError, match="No space left"):
-                fit.write(file)
-        assert not [path for path in tmp_path.rglob("*") if path.is_file()]
-    fit.write(file)
-    assert posterior_path(file, "rail").is_file()
-    before = posterior_path(file, "rail").read_bytes()
+            made = fails_at(patch, number)
+            try:
+                fit.write(file, replace=existing)
+            except (tr.InputError, WorkError) as error:
+                assert "disk is full" in str(error), number
+                assert contents(tmp_path) == before, number
+                failures += 1
+        if file.exists() and not existing:
+            assert posterior_path(file, "rail").is_file()
+        fit.write(file, replace=True)
+        stored = stored_fit("rail", tr.load_database(file).material("rail").as_dict(), file)
+        assert stored.line.estimate.tolist() == pytest.approx(fit.groups[0].line.estimate.tolist(), rel=1e-9)
+        if len(made) < number:
+            break
+    assert failures == (8 if existing else 6)  # that a folder is not flushed is no failure
+
+
+def test_a_refused_name_keeps_the_posterior_and_the_remedy_works(tmp_path):
+    file, other = tmp_path / "materials.yaml", with_cell(ROWS, "cycles", 1.4e5)
+    tr.fit_sn(ROWS, name="rail", **UNDER).write(file)
+    before = contents(tmp_path)
     with pytest.raises(tr.InputError, match=r"--replace"):
-        tr.fit_sn(with_cell(ROWS, "cycles", 1.4e5), name="rail", **UNDER).write(file)
-    assert posterior_path(file, "rail").read_bytes() == before
+        tr.fit_sn(other, name="rail", **UNDER).write(file)
+    assert contents(tmp_path) == before
+    for more in ({"name": "rail", "replace": True}, {"name": "rail 2"}):
+        name = more.pop("name")
+        tr.fit_sn(other, name=name, **UNDER).write(file, **more)
+        assert posterior_path(file, name).read_bytes() != before[posterior_path(file, "rail")]
+
+
+def test_a_home_that_is_not_known_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(tr.InputError, match=r"materials file = '~nobody-here/m.yaml'.*Write the whole path"):
+        tr.fit_sn(ROWS, name="rail", **UNDER).write("~nobody-here/m.yaml")
+    assert not list(tmp_path.iterdir())

@@ -14,12 +14,12 @@ import xarray as xr
 from scipy.special import ndtri
 
 from trackroller.errors import InputError, check_names, listing
-from trackroller.files import write_whole
+from trackroller.files import all_or_none, write_whole
 from trackroller.fit.line import Interval, Line
 from trackroller.fit.posterior import Normal, Posterior, ln_range, log_strength, posterior
 from trackroller.fit.table import LEAST_STRESS, MOST_CYCLES, MOST_STRESS, TestTable
 from trackroller.materials import Material, add_material
-from trackroller.materials.file import posterior_path
+from trackroller.materials.file import own_file, posterior_path
 from trackroller.numerics.numbers import finite_number
 
 CONFIDENCE = 0.9
@@ -414,14 +414,10 @@ class Fit:
         digest = f", sha256 {self.tests.digest[:16]}" if self.tests.digest else ""
         under = "; ".join(f"{key} {value}" for key, value in self.given.items())
         source = f"fit of {len(self.tests)} tests, {self.tests.name}{digest}"
-        made = []
-
-        def add() -> None:
-            """Write the material once the posterior is on the disk: a full disk leaves neither of them."""
-            made.append(add_material(file, self.name, replace=replace, source=source, note=under, **entry))
-
-        write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"), add)
-        return made[0]
+        with all_or_none(place, own_file(file)):
+            write_whole(place, lambda beside: self.data.to_netcdf(beside, engine="netcdf4"))
+            # the material comes last: a killed process leaves no material without its range
+            return add_material(file, self.name, replace=replace, source=source, note=under, **entry)
 
     def _check_file(self, place: Path) -> None:
         """Refuse a name whose posterior would take the place of that of another material."""

@@ -89,11 +89,7 @@ class TestTable:
         if _is_empty(cell):
             return math.nan
         unit = UNITS.get(column, "-")
-        shown = "" if unit in PLAIN else f" {unit}"
-        low = "above 0" if lower == LEAST else f"of at least {lower:g}{shown}"
-        allowed = f"a finite number{f' in{shown}' if shown else ''} {low if lower > -math.inf else ''}".strip()
-        if math.isfinite(upper):
-            allowed += f"{' and' if lower > -math.inf else ''} of at most {upper:g}{shown}"
+        allowed = _allowed_number("" if unit in PLAIN else f" {unit}", lower, upper)
         try:
             value = finite_number(cell, unit, column)
         except InputError:
@@ -123,6 +119,18 @@ LEAST = 1e-300  # smallest number above 0
 # more or less is a mistake: 30,000 years at 1 kHz, and stresses below any load cell and above any strength [MPa]
 MOST_CYCLES, LEAST_STRESS, MOST_STRESS = 1e15, 1e-3, 1e5
 MISSING = ("NAType", "NaTType")  # types of the values of pandas that say that a cell is empty
+
+
+def _allowed_number(unit: str, lower: float, upper: float) -> str:
+    """Return which numbers are allowed in words; the unit has a blank before it, or is ''."""
+    if LEAST < lower and upper < math.inf:
+        return f"a finite number from {lower:g} to {upper:g}{unit}"
+    words = f"a finite number in{unit}" if unit else "a finite number"
+    if lower == LEAST:
+        words += " above 0"
+    elif lower > -math.inf:
+        words += f" of at least {lower:g}{unit}"
+    return f"{words} and of at most {upper:g}{unit}" if upper < math.inf else words
 
 
 def _is_empty(cell: Any) -> bool:

@@ -57,9 +57,24 @@ def slug(name: str) -> str:
     return re.sub(r"[^\w-]+", "-", name.strip().lower()).strip("-") or "material"
 
 
+def own_file(path: Path | str) -> Path:
+    """Return the whole path of a user's materials file; links are followed.
+
+    Raises
+    ------
+    InputError
+        If the path begins with a home that this machine does not know.
+    """
+    expanded = os.path.expanduser(path)
+    if expanded.startswith("~"):  # a folder of this name would be made
+        remedy, wrong = "Write the whole path.", "names a home that this machine does not know"
+        raise InputError("materials file", str(path), "the path of a YAML file", remedy, wrong)
+    return Path(os.path.realpath(expanded))
+
+
 def posterior_path(file: Path | str, name: str) -> Path:
     """Return the file of the posterior of a fitted material, beside the user's materials file."""
-    return Path(file).expanduser().resolve().parent / FITS / f"{slug(name)}.nc"
+    return own_file(file).parent / FITS / f"{slug(name)}.nc"
 
 
 def read_database(user_file: Path | None) -> MaterialDatabase:
