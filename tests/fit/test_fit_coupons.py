@@ -127,7 +127,11 @@ def test_basquins_exponent_is_no_slope(tmp_path, more):
             HEAD,
             r"line 7: amplitude = '900 MPa'.*second level.*--slope",
         ),
-        (GOOD.replace("yes", "no"), HEAD, r"line 7: failed = 'no'.*all specimens ran out.*Hold slope and"),
+        (
+            GOOD.replace("yes", "no"),
+            HEAD,
+            r"line 7: failed = 'no'.*all specimens ran out.*Hold the slope",
+        ),
         (GOOD, "amplitude [MPa],cycles [km],failed\n", r"line 1: cycles = 'km'"),
         (GOOD.replace("90000,", "38.25,"), HEAD, r"line 2: cycles = '38.25'.*whole number.*fit bench"),
         (GOOD.replace("0000,", ","), HEAD, r"cycles.*at least 1000 cycles in one row.*travel in km"),

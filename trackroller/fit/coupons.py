@@ -126,9 +126,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     meet = _limit_shows(observed) if knee is None else knee
     held = None if scatter_in_cycles is None else deviation_of(scatter_in_cycles)
     line = Line(observed, slope=slope, scatter=held, knee=meet)
-    if line.size <= len(line.free):
-        allowed = f"more rows than fitted values; {listing([*line.free])} are {len(line.free)} values"
-        raise InputError("tests", line.size, allowed, "Test more specimens, or hold slope or scatter_in_cycles.")
+    _check_number(tests, line)
     priors = priors_of(prior)
     given = {
         "load type": load_type or "not given",
@@ -140,6 +138,20 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         notes.append(NO_LIMIT)
     own = Group("fatigue", line, priors, at=_stated_at(line))
     return Fit("sn", name or "fitted material", (own,), tests, like, given, notes)
+
+
+def _check_number(tests: TestTable, line: Line) -> None:
+    """Refuse a line with as many fitted values as specimens, or more."""
+    lacking = len(line.free) + 1 - line.size
+    if lacking <= 0:
+        return
+    holdable = [held for name, held in HELD.items() if name in line.free]
+    remedy = f"Test {lacking} more specimen{'s' if lacking > 1 else ''}"
+    if lacking <= len(holdable):
+        remedy += f", or hold {listing(holdable, 'or' if lacking == 1 else 'and')}"
+    fitted = f"{listing(line.free)} are {len(line.free)} values"
+    allowed = f"more rows than fitted values; {fitted}"
+    raise tests.placed(InputError("tests", line.size, allowed, f"{remedy}."))
 
 
 def _too_flat(field: str, slope: Any) -> InputError:
@@ -179,6 +191,10 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
         else:
             found["log_strength"] = Normal(math.log(middle), deviation)
     return found
+
+
+# how a value of a line is held, by its name: on the command line, in Python
+HELD = {"slope": "the slope (--slope 8)", "log_scatter": "the scatter (--scatter 4, in Python scatter_in_cycles=4)"}
 
 
 def _range_of_scatter() -> tuple[float, float]:
@@ -229,8 +245,7 @@ def _column_of_ends(tests: TestTable) -> str:
     if not given and not said:
         allowed = "a column failed, with yes for a failure and no for a run-out; or a column runout, with the opposite"
         remedy = f"The table has {', '.join(tests.heads.get(name, name) for name in names)}."
-        error = InputError("column failed", None, allowed, remedy)
-        raise error if tests.path is None else error.at(tests.path, 0)
+        raise tests.placed(InputError("column failed", None, allowed, remedy))
     return [*given, *said][0]
 
 
@@ -353,7 +368,7 @@ def check_falls(tests: TestTable, observed: Tests, column: str, rows: Sequence[i
 def _check_identified(tests: TestTable, observed: Tests, slope: float | None, scatter: float | None) -> None:
     """Refuse one level with a free slope, and run-outs alone with free values."""
     last = len(tests) - 1
-    free = [name for name, value in (("slope", slope), ("scatter_in_cycles", scatter)) if value is None]
+    free = [HELD[name] for name, value in (("slope", slope), ("log_scatter", scatter)) if value is None]
     if free and not observed.failed.any():
         allowed = "at least one failure; all specimens ran out"
         remedy = f"Hold {listing(free)} for a one-sided bound, or test at a higher amplitude."

@@ -75,7 +75,8 @@ def fit_wear(
             remedy = "Write the mean of the two depths once."
             raise rows.error(row, "travel", "each travel once", remedy, "stands in another row as well")
     if len(rows) < 2:
-        raise InputError("tests", len(rows), "two depths or more, for a coefficient with its scatter")
+        allowed = "two depths or more, for a coefficient with its scatter"
+        raise rows.placed(InputError("tests", len(rows), allowed, "Measure the groove once more."))
     case, options, _ = checked_case(dict(base or {}))
     unit = followed(worn_alone(case, body), options, body, depth)
     for row in np.flatnonzero(np.isnan(unit)).tolist():

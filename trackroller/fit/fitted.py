@@ -323,8 +323,8 @@ class Fit:
         InputError
             For an unknown quantity, or one that was not fitted.
         """
-        failure_probability = _share("failure_probability", failure_probability)
-        confidence = _share("confidence", confidence)
+        failure_probability = share("failure_probability", failure_probability)
+        confidence = share("confidence", confidence)
         quantity = str(quantity)
         if quantity in ("cycles", "amplitude"):
             line = self.group("fatigue").line
@@ -362,8 +362,8 @@ class Fit:
         """
         from trackroller.fit.bench import worst_stress
 
-        failure_probability = _share("failure_probability", failure_probability)
-        confidence = _share("confidence", confidence)
+        failure_probability = share("failure_probability", failure_probability)
+        confidence = share("confidence", confidence)
         stress, per_hour = worst_stress(design, self.given, self.name)
         found = self.group("fatigue").line.interval_of_life(math.log(stress), failure_probability, confidence)
         return Interval(*(float(np.exp(end)) / per_hour for end in found))
@@ -374,7 +374,7 @@ class Fit:
         if quantity == "cycles":
             line = self.group("fatigue").line
             log_stress = math.log(_positive("amplitude", amplitude, "the estimate of cycles"))
-            probability = _share("failure_probability", failure_probability)
+            probability = share("failure_probability", failure_probability)
             return float(np.exp(line.log_life(line.best, log_stress, probability)))
         name = SPOKEN.get(quantity, quantity)
         known = {n: own for own in self.groups for n in own.names}
@@ -455,7 +455,7 @@ class Fit:
         return write_fit(self, path)
 
 
-def _share(field: str, value: Any) -> float:
+def share(field: str, value: Any) -> float:
     """Return a share between 0 and 1; refuse other values."""
     number = finite_number(value)
     if not 0.0 < number < 1.0:

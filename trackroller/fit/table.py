@@ -67,8 +67,11 @@ class TestTable:
         value = self.rows[row].get(column, "")
         head = self.heads.get(column, column)
         place = head if self.path is not None else f"row {self.lines[row]}, {head}"
-        error = InputError(place, value, allowed, remedy, wrong)
-        return error if self.path is None else error.at(self.path, self.lines[row])
+        return self.placed(InputError(place, value, allowed, remedy, wrong), self.lines[row])
+
+    def placed(self, error: InputError, line: int = 0) -> InputError:
+        """Return an error with the file of the table and a line of it, 0 for the table as a whole."""
+        return error if self.path is None else error.at(self.path, line)
 
     def number(
         self,
@@ -181,14 +184,13 @@ def read_tests(
     for name in names:
         with wrong.part():
             if name not in known:
-                raise _placed(unknown_name("column", split_head(str(name))[0], known), found, place)
+                raise found.placed(unknown_name("column", split_head(str(name))[0], known), place)
     for name in needed:
         with wrong.part():
             if name not in names and not wrong.errors:
                 allowed = f"a column {name}{_with_unit(name)}"
-                raise _placed(
-                    InputError(f"column {name}", None, allowed, f"The table has {', '.join(names)}."), found, place
-                )
+                remedy = f"The table has {', '.join(names)}."
+                raise found.placed(InputError(f"column {name}", None, allowed, remedy), place)
     wrong.check()
     return found
 
@@ -196,10 +198,6 @@ def read_tests(
 def _with_unit(name: str) -> str:
     unit = UNITS.get(name, "-")
     return "" if unit in PLAIN else f" [{unit}]"
-
-
-def _placed(error: InputError, table: TestTable, line: Any) -> InputError:
-    return error.at(table.path, line) if table.path is not None else error
 
 
 def _tests_of_file(
