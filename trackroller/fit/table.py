@@ -16,7 +16,7 @@ from trackroller.numerics.cells import split_head
 from trackroller.numerics.numbers import finite_number, number_or_nan
 from trackroller.numerics.plain import plain, rows_of
 from trackroller.numerics.units import PLAIN, in_unit, split_quantity
-from trackroller.study.file.user_table import UNITS, column_names, read_table
+from trackroller.study.file.user_table import UNITS, line_of_names, read_table
 
 FIELD = "tests"
 
@@ -204,7 +204,11 @@ def _tests_of_file(
     path: Path, known: Collection[str], optional: Collection[str], others: Mapping[str, str]
 ) -> tuple[TestTable, int]:
     """Return the rows of a file by the names of the columns, and the line of its head."""
-    heads = read_heads(column_names(path, FIELD), known, others)
+    line, written = line_of_names(path, FIELD)
+    try:
+        heads = read_heads(written, known, others)
+    except InputError as error:
+        raise error.at(path, line) from None
     names = {split_head(head)[0]: one for head, one in heads.items()}
     numbers = {name: UNITS[one.column] for name, one in names.items() if one.column in UNITS}
     empty = {head for head, one in heads.items() if one.column in optional}

@@ -185,10 +185,16 @@ def read_table(
 
 def column_names(path: Path, field: str) -> list[str]:
     """Return the names of the columns of a table; [] for an empty one."""
+    return line_of_names(path, field)[1]
+
+
+def line_of_names(path: Path, field: str) -> tuple[int, list[str]]:
+    """Return the number of the line of names in a table, and the names; [] for an empty one."""
     lines, _ = _lines(read_bytes(path, field, math.inf), path, field, "case", HEAD_ROWS)
     number, heads, _ = _split(_until_names(lines))
     with _in_line(path, number):
-        return _names([head for head in heads if head], field, (), UNITS)[0]
+        names, _ = _names([head for head in heads if head], field, (), UNITS)
+    return number, names
 
 
 def is_workbook(path: Path) -> bool:
@@ -539,7 +545,8 @@ def _check_cells(table: UserTable, optional: Collection[str], path: Path, wrong:
     must = [j for j, name in enumerate(table.names) if name not in optional]
     for j in [j for j in must if table.lines and not any(table.column(j))]:
         must.remove(j)
-        error = InputError(table.names[j], None, "a value in each line; all cells are empty", "Remove the column.")
+        remedy = "Fill the cells, or remove the column."
+        error = InputError(table.names[j], None, "a value in each line; all cells are empty", remedy)
         wrong.errors.append(error.at(path, table.head))
     for number, line in table.lines.items():
         for j in must:
