@@ -106,6 +106,18 @@ def test_specimens_have_names(tmp_path):
         line_of(path)
 
 
+def test_specimen_p10_is_no_percentile(tmp_path):
+    """One amplitude and the longest life are its mean and maximum; a line 'P10' below other names is refused."""
+    path = tmp_path / "tests.csv"
+    cycles = [*range(100000, 180000, 10000), 10**6, 10**6]
+    rows = [f"P{i},400,{n},{'yes' if i < 9 else 'no'}\n" for i, n in enumerate(cycles, 1)]
+    path.write_text("specimen,amplitude [MPa],cycles,failed\n" + "".join(rows))
+    assert tr.fit_sn(path, slope=8, **UNDER).groups[0].line.size == 10
+    path.write_text(path.read_text().replace("\nP", "\nS").replace("S10", "p10") + "S11,400,2000000,no\n")
+    with pytest.raises(tr.InputError, match=r"line 11: tests = .*sums up the lines above"):
+        tr.fit_sn(path, slope=8, **UNDER)
+
+
 @pytest.mark.parametrize("code", ["2", "f", "perhaps", "-1"])
 @pytest.mark.parametrize("head", ["failed", "runout"])
 def test_a_code_that_says_nothing_is_asked_back(tmp_path, code, head):

@@ -473,11 +473,14 @@ def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, 
     labels = [j for j, name in enumerate(table.names) if name not in table.known and j not in numbers]
     above: list[list[str]] = []
     last = next(reversed(table.lines), None)
+    names = (line[j] for line in table.lines.values() for j in labels)
+    # beside P9, the name P10 is no percentile
+    series = {_unnumbered(name) for name in names if not _STATISTIC.fullmatch(name)} - {""}
     for number, line in list(table.lines.items()):
         own = [line[j] for j in labels] or line[:1]
         words = [word for word in own if math.isnan(_value(word))]  # '5 min' is no minimum
         sums = any(_SUM.fullmatch(word) for word in words)
-        if not sums and any(_STATISTIC.fullmatch(word) for word in words):
+        if not sums and any(_STATISTIC.fullmatch(word) and _unnumbered(word) not in series for word in words):
             sums = _sums_up(above, line, numbers)
         if not sums and number == last:
             sums = _sums_up(above, line, numbers, surely=bool(not labels or any(own)), one=True)
@@ -491,6 +494,12 @@ def _check_totals(table: UserTable, numbers: list[int], path: Path, field: str, 
             wrong.errors.append(InputError(field, ", ".join(line), allowed, remedy).at(path, number))
         else:
             above.append(line)
+
+
+def _unnumbered(name: str) -> str:
+    """Return a name without the number at its end, '' for a name without number."""
+    found = re.fullmatch(r"(.*?\D)\d+", name)
+    return found[1] if found else ""
 
 
 def _sums_up(
