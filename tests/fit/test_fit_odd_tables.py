@@ -82,7 +82,7 @@ def change(rng, cells, known):  # noqa: C901 - one branch for each odd way
         cells[name][row] = f"  {cells[name][row]}\u00a0"
     elif kind == "unit":
         cells["amplitude"] = [f"{cell} MPa" for cell in cells["amplitude"]]
-    elif kind == "names":
+    elif kind == "names" and known is not None:
         cells[rng.choice(["test", "specimen", "sample_id"])] = [f"P{i}" for i in range(len(cells["cycles"]))]
     elif kind == "notation" and known is not None:
         way = rng.choice(["{:.0f}.0", "{:.6e}", "{:.6E}", "+{:.0f}", "{:,.0f}", "{:.3f}"])
@@ -147,3 +147,116 @@ def check(seed, path):
 @pytest.mark.parametrize("seed", range(100))
 def test_an_odd_table_is_read_as_a_person_reads_it_or_refused(tmp_path, seed):
     check(seed, tmp_path / "odd.csv")
+
+
+RIG = {"motor_force": 0, "friction_coefficient": 0.1, "axial_force": 20, "contact_model": "sliding"}
+ROLLERS = {
+    "radial_force": [-120, -120, -150, -150, -180, -180, -210, -210, -130, -165],
+    "travel_from": [130, 200, 100, 50, 41.5, 25, 43.4, 31.7, 90, 23.7],
+    "travel_to": [130, None, 150, 75, 41.5, 50, 43.4, 31.7, 90, 23.7],
+    "end": ["fatigue roller", "none", *["fatigue roller"] * 6, "bearing", "fatigue roller"],
+}
+BENCH_HEADS = {
+    "radial_force": ["radial_force", "radial_force [N]", "radial_force (N)"],
+    "travel_from": ["travel_from", "travel_from [km]", "travel_from / km"],
+    "travel_to": ["travel_to", "travel_to [km]"],
+    "end": ["end"],
+}
+BAD_ENDS = [
+    "", "fatigue", "wear roller", "wear roller inf mm", "wear roller 0 mm", "wear roller -1 mm", "wear roller 5", "?",
+    "fatigue roller guide", "broken roller", "wear roller 1e300 mm", "wear roller 2 kg", "fatigue both", "1",
+]  # fmt: skip
+SAME_ENDS = {"none": ["NONE", "run-out", "Runout", "suspended", "run out"], "fatigue roller": ["Fatigue  Roller"]}
+WHOLE = ["bearing", "other", "wear guide 0.05 mm", "wear roller 50 um", "fatigue guide", "shakedown roller"]
+
+
+def bench_meaning(seed):
+    """Return heads, cells by column, and what a table of rollers means: None for a table that means nothing."""
+    rng = random.Random(seed)
+    size = rng.choice([10] * 6 + [1, 2, 4, 7])
+    rows = sorted(rng.sample(range(10), size))
+    known = {name: [values[row] for row in rows] for name, values in ROLLERS.items()}
+    cells = {name: ["" if value is None else str(value) for value in values] for name, values in known.items()}
+    for _ in range(rng.choice([0, 1, 1, 2])):
+        known = change_rollers(rng, cells, known)
+    heads = {name: rng.choice(BENCH_HEADS.get(name, [name])) for name in cells}
+    return rng, heads, cells, known
+
+
+def change_rollers(rng, cells, known):  # noqa: C901 - one branch for each odd way
+    """Change cells in one odd way; return what the table means now, None if it means nothing."""
+    kind = rng.choice(
+        ["bad", "empty", "end", "words", "whole", "names", "contact", "wrong contact", "twice", "swapped"]
+    )
+    row = rng.randrange(len(cells["end"]))
+    name = rng.choice(["radial_force", "travel_from", "travel_to"])
+    if kind == "bad":
+        bad = [one for one in BAD_NUMBERS if one not in ("0", "-460", "1e-300") or name == "travel_to"]
+        cells[name][row] = rng.choice(bad)
+        return None
+    if kind == "empty":
+        name = rng.choice(["radial_force", "travel_from", "end"])
+        cells[name][row] = ""
+        return None
+    if kind == "end":
+        cells["end"][row] = rng.choice(BAD_ENDS)
+        return None
+    if kind == "words":
+        cells["end"] = [rng.choice(SAME_ENDS.get(end, [end])) for end in cells["end"]]
+    elif kind == "whole" and cells["travel_to"][row] and known is not None:
+        end = rng.choice(WHOLE)
+        if end == "fatigue guide" and "fatigue roller" in cells["end"][:row] + cells["end"][row + 1 :]:
+            end = "other"  # two bodies that failed are refused
+        cells["end"][row] = end
+        known = known | {"end": [*known["end"][:row], end, *known["end"][row + 1 :]]}
+    elif kind == "names" and known is not None:
+        cells["test"] = [f"P{i}" for i in range(len(cells["end"]))]
+    elif kind == "contact" and known is not None:
+        own = [rng.choice([1, 2, ""]) for _ in cells["end"]]
+        cells["contact"] = list(map(str, own))
+        known = known | {"contact": [one or None for one in own]}
+    elif kind == "wrong contact":
+        cells["contact"] = ["1"] * len(cells["end"])
+        cells["contact"][row] = rng.choice(["3", "0", "1.5", "left", "inf", "nan", "-1"])
+        return None
+    elif kind == "twice":
+        for own in cells.values():
+            own.append(own[row])
+        if known is None or "test" in cells or cells["end"][row] not in ("none", *SAME_ENDS["none"]):
+            return None
+        return {own: [*values, values[row]] for own, values in known.items()}
+    elif kind == "swapped":
+        cells["travel_to"][row] = "0.001"
+        return None
+    return known
+
+
+def bench_fitted(table):
+    """Return the values of a fit of rollers, or the sentence that refuses it."""
+    try:
+        line = tr.fit_bench(table, base=RIG).groups[0].line
+    except InputError as error:
+        assert any(word in str(error) for word in ("Allowed: ", "Needed: ", " is not known", " stands in row ")), error
+        return str(error)
+    return line.size, line.estimate
+
+
+def check_bench(seed, path):
+    rng, heads, cells, known = bench_meaning(seed)
+    text = written(rng, heads, cells, path)
+    found = bench_fitted(path)
+    if isinstance(found, str):
+        assert path.name in found, (text, found)
+        assert known is None or isinstance(bench_fitted(known), str), (text, found)
+        return found
+    assert known is not None, (text, found)
+    expected = bench_fitted(known)
+    assert not isinstance(expected, str), (text, expected)
+    assert found[0] == expected[0] == len(known["end"]), text
+    assert np.allclose(found[1], expected[1], rtol=1e-9), text
+    return "fit"
+
+
+@pytest.mark.parametrize("seed", range(100))
+def test_an_odd_table_of_rollers_is_read_as_a_person_reads_it_or_refused(tmp_path, seed):
+    check_bench(seed, tmp_path / "odd.csv")
