@@ -279,3 +279,37 @@ def test_a_home_that_is_not_known_is_refused(tmp_path, monkeypatch):
     with pytest.raises(tr.InputError, match=r"materials file = '~nobody-here/m.yaml'.*Write the whole path"):
         tr.fit_sn(ROWS, name="rail", **UNDER).write("~nobody-here/m.yaml")
     assert not list(tmp_path.iterdir())
+
+
+@pytest.mark.parametrize("place", [None, 5, [1], "", "/", "folder"])
+def test_a_materials_file_is_the_path_of_a_file(tmp_path, monkeypatch, place):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "folder").mkdir()
+    with pytest.raises(tr.InputError, match=r"materials file .*config/materials\.yaml"):
+        tr.fit_sn(ROWS, name="rail", **UNDER).write(place)
+    assert [path.name for path in tmp_path.rglob("*")] == ["folder"]
+    tr.fit_sn(ROWS, name="rail", **UNDER).write("config/materials.yaml")
+
+
+@pytest.mark.parametrize("place", [None, 5, "", "page.txt"])
+def test_a_page_is_the_path_of_a_page(place):
+    with pytest.raises(tr.InputError, match="report"):
+        tr.fit_sn(ROWS, name="rail", **UNDER).report(place)
+
+
+@pytest.mark.parametrize("name", ["x" * 101, "a\nb", "\x1b[31mred"])
+def test_a_name_is_one_short_line(name):
+    depths = {"travel": [100.0, 220.0], "wear_depth": [0.01, 0.02]}
+    for call in (
+        lambda: tr.fit_sn(ROWS, **UNDER, name=name),
+        lambda: tr.fit_bench(BENCH, base=RIG, name=name),
+        lambda: fit_wear(depths, RIG, name=name),
+    ):
+        with pytest.raises(tr.InputError, match=r"name = .*one line of at most 100 characters"):
+            call()
+    assert tr.fit_sn(ROWS, **UNDER, name="rig steel").name == "rig steel"
+
+
+def test_a_table_without_columns_is_told_so():
+    with pytest.raises(tr.InputError, match="The table has no columns"):
+        tr.fit_sn([{}])

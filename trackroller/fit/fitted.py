@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import os
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -23,6 +24,7 @@ from trackroller.materials.file import own_file, posterior_path
 from trackroller.numerics.numbers import finite_number
 
 CONFIDENCE = 0.9
+LONGEST_NAME = 100  # characters of the name of a material, which is a part of names of files
 # name in `.data` and in an entry of the database, by the value of a line of each kind
 WORDS = {
     "fatigue_limit": ("MPa", "fatigue strength at the knee, failure probability 50 %"),
@@ -452,6 +454,8 @@ class Fit:
         """
         from trackroller.report.pages.fit import write_fit
 
+        if not isinstance(path, (str, os.PathLike)):
+            raise InputError("report", path, "the path of a page", "Write a name such as fit.html.")
         return write_fit(self, path)
 
 
@@ -474,10 +478,15 @@ def _positive(name: str, value: Any, purpose: str) -> float:
 
 
 def check_texts(**texts: Any) -> None:
-    """Refuse values of fields that are neither a text nor None."""
+    """Refuse values of fields that are neither a name nor None."""
     for field_name, text in texts.items():
-        if text is not None and not isinstance(text, str):
+        if text is None:
+            continue
+        if not isinstance(text, str):
             raise InputError(field_name, text, "a text", "Write the name in quotes.")
+        if len(text) > LONGEST_NAME or not text.isprintable():
+            allowed = f"one line of at most {LONGEST_NAME} characters that can be printed"
+            raise InputError(field_name, text, allowed, "Shorten the name, such as 'rig steel'.")
 
 
 ENTRY = ("fatigue_limit", "woehler_exponent", "scatter_in_cycles", "scatter_in_stress", "wear_coefficient")

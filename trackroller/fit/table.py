@@ -189,7 +189,7 @@ def read_tests(
         with wrong.part():
             if name not in names and not wrong.errors:
                 allowed = f"a column {name}{_with_unit(name)}"
-                remedy = f"The table has {', '.join(names)}."
+                remedy = f"The table has {', '.join(names) or 'no columns'}."
                 raise found.placed(InputError(f"column {name}", None, allowed, remedy), place)
     wrong.check()
     return found

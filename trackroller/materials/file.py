@@ -63,12 +63,17 @@ def own_file(path: Path | str) -> Path:
     Raises
     ------
     InputError
-        If the path begins with a home that this machine does not know.
+        If it is no path, names a folder, or begins with a home that this machine does not know.
     """
+    allowed, remedy = "the path of a YAML file", "Write a name such as config/materials.yaml."
+    if not isinstance(path, (str, os.PathLike)):
+        raise InputError("materials file", path, allowed, remedy)
     expanded = os.path.expanduser(path)
+    if os.path.isdir(expanded or "."):
+        raise InputError("materials file", str(path), allowed, remedy, "is a folder")
     if expanded.startswith("~"):  # a folder of this name would be made
         remedy, wrong = "Write the whole path.", "names a home that this machine does not know"
-        raise InputError("materials file", str(path), "the path of a YAML file", remedy, wrong)
+        raise InputError("materials file", str(path), allowed, remedy, wrong)
     return Path(os.path.realpath(expanded))
 
 
