@@ -349,6 +349,7 @@ def all_or_none(*paths: Path) -> Iterator[None]:
     The previous content stands in a copy beside each file, so that putting it back needs no space on the disk.
     """
     copies: dict[Path, Path] = {}
+    lacking = [folder for path in paths for folder in path.parents if not folder.exists()]
     try:
         for path in paths:
             if path.exists():
@@ -363,6 +364,9 @@ def all_or_none(*paths: Path) -> Iterator[None]:
                     os.replace(copies[path], path)
                 else:
                     path.unlink(missing_ok=True)
+            for folder in lacking:
+                with contextlib.suppress(OSError):
+                    folder.rmdir()
             raise
     finally:
         for copy in copies.values():

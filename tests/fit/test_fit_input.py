@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import math
 import os
+import re
 import shutil
 from pathlib import Path
 
@@ -101,8 +102,10 @@ def test_a_contact_is_one_of_two(contact):
 def test_a_prior_has_two_possible_numbers(name, place, value):
     pair = [8.0, 2.0]
     pair[place] = value
-    with pytest.raises(tr.InputError, match=rf"prior\.{name}"):
+    with pytest.raises(tr.InputError, match=rf"prior\.{name}") as refused:
         tr.fit_sn(ROWS, prior={name: pair}, **UNDER)
+    if advised := re.search(r"--prior (\S+)\.$", str(refused.value)):
+        assert tr.fit_sn(ROWS, prior=of_words([advised[1]], "--prior"), **UNDER).groups[0].priors
 
 
 @pytest.mark.parametrize("word", ["slope=inf,2", "slope=8,inf", "slope=8", "slope", "slope=8,2,1"])
@@ -272,6 +275,12 @@ def test_a_refused_name_keeps_the_posterior_and_the_remedy_works(tmp_path):
         name = more.pop("name")
         tr.fit_sn(other, name=name, **UNDER).write(file, **more)
         assert posterior_path(file, name).read_bytes() != before[posterior_path(file, "rail")]
+
+
+def test_a_material_like_an_unknown_one_leaves_nothing(tmp_path):
+    with pytest.raises(tr.InputError, match=r"like = 'nope' is not known"):
+        tr.fit_sn(ROWS, name="rail", **UNDER | {"like": "nope"}).write(tmp_path / "config" / "materials.yaml")
+    assert not list(tmp_path.iterdir())
 
 
 def test_a_home_that_is_not_known_is_refused(tmp_path, monkeypatch):

@@ -176,13 +176,16 @@ def priors_of(given: Mapping[str, Sequence[float]] | None) -> dict[str, Normal]:
         first = "mean" if name == "slope" else "median"
         second = "standard deviation" if name == "slope" else "standard deviation of ln"
         allowed = f"[{first} from {low:.4g} to {high:.4g}, {second} from {LEAST_SPREAD:g} to {MOST_SPREAD:g}]"
+        remedy = (
+            f"For example [{EXAMPLES[name]}], on the command line --prior {name}={EXAMPLES[name].replace(' ', '')}."
+        )
         if not isinstance(pair, list) or len(pair) != 2:
-            raise InputError(f"prior.{name}", pair, allowed)
+            raise InputError(f"prior.{name}", pair, allowed, remedy)
         middle, deviation = map(finite_number, pair)
         if name == "slope" and 0 < abs(middle) < low:
             raise _too_flat("prior.slope", middle)
         if not (low <= middle <= high and LEAST_SPREAD <= deviation <= MOST_SPREAD):
-            raise InputError(f"prior.{name}", pair, allowed)
+            raise InputError(f"prior.{name}", pair, allowed, remedy)
         if name == "slope":
             found["slope"] = Normal(middle, deviation)
         elif name == "scatter_in_cycles":  # ln s of T_N = exp(2.563 s)
@@ -205,6 +208,7 @@ def _range_of_scatter() -> tuple[float, float]:
 
 # bounds of the middle of a prior
 PRIORS = {"slope": BOUNDS["slope"], "scatter_in_cycles": _range_of_scatter(), "fatigue_strength": (1.0, MOST_STRESS)}
+EXAMPLES = {"slope": "8, 2", "scatter_in_cycles": "4, 0.5", "fatigue_strength": "500, 0.2"}
 LEAST_SPREAD, MOST_SPREAD = 1e-4, 1e4  # of a prior
 
 
