@@ -107,6 +107,21 @@ def test_a_test_that_stands_twice_is_removed_or_named():
     assert fits(table | {"test": list("ABCDEF")}).groups[0].line.size == 6
 
 
+@pytest.mark.parametrize("column", ["failed", "runout"])
+def test_a_run_out_without_end_gets_the_cycles_of_its_stop(column):
+    codes = [True] * 5 + [False] if column == "failed" else [False] * 5 + [True]
+    table = {"amplitude": [*STRESS, 340], "cycles": [*CYCLES, math.inf], column: codes}
+    with pytest.raises(tr.InputError, match=r"write the cycles at which the specimen was stopped"):
+        fits(table)
+    assert fits(table | {"cycles": [*CYCLES, 1e7]}).groups[0].line.tests.failed.sum() == 5
+
+
+def test_a_travel_in_place_of_cycles_belongs_to_the_bench():
+    with pytest.raises(tr.InputError, match=r"If it is a travel in km, fit rollers with `trackroller fit bench`"):
+        fits(rows(STRESS, BENCH["travel_from"], [True] * 5))
+    on_bench(BENCH)
+
+
 def test_a_group_is_chosen():
     table = rows(STRESS * 2, [*CYCLES, *(2 * n for n in CYCLES)], [True] * 10, group=["A"] * 5 + ["B"] * 5)
     with pytest.raises(tr.InputError, match=r"Choose one with --group NAME \(group=\), and fit each alone"):

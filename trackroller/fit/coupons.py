@@ -37,7 +37,7 @@ LOAD_TYPES = {
     "rolling contact": (1.0, "the amplitude is the peak von Mises stress of an overrolling"),
 }
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
-STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped, with failed = no."
+STOPPED = "Correct the cell; of a run-out, write the cycles at which the specimen was stopped."
 TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
 NO_LIMIT = (
     "No fatigue limit makes the tests likelier than the line alone, on which run-outs are long lives: the line was "
