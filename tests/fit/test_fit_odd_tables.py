@@ -26,7 +26,7 @@ HEADS = {
 }  # fmt: skip
 CODES = [
     ("yes", "no"), ("1", "0"), ("TRUE", "FALSE"), ("true", "false"), ("Y", "N"), ("x", ""), ("ja", "nein"),
-    ("1.0", "0.0"), ("wahr", "falsch"), ("X", "-"), ("T", "F"), ("on", "off"), ("2", "1"), ("-1", "0"),
+    ("1.0", "0.0"), ("wahr", "falsch"), ("X", "-"), ("T", "F"), ("on", "off"), ("2", "0"), ("-1", "0"),
     ("failed", "run-out"),
 ]  # fmt: skip
 BAD_NUMBERS = [
