@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 import re
+import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -82,6 +83,41 @@ MOST_CHARACTERS = 200  # of a value that a message shows
 def shortened(text: str) -> str:
     """Return a text as a message shows it: of a long one the beginning and the end."""
     return text if len(text) <= MOST_CHARACTERS else f"{text[:100]}...{text[-60:]}"
+
+
+MARKS = {*"\u061c\u200e\u200f\u2028\u2029", *map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A))}
+
+
+def checked_text(text: str, field: str, lines: bool = False) -> str:
+    r"""Return a text of a user as it is: the one check of names, descriptions and cells where they are read.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    field : str
+        What it stands for, for the message.
+    lines : bool
+        Whether it may have line ends and tabs, as a description has.
+
+    Raises
+    ------
+    InputError
+        If the text holds a control character, which a terminal obeys, or a mark of direction, with which a text shows
+        another one than it is. The message shows such a character escaped.
+
+    Examples
+    --------
+    >>> checked_text("Förderer 7", "name"), checked_text("two\nlines", "description", lines=True)
+    ('Förderer 7', 'two\nlines')
+    """
+    allowed = "\n\r\t" if lines else ""
+    for sign in text:
+        if sign in MARKS or (unicodedata.category(sign) in ("Cc", "Cs") and sign not in allowed):
+            remedy = f"Remove the character {ascii(sign)[1:-1]}."
+            wrong = "holds a control character or a mark of direction"
+            raise InputError(field, text, "a text of letters, digits, signs and spaces", remedy, wrong)
+    return text
 
 
 MOST_SHOWN = 30  # errors of a file that a message names

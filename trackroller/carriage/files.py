@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import csv
 import io
+import re
+import unicodedata
 from collections.abc import Mapping
 from typing import Any
 
@@ -12,9 +14,11 @@ import xarray as xr
 from trackroller.carriage.file import OF_LOADS, Carriage
 from trackroller.carriage.solve import cases_of
 from trackroller.errors import InputError, check_names
+from trackroller.files import inert_cell
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 
+MOST_LETTERS = 64  # of the name of a study
 HEADS = "load_case,roller,share"  # the columns before them, which say where a load comes from
 
 
@@ -66,7 +70,7 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
         named = ", ".join(case.name for case in lifted)
         text += f" No block holds {100 * share:.4g} % of the travel, in which the roller is lifted: {named}."
     base, options = parts_for_spectrum(roller.given)
-    head = {"name": f"{whole.name}-{name}", "description": text, "base": base, "blocks": blocks}
+    head = {"name": name_of_study(f"{whole.name}-{name}"), "description": text, "base": base, "blocks": blocks}
     duty = whole.duty if whole.duty is not None else roller.given.get("duty")
     return head | ({"duty": dict(duty)} if isinstance(duty, Mapping) else {}) | options
 
@@ -106,14 +110,21 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     for (i, j), case in sorted(cases_of(whole, ds).items()):
         fields = [getattr(case, name) for name in (*OF_LOADS, *varying)]
         shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
-        rows.append([whole.cases[i].name, whole.rollers[j].name, f"{whole.cases[i].share:.10g}", *shown])
+        names = [inert_cell(name) for name in (whole.cases[i].name, whole.rollers[j].name)]
+        rows.append([*names, f"{whole.cases[i].share:.10g}", *shown])
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     lifted = ds["radial_force"].size - (len(rows) - 1)
     text = f"Loads of the rollers of {whole.name} by load case."
     if lifted:
         text += f" Rollers that are lifted carry no load and have no row, {lifted} in all."
-    study = {"name": f"{whole.name}-loads", "description": text, "base": base, "design": "table", "table": table}
+    study = {
+        "name": name_of_study(f"{whole.name}-loads"),
+        "description": text,
+        "base": base,
+        "design": "table",
+        "table": table,
+    }
     columns = zip(heads, zip(*rows[1:], strict=True), strict=True)
     varies = [name for name, column in columns if name not in OF_LOADS and len({*column}) > 1]
     study["roles"] = dict.fromkeys(varies, "condition")  # all cases are conditions of one design
@@ -121,6 +132,18 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     given = whole.rollers[0].options
     options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}
     return study | duty | options, out.getvalue()
+
+
+def name_of_study(text: str) -> str:
+    """Return a name that a study or spectrum may have, made of any text: 'my-shuttle-loads' of 'my shuttle-loads'.
+
+    Accents are removed, other signs become '-', and long names are cut in the middle.
+    """
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    name = re.sub(r"\.{2,}", ".", re.sub(r"[^A-Za-z0-9._-]+", "-", plain))
+    name = re.sub(r"-{2,}", "-", name).strip("-._")
+    name = name if len(name) <= MOST_LETTERS else f"{name[:40]}-{name[-20:]}"
+    return name if name[:1].isalnum() else f"carriage-{name}".strip("-")
 
 
 def _check_settled(ds: xr.Dataset) -> None:

@@ -60,7 +60,9 @@ TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
 _RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
 
 
-def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: bool = True) -> xr.Dataset:
+def solve_carriage(
+    source: Path | str | Mapping[str, Any] | Carriage, lives: bool = True, advanced: Callable[[int], object] = int
+) -> xr.Dataset:
     """Compute the loads of the rollers of a carriage, and their lives.
 
     Parameters
@@ -69,6 +71,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
         A carriage file, or a mapping with its keys; see "Carriage" in the how-to guides.
     lives : bool
         Whether each roller is solved under its loads, by `trackroller.solve`.
+    advanced : callable
+        Called with the number of load cases whose forces and margins are done since the last call.
 
     Returns
     -------
@@ -78,7 +82,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
         `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
         (load_case) is False where no state fulfils all conditions of an equilibrium; its forces, margins and the lives
         of all rollers are NaN. A margin beyond the one to a single contact is one of rollers that carry axial load both
-        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`, `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
+        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`,
+        `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
         roller with the shortest one.
 
     Raises
@@ -104,7 +109,7 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     """
     whole = source if isinstance(source, Carriage) else load_carriage(source)
     springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
-    ds = _solution(whole, springs, loads).assign(_margins(whole, springs, loads))
+    ds = _solution(whole, springs, loads).assign(_margins(whole, springs, loads, advanced))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
         return ds.assign_attrs(without_case=", ".join(without))
@@ -303,7 +308,9 @@ def _places(whole: Carriage) -> dict[str, Any]:
     }
 
 
-def _margins(whole: Carriage, springs: Springs, loads: list[Loads]) -> dict[str, Any]:
+def _margins(
+    whole: Carriage, springs: Springs, loads: list[Loads], advanced: Callable[[int], object]
+) -> dict[str, Any]:
     """Return the multipliers of payload and of all loads to one contact, to lift-off and to tipping."""
     angles = [np.nan if roller.case is None else roller.case.contact_angle for roller in whole.rollers]
     tangent = np.tan(np.radians(np.array(angles, dtype=float)))
@@ -315,6 +322,7 @@ def _margins(whole: Carriage, springs: Springs, loads: list[Loads]) -> dict[str,
             one_contact = to_one_contact(springs, fixed, varying, tangent, lift_off)
             for end, value in zip(ENDS, (one_contact, lift_off, tipping), strict=True):
                 out.setdefault(f"{name}_to_{end}", []).append(value)
+        advanced(1)
     words = {"payload": "multiplier of the payload", "loads": "multiplier of all loads"}
     names = {f"{name}_to_{end}": f"{words[name]} {ENDS[end]}" for name in words for end in ENDS}
     return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
@@ -371,9 +379,13 @@ def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]
     """Yield a sentence for each rating of a maker's catalogue that is small beside the radial forces (n,) [N]."""
     if roller.catalogue is None:
         return
-    rated = {"radial": roller.catalogue.radial_force, "axial": roller.catalogue.axial_force}
-    for text in ratings({"radial_force": radial, "catalogue": rated}):
-        yield text.replace("radial =", "radial_force =").replace("axial =", "axial_force =")
+    rated = {name: getattr(roller.catalogue, name) for name in ("radial_force", "axial_force")}
+    yield from ratings({"radial_force": radial, "catalogue": rated})
+    if np.isfinite(roller.catalogue.moment):
+        yield (
+            f"catalogue.moment = {roller.catalogue.moment:g} N mm does not count: the statics of a carriage gives no "
+            "moment of a roller. Put the catalogue into the file of the roller, where it does."
+        )
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:

@@ -17,6 +17,7 @@ import xarray as xr
 
 from trackroller.damage.verdict import STATES
 from trackroller.errors import InputError
+from trackroller.files import inert_cell
 from trackroller.parameters import REGIME_LABELS
 from trackroller.parameters.of_carriage import parameter_of
 from trackroller.parameters.validity import VALIDITY
@@ -50,7 +51,7 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
     for table in tables:
         path = folder / f"{table.name}.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([_inert(value) for value in row] for row in [table.heads, *table.rows])
+            csv.writer(file).writerows([inert_cell(value) for value in row] for row in [table.heads, *table.rows])
         paths.append(path)
     book = folder / "tables.xlsx"
     put(book, lambda beside: _save(beside, tables))
@@ -77,7 +78,7 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     """
     if path.suffix.lower() == ".csv":
         texts = table.select_dtypes(exclude="number")
-        inert = table.assign(**{str(name): texts[name].map(_inert) for name in texts})
+        inert = table.assign(**{str(name): texts[name].map(inert_cell) for name in texts})
         return put(path, lambda beside: inert.to_csv(beside, index=False))
     if path.suffix.lower() != ".xlsx":
         raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
@@ -175,13 +176,6 @@ _WORDS: dict[str, Callable[[int], str]] = {name: _word(words) for name, (_, word
     "validity": _flags_set,
     "at_surface": _word(("no", "yes")),
 }
-
-
-def _inert(value: Any) -> Any:
-    """Return a cell with an apostrophe before a text that a spreadsheet would run as a formula; numbers stay."""
-    if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
-        return value
-    return value if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?", value) else f"'{value}"
 
 
 def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:
