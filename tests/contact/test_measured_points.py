@@ -125,7 +125,7 @@ def test_noise_is_refused_with_its_size(spacing, rough):
     noise = rough * spacing
     z = np.sqrt(36.0 - x * x) + np.random.default_rng(3).normal(0.0, noise, x.size)
     told = refusal(x, z)
-    assert "guide_profile.smooth is missing" in told and "smooth: auto" in told and "smooth: 0 takes" in told
+    assert "guide_profile.smooth is missing" in told and "smooth: auto" in told and "smooth: 0 if" in told
     assert float(told.split("scatter by ")[1].split(" um")[0]) == pytest.approx(1e3 * noise, rel=0.35)
     assert not refusal(x, z, smooth="auto") and not refusal(x, z, smooth=noise)
 
@@ -234,3 +234,69 @@ def test_a_length_without_points_is_told(start, end):
     assert f"no points lie between x = {start:g} and {end:g} mm" in asked(X[kept], Z[kept])
     assert gap(X) is None and gap(np.sort(np.concatenate([X[:60:3], X[60:]]))) is None
     assert gap(np.linspace(-3.0, 3.0, 31) ** 3) is None  # dense in the middle
+
+
+def solved_groove(noise: float, count: int, **entries):
+    """Return the data set of a groove of two arcs of 6.6 mm that was measured with noise [mm]."""
+    x = np.linspace(-5.0, 5.0, count)
+    z = np.sqrt(6.6**2 - (abs(x) + 0.6 * np.sin(np.pi / 6.0)) ** 2)
+    z += np.random.default_rng(3).normal(0.0, noise, count)
+    case = tr.Case(
+        roller_profile={"points": np.column_stack((x, z)).tolist(), **entries}, friction_coefficient=0.2, motor_force=0
+    )
+    options = {"normal": "halfspace", "accuracy": "preview", "contact_model": "sliding", "outputs": ("contact",)}
+    return tr.solve(case, **options)
+
+
+def is_flagged(ds, name: str) -> bool:
+    meanings = ds.validity.attrs["flag_meanings"].split()
+    return bool(int(ds.validity) & int(ds.validity.attrs["flag_masks"][meanings.index(name)]))
+
+
+@pytest.mark.parametrize(
+    ("noise", "smooth", "flagged"),
+    [
+        (8e-4, 7.2e-4, True),  # slightly less than the noise: a multiple of the pressure
+        (8e-4, "auto", False),
+        (8e-4, 3e-3, False),
+        (8e-4, 2e-2, True),  # far more than the noise: the shape itself is smoothed
+        (2e-5, "auto", False),
+        (2e-5, 1e-5, False),  # so little noise hardly matters
+    ],
+)
+def test_a_pressure_that_changes_with_the_smoothing_is_flagged(noise, smooth, flagged):
+    right = solved_groove(0.0, 500).max_pressure.values
+    ds = solved_groove(noise, 500, smooth=smooth)
+    assert is_flagged(ds, "smoothing") == flagged
+    wrong = np.abs(ds.max_pressure.values / right - 1.0).max()
+    assert (wrong > 0.15) == flagged, "the flag tells the wrong pressures"
+
+
+def test_the_flag_of_the_smoothing_does_not_depend_on_the_cases_beside():
+    x = np.linspace(-5.0, 5.0, 500)
+    z = np.sqrt(6.6**2 - (abs(x) + 0.3) ** 2) + np.random.default_rng(3).normal(0.0, 8e-4, 500)
+    profile = {"points": np.column_stack((x, z)).tolist(), "smooth": 7.6e-4}
+    cases = [
+        tr.Case(roller_profile=profile, friction_coefficient=0.2, motor_force=0, radial_force=-force)
+        for force in (20.0, 200.0, 2000.0)
+    ]
+    options = {"normal": "halfspace", "accuracy": "preview", "contact_model": "sliding", "outputs": ("contact",)}
+    together, alone = tr.solve(cases, **options), [tr.solve(case, **options) for case in cases]
+    assert together.validity.values.tolist() == [int(one.validity) for one in alone]
+    np.testing.assert_array_equal(together.max_pressure, [one.max_pressure for one in alone])
+
+
+def test_a_groove_drawn_as_one_arc_in_the_middle_is_told():
+    x = np.linspace(-5.0, 5.0, 401)
+    for radius in (6.1, 6.6, 7.0):
+        assert "touch in the middle" in asked_of_groove(x, np.sqrt(radius**2 - x * x))
+        for angle, told in ((0.0, True), (20.0, True), (28.0, False), (30.0, False), (33.0, False), (40.0, True)):
+            offset = (radius - 6.0) * math.sin(math.radians(angle))  # two arcs that touch the guide of 6 mm there
+            sentence = asked_of_groove(x, np.sqrt(radius**2 - (abs(x) + offset) ** 2))
+            assert ("as drawn, groove and guide touch" in sentence) == told, angle
+            assert not told or angle == 0.0 or f"at {angle:.3g} deg" in sentence
+
+
+def asked_of_groove(x: np.ndarray, z: np.ndarray) -> str:
+    case = tr.Case(roller_profile={"points": np.column_stack((x, z)).tolist()}, friction_coefficient=0.1)
+    return " ".join(doubts_of_case(case, load_database()))

@@ -9,6 +9,7 @@ import re
 import shlex
 
 import numpy as np
+import openpyxl
 import pytest
 import yaml
 from browser import CHROMIUM, Browser
@@ -28,6 +29,7 @@ from trackroller.report.figures.roller_section import content_of
 from trackroller.report.numbers import BEYOND, number
 from trackroller.report.pages.sheet import as_json, collect, render
 from trackroller.report.words.accuracy import flags_of
+from trackroller.report.workbook import write_roller
 from trackroller.roller.dataset import validity_bit
 from trackroller.roller.regime_limits import limits
 from trackroller.roller.settings import sheet_of
@@ -456,3 +458,11 @@ def test_a_sheet_outside_the_half_space_says_so_first():
     assert "Rolls" not in verdict
     closer = tr.solve(dataclasses.replace(case, roller_material="C45"), (*COMPLETE, "limits"), contact_model="sliding")
     assert collect(closer).verdict.startswith("Rolls. ")
+
+
+@pytest.mark.parametrize(("friction", "source"), [(None, "database"), ("upper", "database"), (0.2, "given")])
+def test_friction_of_the_database_is_not_shown_as_given(friction, source, tmp_path):
+    ds = tr.solve(tr.Case(friction_coefficient=friction, motor_force=0), contact_model="sliding")
+    rows = openpyxl.load_workbook(write_roller(ds, tmp_path / "roller.xlsx"))["inputs"].values
+    (row,) = [row for row in rows if row[0] == "friction_coefficient"]
+    assert row[-1] == source

@@ -162,3 +162,11 @@ def test_points_in_another_unit_are_asked_about(body):
         profile = {"points": (size * np.array(points)).tolist(), "frame": "contact"}
         told = doubts_of_case(tr.Case(**{body: profile}), load_database())
         assert len(told) == len(words) and all(word in one for word, one in zip(words, told, strict=True))
+
+
+def test_an_axle_inside_the_rail_is_asked_about():
+    (told,) = doubts({"axis_distance": 5.8, "guide_profile_radius": 6.0})
+    assert "the axle lies inside the rail" in told
+    assert doubts({"axis_distance": 6.2, "guide_profile_radius": 6.0}) == []
+    (told,) = doubts({"axis_distance": np.array([8.0, 8.0]), "guide_profile_radius": np.array([6.0, 9.0])})
+    assert "axis_distance = 8 mm does not exceed guide_profile_radius = 9 mm" in told

@@ -114,3 +114,40 @@ def test_what_a_condition_does_not_count_is_told():
 def test_what_cannot_be_found_says_what_to_write(name, condition, said):
     with pytest.raises(tr.InputError, match=said):
         tr.find({}, name, condition, contact_model="sliding")
+
+
+@pytest.mark.parametrize("between", [(-1e13, 0), (-1e300, 1e300), (-1000, -10), ("-1 kN", "-10 N"), None])
+def test_a_search_between_any_values_finds_the_same_limit(between):
+    """The pressure of both contacts, equally loaded without axial force, grows with the cube root of the load."""
+    case = FREE | {"axial_force": 0, "radial_force": -200}
+    now = float(tr.solve(case, outputs="contact", **SLIDING).max_pressure[0])
+    found = tr.find(case, "radial_force", "max_pressure < 900", between=between, **SLIDING)
+    assert found.low == pytest.approx(-200.0 * (900.0 / now) ** 3, rel=1e-4)
+    cut = between is not None and isinstance(between[0], float)
+    assert ("The search was cut to -1e+12 to 0 N, the bounds of radial force." in found.text) == cut
+
+
+@pytest.mark.parametrize(
+    ("between", "said"),
+    [
+        ((-math.inf, 0), "two different finite numbers"),
+        ((math.nan, 0), "two different finite numbers"),
+        (("a", 0), "two different finite numbers"),
+        ((-5, -5), "two different finite numbers"),
+        ((-3, -2, -1), r"Write between=\(lowest, highest\) in N"),
+        (-3, r"Write between=\(lowest, highest\) in N"),
+        ((1, 2), "lies outside the bounds"),
+    ],
+)
+def test_a_search_between_no_two_numbers_is_refused(between, said):
+    with pytest.raises(tr.InputError, match=said):
+        tr.find(FREE, "radial_force", "max_pressure < 900", between=between, **SLIDING)
+
+
+def test_a_search_that_is_widened_or_ends_at_an_odd_value_says_so():
+    found = tr.find(FREE, "radial_force", "max_pressure < 900", between=(-500, -300), **SLIDING)
+    assert "The search was widened to the value of the case, -200 N." in found.text
+    found = tr.find(FREE, "axis_distance", "max_pressure < 1e6", **SLIDING)
+    assert found.low < 6.0 and "the axle lies inside the rail" in found.text
+    found = tr.find(FREE, "axis_distance", "max_pressure < 1e6", between=(7, 30), **SLIDING)
+    assert "axle" not in found.text

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.contact.cross_sections import CrossSection, Gap, arcs, drawn, parabola, smoothed, with_edges, worn
-from trackroller.contact.measured_points import in_order
+from trackroller.contact.measured_points import in_order, noise_of
 from trackroller.contact.profiles import FEWEST
 from trackroller.errors import ShapeError
 
@@ -119,6 +119,33 @@ def _from_points(profile: dict[str, Any], body: str, alpha: float, guide_radius:
     return _flat_enough(drawn(u - apex, out * w), body, guide_radius)
 
 
+def smoothed_otherwise(text: str) -> list[str]:
+    """Return a profile of smoothed points with half and with twice its smoothing, in canonical JSON.
+
+    The curve follows the noise of its points where it is smoothed by less than this noise. So the smaller smoothing is
+    no smaller than the noise that `noise_of` finds; it is left out where nothing lies between them.
+
+    Parameters
+    ----------
+    text : str
+        Profile in canonical JSON; "" for the circle.
+
+    Returns
+    -------
+    list of str
+        The profile with more smoothing, and with less where there is a smaller one; [] for a profile without smoothing.
+    """
+    profile = _parsed(text) if text else {}
+    if not profile.get("smooth"):
+        return []
+    points = np.asarray(profile["points"])
+    noise = noise_of(*points[in_order(points)].T)
+    given = noise if profile["smooth"] == "auto" else profile["smooth"]
+    less = max(0.5 * given, min(noise, given))
+    others = [2.0 * given, *([less] if less < given else [])]
+    return [json.dumps(profile | {"smooth": other}, sort_keys=True) for other in others]
+
+
 def _turned(x: np.ndarray, z: np.ndarray, alpha: float) -> tuple[np.ndarray, np.ndarray]:
     """Return points of the section along and across the tangent plane at the contact [mm]."""
     return x * math.cos(alpha) - z * math.sin(alpha), x * math.sin(alpha) + z * math.cos(alpha)
@@ -135,7 +162,7 @@ def _flat_enough(shape: CrossSection, body: str, guide_radius: float) -> CrossSe
         return shape
     given = f"a curve inclined by more than 25 deg {min(-low, high):.3g} mm beside the contact"
     allowed = f"one that is flatter over {NARROWEST * guide_radius:.3g} mm at least{_beside(guide_radius)}"
-    raise ShapeError(body, given, allowed, "Give x and z in mm. If the points are noisy, give `smooth`.")
+    raise ShapeError(body, given, allowed, "Give x and z in mm. If the points are noisy, give smooth: auto.")
 
 
 def _single_valued(u: np.ndarray, w: np.ndarray, body: str) -> tuple[np.ndarray, np.ndarray]:
@@ -149,7 +176,7 @@ def _single_valued(u: np.ndarray, w: np.ndarray, body: str) -> tuple[np.ndarray,
         place = np.flatnonzero(single)[0] + 1
         given = f"a curve that turns back between two points, {math.hypot(u[place], w[place]):.4g} mm from the origin"
         allowed = "a curve that does not turn back, seen along the contact normal"
-        raise ShapeError(body, given, allowed, "Leave out lost points. If the points are noisy, give `smooth`.")
+        raise ShapeError(body, given, allowed, "Leave out lost points. If the points are noisy, give smooth: auto.")
     breaks = np.flatnonzero(back)
     starts, ends = np.concatenate([[0], breaks + 1]), np.concatenate([breaks + 1, [u.size]])
     k = int(np.argmax(ends - starts))
@@ -273,6 +300,48 @@ def _check_touch(between: Gap, body: str, guide_radius: float, more: str = "") -
         allowed = f"shapes that touch within {ASIDE * guide_radius:.3g} mm of it, because all lever arms refer to it"
         remedy = "Make the groove wider than the guide there, or correct contact_angle and the nominal radii."
         raise ShapeError(body, given, allowed, remedy + more)
+
+
+def touching_place(guide: str, roller: str, guide_radius: float) -> tuple[float, float] | None:
+    """Return where a roller and a guide touch as they are drawn with x = 0 in the middle of both.
+
+    Parameters
+    ----------
+    guide, roller : str
+        Profiles in canonical JSON; "" for the circle.
+    guide_radius : float
+        Nominal r_C,G [mm].
+
+    Returns
+    -------
+    tuple of float or None
+        Distance from the middle [mm], and inclination of the roller's curve there [deg]; None unless the roller is
+        drawn by points in frame: section, and the guide so too or as the circle.
+    """
+    shapes = [_parsed(text) if text else {} for text in (guide, roller)]
+    if shapes[1].get("frame") != "section" or (shapes[0] and shapes[0].get("frame") != "section"):
+        return None
+    sides = [_drawn_side(shape) for shape in shapes if shape]
+    if any(x.size < FEWEST for x, _ in sides):
+        return None
+    ends = [float(x[-1]) for x, _ in sides]
+    end = min(ends if shapes[0] else [guide_radius, *ends])
+    x = np.linspace(0.0, end, 2001)
+    curves = [
+        smoothed(*side, shape.get("smooth", 0.0)) for side, shape in zip(sides, filter(None, shapes), strict=True)
+    ]
+    guide_heights = curves[0](x) if shapes[0] else np.sqrt(guide_radius**2 - x**2)
+    place = float(x[np.argmin(curves[-1](x) - guide_heights)])
+    return place, -math.degrees(math.atan(float(curves[-1](place, 1))))
+
+
+def _drawn_side(profile: dict[str, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """Return the points of a section with x >= 0 in order, or those of its mirror image."""
+    points = np.asarray(profile["points"])
+    x, z = points[in_order(points)].T
+    if np.count_nonzero(x >= 0) < FEWEST:
+        x, z = -x[::-1], z[::-1]
+    return x[x >= 0], z[x >= 0]
 
 
 def has_details(text: str) -> bool:

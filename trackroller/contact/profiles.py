@@ -279,7 +279,8 @@ def _unsmoothed(found: Findings, field: str) -> InputError:
     noise = f"{1e3 * found.scatter:.2g} um"
     wrong = f"is missing, and the points scatter by {noise} (noise or rounding), which can raise the pressure by "
     allowed = "auto, the standard deviation of the noise, or 0"
-    remedy = f"Give smooth: auto, or the measured noise, such as smooth: {noise}; smooth: 0 takes the scatter as shape."
+    # the scatter found here is no advice: a curve smoothed by slightly less than the noise follows it
+    remedy = "Give smooth: auto. Give smooth: 0 if the scatter is the shape."
     return InputError(f"{field}.smooth", None, allowed, remedy, wrong + found.pressure_rise)
 
 

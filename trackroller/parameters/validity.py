@@ -100,4 +100,11 @@ VALIDITY: dict[str, ValidityFlag] = {
         "estimated error above the tolerance of the option accuracy on every rung",
         "Take a larger tolerance, or the estimated errors as they are: adhesion covers less than an element there.",
     ),
+    "smoothing": ValidityFlag(
+        "the pressure depends on how far measured points are smoothed",
+        "p_max changes by more than a tenth if the smoothing of measured points is doubled, or halved but not below "
+        "the noise that is found in them",
+        "Compare smooth: auto with twice the noise, measure with less noise, or describe the shape by its radii (arc, "
+        "arcs).",
+    ),
 }

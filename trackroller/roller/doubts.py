@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from trackroller.contact.drawn_profiles import touching_place
 from trackroller.contact.measured_points import MISLEADING, TOLD, Findings, examined, gap, in_order, waves
 from trackroller.materials.properties import PROPERTIES
 from trackroller.numerics.units import in_unit
@@ -62,6 +63,7 @@ LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
 SMALL = {"axial_force": 0.02}  # share of the radial force below which a rating is asked about; 1 for the others
 # ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres above.
 MEASURED_WIDTH = 0.05, 20.0
+TURNED = 5.0  # ASSUME: deg; contact angles of a drawn section that differ by less are drawn alike
 LIKE_A_GROOVE = 2.0  # ASSUME: the radius of a groove is at most this times that of the guide
 
 
@@ -99,7 +101,9 @@ def doubts(values: Mapping[str, Any], materials: Iterable[Material] = ()) -> lis
     for name in ("guide_profile", "roller_profile"):
         radius = next((r for r in guide_radii if r > 0.0), math.nan)
         sentences += [text for profile in _mappings(values.get(name)) for text in _of_points(name, profile, radius)]
+    sentences += _axles_in_the_rail(values)
     sentences += _convex_rollers(values)
+    sentences += _touching_elsewhere(values)
     return [text for text in sentences if text]
 
 
@@ -200,8 +204,8 @@ def _of_points(name: str, profile: Mapping[str, Any], guide_radius: float) -> li
         noise = f"{1e3 * found.scatter:.2g}"
         sentences.append(
             f"{name}: its points scatter by {noise} µm (noise or rounding) and are not smoothed, so that the scatter "
-            f"counts as shape and can raise the pressure by {found.pressure_rise}; add smooth: auto, or the measured "
-            f"noise, such as smooth: {noise} um{'' if meant else ', or smooth: 0 if it is meant'}."
+            f"counts as shape and can raise the pressure by {found.pressure_rise}; add smooth: "
+            f"auto{'' if meant else ', or smooth: 0 if it is meant'}."
         )
     return sentences
 
@@ -221,6 +225,45 @@ def _gaps_and_waves(points: np.ndarray, found: Findings) -> list[str]:
             "length do; they count as shape. If they come from the measurement, describe the shape by its radii."
         )
     return sentences
+
+
+def _axles_in_the_rail(values: Mapping[str, Any]) -> list[str]:
+    """Return a sentence about the first roller whose axis lies inside the contour of the guide."""
+    axes = _numbers(values.get("axis_distance", EXAMPLE["axis_distance"]))
+    radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
+    same = len(axes) == len(radii)  # a study has a row for each case
+    pairs = zip(axes, radii, strict=True) if same else ((axis, radius) for axis in axes for radius in radii)
+    inside = [(axis, radius) for axis, radius in pairs if axis <= radius]
+    return [
+        f"axis_distance = {axis:.4g} mm does not exceed guide_profile_radius = {radius:.4g} mm: the axle lies inside "
+        "the rail. Take a larger axis_distance."
+        for axis, radius in inside[:1]
+    ]
+
+
+def _touching_elsewhere(values: Mapping[str, Any]) -> list[str]:
+    """Return sentences about drawn grooves that touch the guide of the first case at another angle than its own."""
+    radii = _numbers(values.get("guide_profile_radius", EXAMPLE["guide_profile_radius"]))
+    angles = _numbers(values.get("contact_angle", EXAMPLE["contact_angle"]))
+    guides = _mappings(values.get("guide_profile")) or [{}]
+    if not (radii and angles) or not (radii[0] > 0.0 and angles[0] > 0.0):
+        return []
+    sentences = []
+    for profile in _mappings(values.get("roller_profile")):
+        if "points" not in profile:
+            continue
+        texts = [json.dumps(one) if one else "" for one in (guides[0], {"frame": "section", **profile})]
+        found = touching_place(texts[0], texts[1], radii[0])
+        if found is None or abs(found[1] - angles[0]) <= TURNED:
+            continue
+        place, angle = found
+        where = "in the middle" if place == 0.0 else f"{place:.3g} mm from the middle, at {angle:.3g} deg"
+        sentences.append(
+            f"roller_profile: as drawn, groove and guide touch {where}, and not at the contact_angle of "
+            f"{angles[0]:g} deg, where they are solved. A groove with two contacts has two arcs: draw it so, correct "
+            "contact_angle, or use frame: contact."
+        )
+    return sentences[:1]
 
 
 def _convex_rollers(values: Mapping[str, Any]) -> list[str]:

@@ -81,7 +81,7 @@ def _hints(case: CaseTable, options: Options, steep: bool) -> list[str]:
     if rough and options.normal == "halfspace":
         hints.append(
             f"The {' and the '.join(rough)} goes through every point, and measuring noise counts as shape: "
-            "give `smooth`, the standard deviation of the noise in mm, or 'auto'"
+            "give smooth: auto"
         )
     return hints
 

@@ -12,14 +12,16 @@ import numpy as np
 from trackroller.damage import groups_of
 from trackroller.damage.verdict import GROUP as VERDICT
 from trackroller.errors import InputError, unknown_name
-from trackroller.materials import MaterialDatabase
+from trackroller.materials import MaterialDatabase, load_database
 from trackroller.numerics.brackets import narrowed
+from trackroller.numerics.numbers import number_in
 from trackroller.numerics.units import without_units
 from trackroller.parameters import PARAMETERS, REGIMES, Parameter
 from trackroller.parameters.expressions import condition as meets
 from trackroller.parameters.expressions import names
 from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.case import Case
+from trackroller.roller.doubts import doubts_of_case
 from trackroller.roller.output_names import PARTS, unit_of
 from trackroller.roller.solver import solve
 
@@ -27,6 +29,7 @@ STEPS = 24  # values tried on either side of the case
 RATIO = 16.0  # a value of one sign is tried from a sixteenth to sixteen times the case's
 PARTS_OF_A_STEP = (8,) * 5  # each round cuts the step that holds an end into so many parts
 ROUNDING = 1e-9  # of a life, below which its ends are one
+LARGEST = 1e300  # largest finite end of a search
 STATUS = "status"  # group of results that are always there
 
 
@@ -123,7 +126,7 @@ def find(
     between : tuple of float, optional
         Values between which the parameter is tried, in its unit. Default: a sixteenth to sixteen times the value of the
         case; for a parameter of either sign, four times the size of the larger of value and example both ways. Bounds
-        of the parameter cut both.
+        of the parameter cut both, and `between` is widened to the case's value; the notes tell both.
     database : MaterialDatabase, optional
         Materials; the built-in ones and the user's own if not given.
     **options
@@ -137,7 +140,8 @@ def find(
     Raises
     ------
     InputError
-        If a name is unknown, the condition is no comparison, or the parameter cannot be changed.
+        If a name is unknown, the condition is no comparison, the parameter cannot be changed, or `between` is no pair
+        of different finite numbers or lies outside the bounds of the parameter.
 
     Notes
     -----
@@ -163,17 +167,54 @@ def find(
     if not isinstance(start, (int, float)) or not math.isfinite(start):
         raise InputError("find", name, "a parameter with a number in the case", f"Give the case a finite {name}.")
     search = _Search(given, name, condition, database, options)
-    return search.found(float(start), _values(PARAMETERS[name], float(start), between))
+    notes: list[str] = []
+    if between is not None:
+        between, notes = _cut(PARAMETERS[name], float(start), between)
+    return search.found(float(start), _values(PARAMETERS[name], float(start), between), notes)
+
+
+def _cut(parameter: Parameter, start: float, between: Any) -> tuple[tuple[float, float], list[str]]:
+    """Return the range to search, within the bounds of a parameter and with the start in it, and what was changed."""
+    allowed = f"two different finite numbers [{parameter.unit}], each {parameter.allowed()}"
+    remedy = f"Write between=(lowest, highest) in {parameter.unit}, or leave it out."
+    if isinstance(between, (str, Mapping)) or not isinstance(between, Iterable):
+        raise InputError("between", between, allowed, remedy)
+    given = list(between)
+    finite = [number_in(end, "between", allowed, -LARGEST, LARGEST, parameter.unit) for end in given]
+    if len(finite) != 2 or finite[0] == finite[1]:
+        raise InputError("between", given, allowed, remedy)
+    low, high = max(min(finite), parameter.lower), min(max(finite), parameter.upper)
+    if low >= high:
+        raise InputError("between", given, allowed, remedy, "lies outside the bounds")
+    unit = "" if parameter.unit == "-" else f" {parameter.unit}"
+    notes = []
+    if (low, high) != (min(finite), max(finite)):
+        notes.append(f"The search was cut to {low:g} to {high:g}{unit}, the bounds of {parameter.long_name}.")
+    if not low <= start <= high:
+        notes.append(f"The search was widened to the value of the case, {start:g}{unit}.")
+    return (min(low, start), max(high, start)), notes
+
+
+def _toward(start: float, end: float) -> np.ndarray:
+    """Return the values from the start to an end of the search, without the start.
+
+    Even steps miss what lies near the start if the end is far away, so that the steps grow where the end is more than
+    `RATIO` times the start away.
+    """
+    distance, near = abs(end - start), abs(start) or 1.0
+    steps = np.linspace(0.0, distance, STEPS + 1)[1:]
+    if distance > RATIO * near:
+        steps = np.geomspace(near / STEPS, distance, STEPS)
+    values = start + math.copysign(1.0, end - start) * steps
+    values[-1] = end
+    return np.asarray(values)
 
 
 def _values(parameter: Parameter, start: float, between: tuple[float, float] | None) -> np.ndarray:
     """Return the values to try first, rising, the start among them."""
     signed = parameter.lower < 0.0 < parameter.upper
     if between is not None:
-        low, high = sorted(map(float, between))
-        if not low <= start <= high:
-            low, high = min(low, start), max(high, start)
-        values = np.concatenate([np.linspace(low, start, STEPS + 1), np.linspace(start, high, STEPS + 1)[1:]])
+        values = np.concatenate([_toward(start, between[0])[::-1], [start], _toward(start, between[1])])
     elif signed or start == 0.0:
         example = 0.0 if math.isnan(parameter.default) else abs(parameter.default)
         width = 4.0 * max(abs(start), example if math.isfinite(example) else 0.0, 1e-6)
@@ -257,17 +298,29 @@ class _Search:
             said.append("The guide's hours are not known: give guide_overrollings_per_hour.")
         return tuple(said)
 
-    def found(self, start: float, values: np.ndarray) -> Found:
-        """Return the range of values that meet the condition and holds the start, or is next to it."""
+    def odd_at(self, value: float) -> list[str]:
+        """Return the doubts about the case with another value that the case itself does not have."""
+        database = load_database() if self.database is None else self.database
+        try:
+            there = replace(self.case, **{self.name: value})
+        except InputError:  # the search tells that it is refused
+            return []
+        own = doubts_of_case(self.case, database)
+        return [text for text in doubts_of_case(there, database) if text not in own]
+
+    def found(self, start: float, values: np.ndarray, notes: Iterable[str] = ()) -> Found:
+        """Return the range of values that meet the condition and holds the start, or is next to it.
+
+        The `notes` are added to those of the search.
+        """
         told = self.at(values)
         held = np.array([good for good, _ in told])
         tried = (float(values[0]), float(values[-1]))
         unit = PARAMETERS[self.name].unit
         if not held.any():
             nearest = told[int(np.argmin(np.abs(values - start)))][1]
-            return Found(
-                self.name, unit, self.condition, start, math.nan, math.nan, tried, f"now {nearest}", "", self.notes()
-            )
+            why, none = f"now {nearest}", math.nan
+            return Found(self.name, unit, self.condition, start, none, none, tried, why, "", (*self.notes(), *notes))
         inside = np.flatnonzero(held)[np.argmin(np.abs(values[held] - start))]
         first, last = inside, inside
         while first > 0 and held[first - 1]:
@@ -288,6 +341,7 @@ class _Search:
         closer = iter(narrowed([end for end, _ in there], PARTS_OF_A_STEP, meets_at))
         ends = [end if math.isnan(end[1]) else next(closer) for end in ends]
         whys = [said.get(outside, "") for _, outside in ends]
-        return Found(
-            self.name, unit, self.condition, start, ends[0][0], ends[1][0], tried, whys[0], whys[1], self.notes()
-        )
+        low, high = ends[0][0], ends[1][0]
+        odd = dict.fromkeys(text for end in (low, high) for text in self.odd_at(end))
+        notes = (*self.notes(), *notes, *(f"Doubtful: {text}" for text in odd))
+        return Found(self.name, unit, self.condition, start, low, high, tried, whys[0], whys[1], notes)

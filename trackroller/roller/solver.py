@@ -30,7 +30,7 @@ from trackroller.roller.stages import mechanics as stages
 from trackroller.roller.stages import outcome as stages_outcome
 from trackroller.roller.stages import stress as stages_stress
 from trackroller.roller.stages.balance import balance
-from trackroller.roller.stages.models import finer_across
+from trackroller.roller.stages.models import depends_on_smoothing, finer_across
 from trackroller.roller.stages.scene import StageResults
 from trackroller.roller.tolerance import meet
 from trackroller.roller.travel import with_travel
@@ -262,7 +262,9 @@ def _groups(table: CaseTable, options: Options) -> Iterator[tuple[str, int, np.n
 
 def _solve_group(table: CaseTable, options: Options, across: int) -> Block:
     scene = stages.prepare(table, options, across)
-    return block_of(StageResults.start(scene, balance(scene)), options)
+    results = StageResults.start(scene, balance(scene))
+    results.flag("smoothing", depends_on_smoothing(table, options, across, results.balance.normal_force))
+    return block_of(results, options)
 
 
 def block_of(results: StageResults, options: Options) -> Block:

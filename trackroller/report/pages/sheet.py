@@ -149,6 +149,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
         If `ds` is not the result of one case.
     """
     inputs, stored, given = record.inputs_of(ds), record.materials_of(ds), record.not_given_of(ds)
+    from_database = ["friction_coefficient"] if friction_records(ds.attrs) else []
     warm = temperatures_of(ds, inputs["ambient_temperature"])
     materials = {body: as_material(stored[f"{body}_material"]).at(at) for body, at in zip(BODIES, warm, strict=True)}
     regime = REGIMES[int(ds["regime"])]
@@ -167,7 +168,7 @@ def collect(ds: xr.Dataset, ranges: Limits | None = None) -> SimpleNamespace:
     return SimpleNamespace(
         verdict=_verdict(regime, ds, lives, lifeless, own, reason=reason, **summed),
         reason=reason,
-        inputs=[*_size_rows(ds), *input_rows(inputs, given)],
+        inputs=[*_size_rows(ds), *input_rows(inputs, [*given, *from_database])],
         not_given=not_given_text(given),
         doubts=[*record.doubts_of(ds), *filter(None, [drive])],
         drive=drive,

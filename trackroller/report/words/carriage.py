@@ -10,8 +10,8 @@ import xarray as xr
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import lasting
-from trackroller.report.words.designs import SAME
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.roller.dataset import validity_bit
 
 MARGINS = (("payload", "The payload"), ("loads", "All loads"))

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+from itertools import zip_longest
+from typing import Any
+
 import numpy as np
 
 from trackroller.contact.common import Elastic
-from trackroller.contact.drawn_profiles import gap, has_details, treats_sides_alike
+from trackroller.contact.drawn_profiles import gap, has_details, smoothed_otherwise, treats_sides_alike
 from trackroller.contact.friction_laws import FrictionLaw
 from trackroller.contact.hertz import contact_modulus
 from trackroller.contact.models import contact_model
@@ -105,3 +109,50 @@ def finer_across(table: CaseTable, options: Options) -> np.ndarray:
                     known[key, scaled] = 1
             out[row] = max(out[row], known[key, scaled])
     return out
+
+
+CHANGED = 0.1  # change of the largest pressure, as a share, from which on the smoothing of points is told
+
+
+def depends_on_smoothing(table: CaseTable, options: Options, across: int, normal_force: np.ndarray) -> np.ndarray:
+    """Return where the pressure changes by more than `CHANGED` with the smoothing of measured points, (n,).
+
+    Both profiles are smoothed more, and then less, see `smoothed_otherwise`. The patches of all smoothings are found
+    on the elements of accuracy "preview", by interpolation between lattice loads.
+
+    Parameters
+    ----------
+    table : n cases that share their profiles
+    options : normal problem
+    across : factor on the elements across the patches, see `finer_across`
+    normal_force : F_N of both contacts, (n, 2) [N]; contacts without a force do not count
+    """
+    out = np.zeros(len(table), bool)
+    if options.normal == "hertz" or not len(table):
+        return out
+    given = str(table.guide_profile[0]), str(table.roller_profile[0])
+    others = list(zip_longest(*(smoothed_otherwise(text) for text in given), fillvalue=None))
+    if not others:
+        return out
+    as_given = _largest_pressures(table, options, across, normal_force)
+    for guide, roller in others:
+        columns = {"guide_profile": guide or given[0], "roller_profile": roller or given[1]}
+        texts: dict[str, Any] = {name: np.full(len(table), text, dtype=object) for name, text in columns.items()}
+        try:
+            other = _largest_pressures(replace(table, **texts), options, across, normal_force)
+        except ShapeError:  # no contact with this smoothing
+            return ~out
+        lost = np.isnan(other) & ~np.isnan(as_given)
+        with np.errstate(invalid="ignore"):
+            out |= np.any(lost | (np.abs(other / as_given - 1.0) > CHANGED), axis=1)
+    return out
+
+
+def _largest_pressures(table: CaseTable, options: Options, across: int, normal_force: np.ndarray) -> np.ndarray:
+    """Return the largest pressures under normal forces (n, 2) [N], interpolated between lattice loads, (n, 2) [MPa]."""
+    rows = np.tile(np.arange(len(table)), 2)
+    side = np.repeat([1.0, -1.0], len(table))
+    radius = contact_geometry(vars(table)).rolling_radius
+    patches = _patches(table, options.changed(accuracy="preview"), radius, across, None)
+    pressure = patches.at(normal_force.T.reshape(-1), side, rows, fine=False).max_pressure
+    return np.asarray(pressure.reshape(2, -1).T)
