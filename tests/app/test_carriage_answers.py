@@ -106,13 +106,14 @@ def test_lives_are_those_of_the_command():
 
 
 def test_the_page_writes_over_its_own_files_only(folder):
+    mine = f"# mine\n{EXAMPLE}"
     assert save_carriage(EXAMPLE, "cart.yaml") == {"file": "cart.yaml"}
     save_carriage(EXAMPLE + "\n", "cart.yaml")
     assert carriage_files()["files"] == ["cart.yaml"]
-    (folder / "cart.yaml").write_text("mine")
+    (folder / "cart.yaml").write_text(mine)
     with pytest.raises(InputError, match="is there already"):
         save_carriage(EXAMPLE, "cart.yaml")
-    assert open_carriage("cart.yaml") == {"text": "mine"}
+    assert open_carriage("cart.yaml") == {"text": mine}
     save_carriage(EXAMPLE, "cart.yaml")
     assert (folder / "cart.yaml").read_text() == EXAMPLE
 

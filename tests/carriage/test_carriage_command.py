@@ -158,7 +158,7 @@ def test_rollers_that_no_table_can_hold_are_refused(change, message):
 
 def test_a_table_of_somebody_else_is_kept(folder):
     (folder / "study.csv").write_text("mine\n")
-    assert "of somebody else" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
+    assert "which somebody has changed" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
     assert (folder / "study.csv").read_text() == "mine\n" and not (folder / "study.yaml").exists()
     (folder / "study.csv").unlink()
     for _ in range(2):

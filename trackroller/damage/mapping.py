@@ -52,8 +52,8 @@ class MappingField:
         keys = [*self.words, *(number.name for number in (*self.numbers, *self.lists))]
         for old, new in self.renamed.items():
             if old in value:
-                allowed = ", ".join(keys)
-                raise InputError(f"{self.name}.{old}", value[old], allowed, f"Write {new}.", "has another name now")
+                known = ", ".join(keys)
+                raise InputError(f"{self.name}.{old}", value[old], known, f"Write {new}.", "has another name now")
         check_names(f"{self.name}: key", value, keys)
         missing = [key for key in keys if value.get(key) is None and key not in self.may_miss]
         if missing:

@@ -80,7 +80,7 @@ def write_answer(answer: Answer, folder: Path) -> list[Path]:
     book, table, record_file = (folder / f"answer.{ending}" for ending in ("xlsx", "csv", "json"))
     put(book, lambda beside: _save(beside, [_headline_sheet(answer), rows, *_further_sheets(answer)]))
     with table.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([_inert(value) for value in row] for row in [rows.heads, *rows.rows])
+        csv.writer(file).writerows([inert_cell(value) for value in row] for row in [rows.heads, *rows.rows])
     put_text(record_file, json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n")
     return [book, table, record_file]
 
