@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import difflib
 import re
-import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import Any
@@ -87,7 +86,9 @@ def shortened(text: str) -> str:
     return text if len(text) <= MOST_CHARACTERS else f"{text[:100]}...{text[-60:]}"
 
 
-MARKS = {*"\u061c\u200e\u200f\u2028\u2029", *map(chr, range(0x202A, 0x202F)), *map(chr, range(0x2066, 0x206A))}
+_CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff"  # also halves of surrogate pairs
+_MARKS = r"\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069"  # directions, and line ends
+_REFUSED_IN = {True: re.compile(f"[{_CONTROL}{_MARKS}]"), False: re.compile(f"[\t\n\r{_CONTROL}{_MARKS}]")}
 
 
 def checked_text(text: str, field: str, lines: bool = False) -> str:
@@ -113,12 +114,11 @@ def checked_text(text: str, field: str, lines: bool = False) -> str:
     >>> checked_text("Förderer 7", "name"), checked_text("two\nlines", "description", lines=True)
     ('Förderer 7', 'two\nlines')
     """
-    allowed = "\n\r\t" if lines else ""
-    for sign in text:
-        if sign in MARKS or (unicodedata.category(sign) in ("Cc", "Cs") and sign not in allowed):
-            remedy = f"Remove the character {ascii(sign)[1:-1]}."
-            wrong = "holds a control character or a mark of direction"
-            raise InputError(field, text, "a text of letters, digits, signs and spaces", remedy, wrong)
+    refused = _REFUSED_IN[lines].search(text)
+    if refused is not None:
+        remedy = f"Remove the character {ascii(refused[0])[1:-1]}."
+        wrong = "holds a control character or a mark of direction"
+        raise InputError(field, text, "a text of letters, digits, signs and spaces", remedy, wrong)
     return text
 
 

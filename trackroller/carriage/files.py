@@ -137,13 +137,12 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
 def name_of_study(text: str) -> str:
     """Return a name that a study or spectrum may have, made of any text: 'my-shuttle-loads' of 'my shuttle-loads'.
 
-    Accents are removed, other signs become '-', and long names are cut in the middle.
+    Accents are removed, other signs than letters and digits become '-', and long names are cut in the middle.
     """
     plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
-    name = re.sub(r"\.{2,}", ".", re.sub(r"[^A-Za-z0-9._-]+", "-", plain))
-    name = re.sub(r"-{2,}", "-", name).strip("-._")
+    name = re.sub(r"[^A-Za-z0-9_]+", "-", plain).strip("-_")
     name = name if len(name) <= MOST_LETTERS else f"{name[:40]}-{name[-20:]}"
-    return name if name[:1].isalnum() else f"carriage-{name}".strip("-")
+    return name or "carriage"
 
 
 def _check_settled(ds: xr.Dataset) -> None:

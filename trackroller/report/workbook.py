@@ -156,7 +156,7 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     """
     if path.suffix.lower() == ".csv":
         texts = table.select_dtypes(exclude="number")
-        inert = table.assign(**{str(name): texts[name].map(inert_cell) for name in texts})
+        inert = table.assign(**{str(name): texts[name].map(inert_cell) for name in texts}).rename(columns=inert_cell)
         return put(path, lambda beside: inert.to_csv(beside, index=False))
     if path.suffix.lower() != ".xlsx":
         raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")

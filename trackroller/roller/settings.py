@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import Collector, InputError, check_names, unknown_name
+from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, RADII, renamed
@@ -48,6 +48,7 @@ def checked_sheet(value: Any) -> dict[str, str]:
             if isinstance(text, bool) or not isinstance(text, (str, int, float)) or len(str(text)) > LONGEST:
                 allowed = f"a text of at most {LONGEST} signs"
                 raise InputError(f"sheet.{name}", text, allowed, "Write a short text, in quotes.")
+            checked_text(str(text), f"sheet.{name}")
     wrong.check()
     return {name: str(text) for name, text in given.items()}
 

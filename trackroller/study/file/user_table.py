@@ -19,7 +19,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from types import MappingProxyType
 
-from trackroller.errors import Collector, InputError, listing, raise_all
+from trackroller.errors import Collector, InputError, checked_text, listing, raise_all
 from trackroller.files import read_bytes, text_of
 from trackroller.numerics.cells import (
     Refused,
@@ -155,6 +155,9 @@ def read_table(
     content = read_bytes(path, field) if content is None else content
     lines, separator = _lines(content, path, field, what)
     filled = [(number, cells) for number, cells in lines if any(cells)]
+    for number, cells in filled:
+        with _in_line(path, number):
+            checked_text(" ".join(cells), field, lines=True)
     head, heads, lines = _split(filled)
     remarks = {number: " ".join(filter(None, cells)) for number, cells in filled if _is_comment(cells)}
     found = dict(_without_comments(lines, heads, path, field, wrong))

@@ -29,7 +29,7 @@ import numpy as np
 
 from trackroller.damage import groups_of, others
 from trackroller.damage.sn_curve import PROBABILITIES
-from trackroller.errors import Collector, InputError, check_names, nearest
+from trackroller.errors import Collector, InputError, check_names, checked_text, nearest
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
@@ -178,8 +178,12 @@ class Spectrum:
         with wrong.part():
             found["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
             Options(**found["options"])  # checked before any case is solved
+        with wrong.part():
+            found["name"] = checked_text(str(values.get("name", "spectrum")), "name")
+        with wrong.part():
+            found["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
         wrong.check()
-        return cls(name=str(values.get("name", "spectrum")), description=str(values.get("description", "")), **found)
+        return cls(**found)
 
 
 def load_spectrum(path: Path | str) -> Spectrum:
@@ -287,7 +291,7 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     if not isinstance(entry, Mapping):
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     entry = renamed(entry)
-    name = str(entry.get("name") or f"block {number}")
+    name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
     where, wrong = f"block '{name}'", Collector()
     with wrong.part():
         _check_fields(list(entry), where, entry)
