@@ -90,8 +90,16 @@ def test_labels_of_tables_are_checked(tmp_path, table):
 
 @pytest.mark.parametrize("text", ["my\x1b[2J", "two\nlines"])
 def test_names_of_materials_are_checked(text):
-    with pytest.raises(InputError, match="name of a material = .* control character"):
+    with pytest.raises(InputError, match=r"name of a material = .* control character"):
         EntryParser("materials.", "file", {}).material(text, {"like": "PA6"}, {})
+
+
+@pytest.mark.parametrize(
+    "line", ["carriage ca\x1b[2Jrt.yaml", "solve --set a\x1b[2Jb=1", "so\x1b[2Jlve", "solve --a\x1b=1"]
+)
+def test_messages_show_what_was_written_escaped(tmp_path, line):
+    done = trackroller(*line.split(" "), cwd=tmp_path, code=2)
+    assert "\\x1b" in done.stderr and "\x1b" not in done.stdout + done.stderr
 
 
 @pytest.mark.parametrize("text", ["=1+1", "+cmd", "-run", "@SUM(A1)", "\t=1", "\r=1", "-2+3", "=-1", "+1+1"])

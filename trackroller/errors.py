@@ -46,7 +46,7 @@ class InputError(ValueError):
         why = wrong or ("is missing or empty" if value is None else "is not usable")
         what = f"{field} {why}" if value is None else f"{field} = {shortened(repr(value))} {why}"
         label = "Needed" if value is None else "Allowed"
-        super().__init__(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy))))
+        super().__init__(escaped(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy)))))
 
     @property
     def errors(self) -> tuple[InputError, ...]:
@@ -71,7 +71,7 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         where = ", ".join(filter(None, (self.file, f"line {self.line}" if self.line else None)))
-        return f"{where}: {super().__str__()}" if where else super().__str__()
+        return f"{escaped(where)}: {super().__str__()}" if where else super().__str__()
 
     def __reduce__(self):  # another process rebuilds the error from its parts
         parts = (self.field, self.value, self.allowed, self.remedy, self.wrong)
@@ -120,6 +120,17 @@ def checked_text(text: str, field: str, lines: bool = False) -> str:
         wrong = "holds a control character or a mark of direction"
         raise InputError(field, text, "a text of letters, digits, signs and spaces", remedy, wrong)
     return text
+
+
+def escaped(text: str) -> str:
+    r"""Return a text in which the characters that `checked_text` refuses stand as escapes, such as \x1b.
+
+    Examples
+    --------
+    >>> escaped("a\x1b[2J")
+    'a\\x1b[2J'
+    """
+    return _REFUSED_IN[True].sub(lambda found: ascii(found[0])[1:-1], text)
 
 
 MOST_SHOWN = 30  # errors of a file that a message names

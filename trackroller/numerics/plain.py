@@ -40,7 +40,8 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     Raises
     ------
     InputError
-        For an iterator, a text with control characters, masked values, a data frame with two columns of one name, and lists that contain themselves.
+        For an iterator, a text with control characters, masked values, a data frame with two columns of one name, and
+        lists that contain themselves.
 
     Examples
     --------

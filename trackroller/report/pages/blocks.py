@@ -197,7 +197,7 @@ def download_of(answer: Answer) -> str:
         return ""
     text = io.StringIO()
     writer = csv.writer(text)
-    for row in (answer.table.columns, *answer.table.itertuples(index=False)):
+    for row in (answer.table.columns.to_list(), *answer.table.to_numpy(object).tolist()):
         writer.writerow([inert_cell(value) for value in row])
     return f"data:text/csv;base64,{base64.b64encode(text.getvalue().encode()).decode('ascii')}"
 
