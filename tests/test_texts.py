@@ -11,6 +11,7 @@ import trackroller as tr
 from trackroller.carriage.file import load_carriage
 from trackroller.errors import InputError, checked_text
 from trackroller.files import inert_cell
+from trackroller.materials.edit import add_material
 from trackroller.materials.entries import EntryParser
 from trackroller.report.workbook import write_cases
 from trackroller.study.spectrum.file import Spectrum
@@ -57,6 +58,9 @@ def test_only_a_description_has_several_lines():
         (lambda text: tr.load_study(STUDY | {"description": text}), "description"),
         (lambda text: tr.load_study(STUDY | {"factors": {"roller_material": {"values": [text]}}}), "roller_material"),
         (lambda text: tr.Case.from_dict({"roller_material": text}), "roller_material"),
+        (lambda text: tr.fit_sn({}, name=text), "name of a material"),
+        (lambda text: tr.fit_bench({}, "slope", name=text), "name of a material"),
+        (lambda text: add_material("materials.yaml", text, like="PA6"), "name of a material"),
     ],
 )
 def test_texts_of_mappings_are_checked(read, field):

@@ -23,7 +23,7 @@ import numpy as np
 
 from trackroller.damage.limit import roller_overrollings
 from trackroller.damage.wear import KM_PER_HOUR
-from trackroller.errors import Collector, InputError, check_names, listing
+from trackroller.errors import Collector, InputError, check_names, checked_text, listing
 from trackroller.files import files_beside, find_beside
 from trackroller.fit.coupons import check_falls, check_held, deviation_of, priors_of
 from trackroller.fit.fitted import Fit, Group
@@ -150,6 +150,7 @@ def fit_bench(  # noqa: PLR0913 - one argument for each choice of a fit
     """
     wanted = [part.strip() for part in fit.split(",")] if isinstance(fit, str) else list(fit)
     check_names("fit", wanted, FITTED)
+    checked_text(name, "name of a material")
     check_held(slope, scatter_in_cycles)
     held = {"slope": slope, "scatter": scatter_in_cycles}
     wanted = [name for name in wanted if held.get(name) is None]

@@ -18,7 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError, check_names, listing
+from trackroller.errors import InputError, check_names, checked_text, listing
 from trackroller.fit.fitted import Fit, Group
 from trackroller.fit.line import BOUNDS, Line, Tests
 from trackroller.fit.posterior import Normal, ln_range
@@ -101,6 +101,7 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     >>> round(fit.material["woehler_exponent"], 2)
     8.42
     """
+    checked_text(name, "name of a material")
     tests = read_tests(table, NEEDED, COLUMNS, ("group", "test", "note"))
     if load_type is not None:
         check_names("load type", [load_type], LOAD_TYPES)
