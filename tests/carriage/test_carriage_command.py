@@ -165,6 +165,37 @@ def test_a_table_of_somebody_else_is_kept(folder):
         assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
 
 
+def test_rows_that_somebody_added_are_kept(folder):
+    assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
+    table = folder / "study.csv"
+    more = table.read_text() + "by hand,FL,0.1,-900,0,30\n"
+    table.write_text(more)
+    assert "which somebody has changed" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
+    assert table.read_text() == more
+    assert run("shuttle.yaml", "--study", "-o", "other.yaml").exit_code == 0, "the remedy works"
+
+
+@pytest.mark.parametrize(
+    ("name", "made"),
+    [
+        ("my shuttle", "my-shuttle-loads"),
+        ("Lift 7 (new)", "Lift-7-new-loads"),
+        ("Fördergerät/2", "Fordergerat-2-loads"),
+        ("滑车", "loads"),
+        ("-" * 90, "loads"),
+        ("x" * 90, f"{'x' * 40}-{'x' * 14}-loads"),
+    ],
+)
+def test_any_name_of_a_carriage_makes_a_name_of_a_study(tmp_path, name, made):
+    whole = load_carriage(shuttle(name=name))
+    study, rows = study_of(whole, forces_of(whole), "s.csv")
+    (tmp_path / "s.csv").write_text(rows)
+    (tmp_path / "s.yaml").write_text(write_yaml(study))
+    assert tr.load_study(tmp_path / "s.yaml").name == made
+    of_roller = spectrum_of(whole, forces_of(whole), "FL")
+    assert tr.load_study(study | {"name": of_roller["name"], "table": str(tmp_path / "s.csv")}).name.endswith("FL")
+
+
 def test_a_study_of_one_load_case(tmp_path):
     whole = load_carriage(shuttle(cases=[{"name": "run"}]))
     study, rows = study_of(whole, forces_of(whole), "s.csv")

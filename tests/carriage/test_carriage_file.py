@@ -51,10 +51,19 @@ HALF = rollers_between()
 for rear in ("RL", "RR"):
     HALF[rear]["kind"] = "floating"
 
+MAKER = {"radial_force": 800, "axial_force": 300, "basic_life": 100}
 WRONG = [
     (cart(rollers=ON_A_LINE), "rolls about the x axis without any resistance"),
     (shuttle(rollers=HALF), "pitches about the y axis without any resistance. Allowed: .*locating"),
     (cart(rollers=rollers_below(kind="floating")), "at least one locating roller.*kind: locating"),
+    *(
+        (shuttle(cases=[{"name": "run", "payload": own}]), r"payload = .* is no share; a mass in kg seems meant")
+        for own in (5, 1.5, "5", "5 kg", "500 g")
+    ),
+    (shuttle(cases=[{"name": "run", "payload": "150 %"}]), "a share of the payloads from 0 to 1"),
+    (shuttle(cases=[{"name": "run", "payload": -0.5}]), "a share of the payloads from 0 to 1"),
+    (cart(cases=[{"name": "run", "payload": 0.5}]), r"payload = 0.5 has no payload to count.*Add payloads: \["),
+    (changed_roller(catalogue=MAKER, roller=ROLLER | {"catalogue": MAKER}), "FL.catalogue = .* stands in both"),
     (changed_roller(kind="fixed"), "kind = 'fixed' is not known"),
     (cart(mass={"value": 40, "at": [200, 0, 60]}), "case = 'stand' tips the carriage.*pitches about the y axis"),
     (
@@ -90,6 +99,12 @@ def test_mistakes_are_named(values, words):
     with pytest.raises(InputError, match=words) as error:
         solve_carriage(values, lives=False)
     assert len(error.value.errors) == 1
+
+
+@pytest.mark.parametrize(("given", "share"), [(0, 0), (0.5, 0.5), ("50 %", 0.5), (1, 1), ("100 %", 1)])
+def test_shares_of_the_payloads(given, share):
+    whole = load_carriage(shuttle(cases=[{"name": "run", "payload": given}]))
+    assert whole.cases[0].payload == pytest.approx(share, rel=1e-15)
 
 
 def test_errors_have_their_line(tmp_path):

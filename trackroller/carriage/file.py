@@ -316,11 +316,24 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     with wrong.part():
         check_curves(made["cases"], made["rollers"])
     with wrong.part():
+        _check_payloads(values["cases"], made)
+    with wrong.part():
         made["name"] = checked_text(str(values.get("name", "carriage")), "name")
     with wrong.part():
         made["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
     wrong.check()
     return Carriage(**made)
+
+
+def _check_payloads(given: Sequence[Mapping[str, Any]], made: Mapping[str, Any]) -> None:
+    """Refuse a load case that states a share of payloads where the carriage has no payload."""
+    for case, entry in zip(made["cases"], given, strict=True):
+        if case.payload > 0 and entry.get("payload") is not None and not made.get("payloads"):
+            allowed = "a share of the payloads of the carriage"
+            remedy = "Add payloads: [{value: 60 kg, at: [80, 0, 150]}], or remove payload here."
+            raise InputError(
+                f"case '{case.name}'.payload", entry["payload"], allowed, remedy, "has no payload to count"
+            )
 
 
 _NEEDED = {"mass": "the carriage's own mass", "rollers": "the rollers by name", "cases": "a list of load cases"}
@@ -428,6 +441,11 @@ def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
         made["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue") if "catalogue" in entry else None
     wrong.check()
     _check_directions(where, made["pushes"], made["x_R"])
+    own = made["roller"].get("case")
+    if made["catalogue"] is not None and own is not None and own.catalogue is not None:
+        allowed = "the catalogue once"
+        remedy = "Remove it here: the one in the file of the roller counts its moment, too."
+        raise InputError(f"{where}.catalogue", entry["catalogue"], allowed, remedy, "stands in both places")
     locating = entry.get("kind", KINDS[0]) == KINDS[0]
     more = {key: made[key] for key in ("stiffness", "compliance", "catalogue")} | made["roller"]
     return MountedRoller(name, made["at"], made["pushes"], made["x_R"], locating, **more)
