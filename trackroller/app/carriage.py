@@ -75,7 +75,7 @@ def _check_kind(text: str, path: Path) -> None:
 
 
 def open_carriage(file: str) -> dict[str, Any]:
-    """Return the text of a carriage file of the folder; the page may write this file from now on."""
+    """Return the text of a carriage file of the folder, which the page may save under this name again."""
     path = _place(file, "file")
     text = read_text(path, WHAT)
     _check_kind(text, path)
@@ -172,10 +172,28 @@ def _lives(ds: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def save_carriage(text: str, file: str) -> dict[str, str]:
-    """Write a carriage file into the folder."""
+def save_carriage(text: str, file: str, opened: str = "") -> dict[str, str]:
+    """Write a carriage file into the folder.
+
+    Parameters
+    ----------
+    text : str
+        The text of the page.
+    file : str
+        Name of the file.
+    opened : str
+        The file from which the text comes, "" for the example: no other file is replaced.
+
+    Raises
+    ------
+    InputError
+        If the file is there and the text comes from another one, or if somebody has changed it in the meantime.
+    """
     path = _place(file, "file")
     _check_kind(text, path)
+    if os.path.lexists(path) and Path(opened) != path:
+        remedy = "Give it another name, or open the file first."
+        raise InputError("file", path.as_posix(), "the file that is open, or a new one", remedy, "is there already")
     return {"file": _write(path, text)}
 
 
@@ -197,7 +215,7 @@ def _place(file: str, field: str) -> Path:
         raise InputError(field, file[:200], allowed, "Give the file a name that ends in .yaml.")
     if path.name.lower() in RESERVED or path.parts[0].lower() in RESERVED:
         remedy = "Give the file another name, such as shuttle.yaml."
-        raise InputError(field, file, allowed, remedy, "is a name that other commands read")
+        raise InputError(field, file, allowed, remedy, "is a name of another kind of file")
     if is_link(path) or is_link(path.parent):
         raise InputError(field, file, allowed, "Copy the file here.", "is a link")
     return path
@@ -207,10 +225,9 @@ def _write(path: Path, text: str) -> str:
     """Write a file, unless somebody else has changed it since the page read or wrote it."""
     digest, known = hashlib.sha256(text.encode()).hexdigest(), read_record(RECORD)[1].get(path.as_posix(), set())
     if os.path.lexists(path) and (not path.is_file() or sha256(path) not in known | {digest}):
+        allowed = "a file as this page last read or wrote it"
         remedy = "Give it another name, or open the file first."
-        raise InputError(
-            "file", path.as_posix(), "a name whose file this page read or wrote", remedy, "is there already"
-        )
+        raise InputError("file", path.as_posix(), allowed, remedy, "is there already")
     _note(path, known | {digest})
     ownership.write_text(path, text)
     return path.as_posix()
