@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import errno
+
 import pandas as pd
 import pytest
 import yaml
@@ -10,7 +12,7 @@ from command_line import trackroller
 import trackroller as tr
 from trackroller.carriage.file import load_carriage
 from trackroller.errors import InputError, checked_text
-from trackroller.files import inert_cell
+from trackroller.files import STUDY_MARK, disk_error, inert_cell
 from trackroller.materials.edit import add_material
 from trackroller.materials.entries import EntryParser
 from trackroller.report.workbook import write_cases
@@ -120,3 +122,12 @@ def test_heads_and_cells_of_a_written_table_do_not_run(tmp_path):
     table = pd.DataFrame({"=head": ["=1+1", "run"], "velocity": [-1.0, 2.0]})
     path = write_cases(table, tmp_path / "t.csv")
     assert path.read_text().splitlines() == ["'=head,velocity", "'=1+1,-1.0", "run,2.0"]
+
+
+def test_only_a_study_keeps_its_finished_cases(tmp_path):
+    full = OSError(errno.ENOSPC, "no space")
+    alone, study = tmp_path / "out.nc", tmp_path / "results" / "s" / "chunks" / "1.nc"
+    study.parent.mkdir(parents=True)
+    (study.parent.parent / STUDY_MARK).write_text("{}")
+    assert "finished case" not in str(disk_error(full, alone))
+    assert "every finished case is kept" in str(disk_error(full, study))

@@ -31,7 +31,7 @@ from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
-from trackroller.roller.duty import checked_duty
+from trackroller.roller.duty import STROKES, checked_duty, in_hours, is_of_strokes, refuse_overrollings
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
@@ -200,6 +200,8 @@ class Carriage:
         Travel per shift [m].
     duty : mapping, optional
         Hours a day and days a year of travel.
+    stroke : float
+        Length of a stroke, one way [m], if the duty is given in strokes; otherwise NaN.
     """
 
     name: str
@@ -212,6 +214,7 @@ class Carriage:
     preloads: tuple[Preload, ...] = ()
     distance: float = 1000.0
     duty: Mapping[str, float] | None = None
+    stroke: float = math.nan
 
 
 def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
@@ -316,6 +319,9 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
     with wrong.part():
         check_curves(made["cases"], made["rollers"])
     with wrong.part():
+        if is_of_strokes(made.get("duty")):
+            made |= _by_strokes(made["duty"], made["cases"], made["rollers"])
+    with wrong.part():
         _check_payloads(values["cases"], made)
     with wrong.part():
         made["name"] = checked_text(str(values.get("name", "carriage")), "name")
@@ -323,6 +329,24 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
         made["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
     wrong.check()
     return Carriage(**made)
+
+
+def _by_strokes(
+    duty: Mapping[str, float], cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]
+) -> dict[str, Any]:
+    """Return the duty of a carriage in hours, and the length of its stroke."""
+    if STROKES[2] in duty:
+        wrong = "is not known of a carriage: it follows from the places of its rollers"
+        raise InputError(f"duty.{STROKES[2]}", duty[STROKES[2]], "strokes_per_day and stroke", "Remove it.", wrong)
+    for roller in rollers:
+        given = None if roller.case is None else roller.case.guide_overrollings_per_hour
+        refuse_overrollings(given, f"rollers.{roller.name}.roller.guide_overrollings_per_hour")
+    for case in cases:
+        if case.speed is None:
+            allowed = "the speed of each load case, which turns strokes into hours"
+            raise InputError(f"case '{case.name}'.speed", None, allowed, "Add speed: 1 m/s.")
+    hours_per_km = sum(case.share / (3.6 * case.speed) for case in cases if case.speed is not None)
+    return {"duty": in_hours(duty, hours_per_km), "stroke": duty["stroke"]}
 
 
 def _check_payloads(given: Sequence[Mapping[str, Any]], made: Mapping[str, Any]) -> None:

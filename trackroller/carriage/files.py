@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import io
+import math
 import re
 import unicodedata
 from collections.abc import Mapping
@@ -13,9 +14,11 @@ import xarray as xr
 
 from trackroller.carriage.file import OF_LOADS, Carriage
 from trackroller.carriage.solve import cases_of
+from trackroller.carriage.strokes import passes_per_km
 from trackroller.errors import InputError, check_names
 from trackroller.files import inert_cell
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
+from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 
 MOST_LETTERS = 64  # of the name of a study
@@ -54,7 +57,7 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     cases = {i: case for (i, own), case in cases_of(whole, ds).items() if own == j}
     if not cases:
         raise InputError("--spectrum", name, "a roller that carries load in a load case", "Name another roller.")
-    blocks = [
+    blocks: list[dict[str, Any]] = [
         {
             "name": whole.cases[i].name,
             "distance": _short(whole.cases[i].share * whole.distance),
@@ -63,6 +66,10 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
         }
         for i, case in cases.items()
     ]
+    passes = float(passes_per_km(whole)[j])
+    if math.isfinite(passes):
+        for block in blocks:
+            block["guide_overrollings"] = _short(passes * block["distance"] / 1000)
     lifted = [case for i, case in enumerate(whole.cases) if i not in cases]
     share = sum(case.share for case in lifted)
     text = f"Roller {name} of {whole.name}, {whole.distance:g} m of travel per shift."
@@ -104,11 +111,12 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     _check_settled(ds)
     _check_same_options(whole)
     base, varying = _shared(whole)
-    units = {name: PARAMETERS[name].unit for name in (*varying, *OF_LOADS) if name in PARAMETERS}
-    heads = [*HEADS.split(","), *OF_LOADS, *varying]
+    of_travel = (*OF_LOADS, OVERROLLINGS) if math.isfinite(whole.stroke) else OF_LOADS
+    units = {name: PARAMETERS[name].unit for name in (*varying, *of_travel) if name in PARAMETERS}
+    heads = [*HEADS.split(","), *of_travel, *varying]
     rows: list[list[Any]] = [[f"{name} [{units[name]}]" if units.get(name, "-") != "-" else name for name in heads]]
     for (i, j), case in sorted(cases_of(whole, ds).items()):
-        fields = [getattr(case, name) for name in (*OF_LOADS, *varying)]
+        fields = [getattr(case, name) for name in (*of_travel, *varying)]
         shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
         names = [inert_cell(name) for name in (whole.cases[i].name, whole.rollers[j].name)]
         rows.append([*names, f"{whole.cases[i].share:.10g}", *shown])

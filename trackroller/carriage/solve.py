@@ -25,6 +25,7 @@ from trackroller.carriage.statics import (
     multipliers,
     to_one_contact,
 )
+from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
 from trackroller.damage import verdict
 from trackroller.damage.miner import block_damage
@@ -34,7 +35,7 @@ from trackroller.parameters import BODIES
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
-from trackroller.roller.duty import with_duty, years
+from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.record import DOUBTS
 from trackroller.roller.settings import LOADS
@@ -347,11 +348,16 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
 def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
     """Return the `Case` of each roller that carries load, by the numbers of load case and roller."""
     made = {}
+    passes = passes_per_km(whole)
     for i, j in np.argwhere(ds["radial_force"].values < 0).tolist():
         speed, case = whole.cases[i].speed, whole.rollers[j].case
         if case is not None:
             loads = {name: float(ds[name][i, j]) for name in ("radial_force", "axial_force")}
-            made[i, j] = replace(case, **loads, **({} if speed is None else {"velocity": 60 * speed}))
+            if speed is not None:
+                loads["velocity"] = 60 * speed
+            if np.isfinite(passes[j]):
+                loads[OVERROLLINGS] = float(overrollings_per_hour(passes[j], loads["velocity"]))
+            made[i, j] = replace(case, **loads)
     return made
 
 
