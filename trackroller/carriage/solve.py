@@ -409,6 +409,18 @@ def _flags(solved: xr.Dataset) -> np.ndarray:
     return np.asarray((solved["validity"].values & ~deep) | (ends & deep))
 
 
+def _first_ends(lives: Lives, solved: xr.Dataset) -> np.ndarray:
+    """Return which body of each roller ends first, and by which limit, (roller, 2), as texts."""
+    hours = np.nan_to_num(lives.summed["life_to_first_limit_hours"], nan=np.inf)
+    body = np.argmin(hours, axis=1)
+    attrs = solved["limiting_mechanism"].attrs
+    words = dict(zip(np.ravel(attrs["flag_values"]).tolist(), attrs["flag_meanings"].split(), strict=True))
+    numbers = lives.summed["limiting_mechanism"][np.arange(len(body)), body]
+    return np.array(
+        [[BODIES[k], words[number]] for k, number in zip(body, numbers.tolist(), strict=True)], dtype=object
+    )
+
+
 def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:
     """Return a solved carriage with the life of each roller, its regime, and the worst roller.
 
@@ -434,6 +446,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
     own = np.array([roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float)
     pace = hours_per_km(ds["share"].values, np.tile(ds["speed"].values, (n, 1)), own)
+    ends = np.full((n, 2), "", dtype=object)  # body and limit
     flags: Mapping[str, Any] = {}
     cases = cases_of(whole, ds)
     groups: dict[str, list[tuple[int, int]]] = {}
@@ -450,6 +463,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         lives = Lives(j, ds["share"].values[i], speed, pace[j], solved)
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
+        ends[j[lives.first]] = _first_ends(lives, solved)
         case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
         flagged[i, j] = _flags(solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
@@ -459,6 +473,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     if not ds["converged"].values[ds["share"].values > 0].all():
         for end in lasts:
             lasts[end] = np.full(n, np.nan)
+    ends[~np.isfinite(lasts[""])] = ""
     travel = lasts[""] / pace
     variables: dict[str, Any] = {
         "case_life_hours": (_RC, case_hours, _attrs("h", "life to the first limit under a load case alone")),
@@ -467,6 +482,8 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         "roller_validity": (_RC, flagged, {"long_name": "validity flags of the roller, as of `trackroller.solve`"}),
         "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
         "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
+        "first_body": (_R, ends[:, 0].astype(str), {"long_name": "roller or rail, whichever reaches its limit first"}),
+        "first_limit": (_R, ends[:, 1].astype(str), {"long_name": "limit that is reached first"}),
         "life_hours_low": (_R, lasts["_low"], _attrs("h", f"low end of the hours of travel {first}")),
         "life_hours_high": (_R, lasts["_high"], _attrs("h", f"high end of the hours of travel {first}")),
     }

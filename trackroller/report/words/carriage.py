@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import LIMITS
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import lasting
@@ -46,6 +47,7 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
         *_margins(ds),
         *_catalogue(ds),
         *_flags(ds),
+        *_years(ds),
     ]
 
 
@@ -63,6 +65,17 @@ def _worst(ds: xr.Dataset) -> Sentence:
     part = float(damage.sel(load_case=case) / damage.sum())
     values = {"roller": roller, "case": case, "km": km, "life": life, "span": span, "unknown": unknown, "part": part}
     return say("carriage", "carriage_worst", **values)
+
+
+def _years(ds: xr.Dataset) -> Iterator[Sentence]:
+    """Say how long the carriage lasts, and which body ends it by which limit."""
+    roller = ds.attrs.get("worst_roller")
+    if not roller or not str(ds["first_limit"].sel(roller=roller).values):
+        return
+    body, limit = (str(ds[name].sel(roller=roller).values) for name in ("first_body", "first_limit"))
+    life = lasting(float(ds["life_hours"].sel(roller=roller)), "h")
+    title = LIMITS[limit].title if limit in LIMITS else "a limit that is not known"
+    yield say("carriage", "carriage_years", roller=roller, body=body, limit=title, life=life)
 
 
 def _without_life(ds: xr.Dataset) -> Iterator[Sentence]:
