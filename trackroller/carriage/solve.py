@@ -11,19 +11,21 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.carriage.file import OF_LOADS, Carriage, MountedRoller, load_carriage
+from trackroller.carriage.file import IN_LINE, OF_LOADS, Carriage, MountedRoller, load_carriage
 from trackroller.carriage.lives import Lives, hours_per_km
-from trackroller.carriage.loads import Loads, loads_of
+from trackroller.carriage.loads import Loads, loads_of, swing_of
 from trackroller.carriage.statics import (
     MOTIONS,
     Equilibrium,
     Moves,
     Springs,
     equilibrium,
-    free_motion,
+    free_ways,
     is_determinate,
+    motion_of,
     multipliers,
     to_one_contact,
+    without,
 )
 from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
@@ -109,8 +111,9 @@ def solve_carriage(
     array([[-98.07, -98.07, -98.07, -98.07]])
     """
     whole = source if isinstance(source, Carriage) else load_carriage(source)
-    springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
-    ds = _solution(whole, springs, loads).assign(_margins(whole, springs, loads, advanced))
+    springs = springs_of(whole)
+    loads, swings = _loads(whole, springs)
+    ds = _solution(whole, springs, loads, swings).assign(_margins(whole, springs, loads, advanced))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
         return ds.assign_attrs(without_case=", ".join(without))
@@ -119,14 +122,36 @@ def solve_carriage(
 
 def forces_of(whole: Carriage) -> xr.Dataset:
     """Return the forces of the rollers in each load case, without margins and lives; see `solve_carriage`."""
-    return _solution(whole, springs_of(whole), [loads_of(whole, case) for case in whole.cases])
+    springs = springs_of(whole)
+    return _solution(whole, springs, *_loads(whole, springs))
 
 
-def _solution(whole: Carriage, springs: Springs, loads: list[Loads]) -> xr.Dataset:
+def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
+    """Return the loads of each load case, and the angles [rad] to which they swing a carriage on a line of rollers."""
+    if springs.hinge is None:
+        return [loads_of(whole, case) for case in whole.cases], np.full(len(whole.cases), np.nan)
+    swings = []
+    for case in whole.cases:
+        swing = swing_of(whole, case, springs.hinge)
+        if swing is None:
+            wrong = (
+                f"leave the carriage free: it {MOTIONS[2]} without any resistance, and falls in case '{case.name}', "
+                "because its loads do not hang below the line of its rollers"
+            )
+            raise _free(whole, wrong)
+        swings.append(swing)
+    pairs = zip(whole.cases, swings, strict=True)
+    return [loads_of(whole, case, swing) for case, swing in pairs], np.array(swings)
+
+
+def _solution(whole: Carriage, springs: Springs, loads: list[Loads], swings: np.ndarray) -> xr.Dataset:
     """Return the forces of the rollers as a data set with places, load cases and conventions."""
     found = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
     variables = _forces(whole, found, loads)
     variables |= _of_catalogue(whole, variables) | _places(whole)
+    if springs.hinge is not None:
+        long_name = "angle to which the carriage swings about its line of rollers, in whose axes the forces stand"
+        variables["swing"] = (_C, np.degrees(swings), _attrs("degree", long_name))
     coords = {
         "load_case": ("load_case", [case.name for case in whole.cases], {"long_name": "load case"}),
         "roller": ("roller", [roller.name for roller in whole.rollers], {"long_name": "roller of the carriage"}),
@@ -178,15 +203,31 @@ def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
         offset=np.zeros(len(rollers)),
         length=length,
     )
-    motion = free_motion(springs)
-    if motion is not None:
-        names = ", ".join(roller.name for roller in rollers)
-        wrong = f"leave the carriage free: it {motion} without any resistance"
-        remedy = "Add a roller, put the rollers further apart, or make one with kind: floating a locating one."
-        raise InputError(
-            "rollers", names, "rollers that hold the carriage in all directions across the track", remedy, wrong
-        )
-    return _preloaded(springs, whole)
+    ways = free_ways(springs)
+    if len(ways) == 0:
+        return _preloaded(springs, whole)
+    hinge = _hinge(whole, ways[0], length) if len(ways) == 1 else None
+    if hinge is None:
+        raise _free(whole, f"leave the carriage free: it {motion_of(ways[-1])} without any resistance")
+    return _preloaded(without(springs, ways[0], hinge), whole)
+
+
+def _free(whole: Carriage, wrong: str) -> InputError:
+    """Return the error for rollers that do not hold the carriage."""
+    names = ", ".join(roller.name for roller in whole.rollers)
+    remedy = "Add a roller, put the rollers further apart, or make one with kind: floating a locating one."
+    allowed = "rollers that hold the carriage in all directions across the track"
+    return InputError("rollers", names, allowed, remedy, wrong)
+
+
+def _hinge(whole: Carriage, way: np.ndarray, length: float) -> np.ndarray | None:
+    """Return the place (2,) along y and z of the line of all rollers about which a motion (5,) turns, None without."""
+    angle = way[2] / length
+    if np.abs(way[3:]).max() > 1e-6 * abs(way[2]) or angle == 0:
+        return None
+    line = np.array([-way[1], way[0]]) / angle  # where the motion is 0
+    off = max(float(np.abs(roller.at[1:] - line).max()) for roller in whole.rollers)
+    return line if off <= IN_LINE * length else None
 
 
 def _preloaded(springs: Springs, whole: Carriage) -> Springs:
@@ -216,15 +257,15 @@ def _compliance(roller: MountedRoller) -> tuple[float, float, tuple[float, float
     return approach / (2 * cosine) ** (2 / 3) / cosine, float(np.tan(geometry.contact_angle[0])), roller.compliance
 
 
-def _reduced(wrench: np.ndarray, length: float) -> np.ndarray:
-    """Return the five components of a wrench that the rollers carry; moments over `length`."""
-    return np.concatenate([wrench[1:3], wrench[3:] / length])
+def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
+    """Return the components of a wrench that the rollers carry; moments over `springs.length`."""
+    return springs.basis.T @ np.concatenate([wrench[1:3], wrench[3:] / springs.length])
 
 
 def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> Equilibrium:
     """Return the forces of the rollers in a load case; an error names the case."""
     try:
-        found = equilibrium(springs, _reduced(loads.all, springs.length))
+        found = equilibrium(springs, _reduced(loads.all, springs))
     except Moves as error:
         allowed = "loads that rollers which only press can carry"
         tips = "tips" if error.motion in TIPPING else "does not hold"
@@ -252,7 +293,7 @@ def _decided(whole: Carriage, loads: Loads, found: Equilibrium) -> bool:
     for compliance in (1e-5 * steps, 1e-5 * steps[::-1]):
         springs = springs_of(whole, compliance.tolist())
         try:
-            other = equilibrium(springs, _reduced(loads.all, springs.length))
+            other = equilibrium(springs, _reduced(loads.all, springs))
         except Moves:
             return False
         near = 1e-6 * float(found.radial.max(initial=0.0))
@@ -317,8 +358,12 @@ def _margins(
     tangent = np.tan(np.radians(np.array(angles, dtype=float)))
     out: dict[str, list[float]] = {}
     for one in loads:
-        payload, other = (_reduced(part, springs.length) for part in (one.payload, one.other))
-        for name, fixed, varying in (("payload", other, payload), ("loads", np.zeros(5), payload + other)):
+        payload, other = (_reduced(part, springs) for part in (one.payload, one.other))
+        for name, fixed, varying in (("payload", other, payload), ("loads", 0.0 * other, payload + other)):
+            if name == "payload" and _swings_further(springs, one):
+                for end in ENDS:
+                    out.setdefault(f"{name}_to_{end}", []).append(np.nan)
+                continue
             lift_off, tipping = multipliers(springs, fixed, varying)
             one_contact = to_one_contact(springs, fixed, varying, tangent, lift_off)
             for end, value in zip(ENDS, (one_contact, lift_off, tipping), strict=True):
@@ -327,6 +372,15 @@ def _margins(
     words = {"payload": "multiplier of the payload", "loads": "multiplier of all loads"}
     names = {f"{name}_to_{end}": f"{words[name]} {ENDS[end]}" for name in words for end in ENDS}
     return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
+
+
+def _swings_further(springs: Springs, loads: Loads) -> bool:
+    """Return whether another payload swings a carriage on a line of rollers, so that no margin of it is known."""
+    if springs.hinge is None:
+        return False
+    force, moment = loads.payload[1:3], loads.payload[3]
+    about = moment - float(springs.hinge[0] * force[1] - springs.hinge[1] * force[0])
+    return abs(about) > 1e-9 * springs.length * float(np.linalg.norm(force))
 
 
 def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, Any]:

@@ -42,6 +42,7 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
         _worst(ds),
         *_without_life(ds),
         *_unsettled(ds),
+        *_swinging(ds),
         *_lifted(ds),
         *_one_contact(ds),
         *_margins(ds),
@@ -90,6 +91,14 @@ def _unsettled(ds: xr.Dataset) -> Iterator[Sentence]:
     cases = ds["load_case"].values[~ds["converged"].values].tolist()
     if cases:
         yield say("carriage", "carriage_unsettled", cases=cases)
+
+
+def _swinging(ds: xr.Dataset) -> Iterator[Sentence]:
+    if "swing" in ds:
+        angles = ds["swing"].values
+        i = int(np.argmax(np.abs(angles)))
+        case, unknown = str(ds["load_case"].values[i]), bool(np.isnan(ds.get("payload_to_tipping", angles)).any())
+        yield say("carriage", "carriage_swings", angle=float(angles[i]), case=case, unknown=unknown)
 
 
 def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
