@@ -46,7 +46,7 @@ class InputError(ValueError):
         why = wrong or ("is missing or empty" if value is None else "is not usable")
         what = f"{field} {why}" if value is None else f"{field} = {shortened(repr(value))} {why}"
         label = "Needed" if value is None else "Allowed"
-        super().__init__(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy))))
+        super().__init__(escaped(". ".join(filter(None, (what, allowed and f"{label}: {allowed}", remedy)))))
 
     @property
     def errors(self) -> tuple[InputError, ...]:
@@ -71,7 +71,7 @@ class InputError(ValueError):
 
     def __str__(self) -> str:
         where = ", ".join(filter(None, (self.file, f"line {self.line}" if self.line else None)))
-        return f"{where}: {super().__str__()}" if where else super().__str__()
+        return f"{escaped(where)}: {super().__str__()}" if where else super().__str__()
 
     def __reduce__(self):  # another process rebuilds the error from its parts
         parts = (self.field, self.value, self.allowed, self.remedy, self.wrong)
@@ -84,6 +84,53 @@ MOST_CHARACTERS = 200  # of a value that a message shows
 def shortened(text: str) -> str:
     """Return a text as a message shows it: of a long one the beginning and the end."""
     return text if len(text) <= MOST_CHARACTERS else f"{text[:100]}...{text[-60:]}"
+
+
+_CONTROL = r"\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\ud800-\udfff"  # also halves of surrogate pairs
+_MARKS = r"\u061c\u200e\u200f\u2028\u2029\u202a-\u202e\u2066-\u2069"  # directions, and line ends
+_REFUSED_IN = {True: re.compile(f"[{_CONTROL}{_MARKS}]"), False: re.compile(f"[\t\n\r{_CONTROL}{_MARKS}]")}
+
+
+def checked_text(text: str, field: str, lines: bool = False) -> str:
+    r"""Return a text of a user as it is: the one check of names, descriptions and cells where they are read.
+
+    Parameters
+    ----------
+    text : str
+        The text.
+    field : str
+        What it stands for, for the message.
+    lines : bool
+        Whether it may have line ends and tabs, as a description has.
+
+    Raises
+    ------
+    InputError
+        If the text holds a control character, which a terminal obeys, or a mark of direction, with which a text shows
+        another one than it is. The message shows such a character escaped.
+
+    Examples
+    --------
+    >>> checked_text("Förderer 7", "name"), checked_text("two\nlines", "description", lines=True)
+    ('Förderer 7', 'two\nlines')
+    """
+    refused = _REFUSED_IN[lines].search(text)
+    if refused is not None:
+        remedy = f"Remove the character {ascii(refused[0])[1:-1]}."
+        wrong = "holds a control character or a mark of direction"
+        raise InputError(field, text, "a text of letters, digits, signs and spaces", remedy, wrong)
+    return text
+
+
+def escaped(text: str) -> str:
+    r"""Return a text in which the characters that `checked_text` refuses stand as escapes, such as \x1b.
+
+    Examples
+    --------
+    >>> escaped("a\x1b[2J")
+    'a\\x1b[2J'
+    """
+    return _REFUSED_IN[True].sub(lambda found: ascii(found[0])[1:-1], text)
 
 
 MOST_SHOWN = 30  # errors of a file that a message names

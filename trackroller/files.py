@@ -9,6 +9,7 @@ import errno
 import hashlib
 import math
 import os
+import re
 import secrets
 import shutil
 import signal
@@ -28,6 +29,7 @@ from trackroller.errors import InputError, WorkError
 
 LOCK = {True: portalocker.LockFlags.SHARED, False: portalocker.LockFlags.EXCLUSIVE}
 MATERIALS = "TRACKROLLER_MATERIALS"  # the environment variable that names a materials file anywhere
+STUDY_MARK = "plan.json"  # stands in the folder of a study, beside its finished cases
 MAX_BYTES = 5_000_000  # bytes; a larger table of cases belongs into a CSV file
 Reads = dict[Path, tuple[str, str]]  # kind and SHA-256 of each file that was read
 _beside: ContextVar[Path | None] = ContextVar("beside", default=None)
@@ -255,7 +257,9 @@ def disk_error(exc: OSError, path: Path) -> WorkError:
         what, remedy = f"it cannot be written ({exc.strerror})", "Change its permissions (or choose another --results)"
     else:
         what, remedy = f"writing failed ({why_not(exc, path)})", "Repair the folder or the disk"
-    return WorkError(f"{path}: {what}. {remedy}, then start again: every finished case is kept.")
+    of_study = any((place / STUDY_MARK).is_file() for place in (path, *path.parents))
+    kept = ": every finished case is kept" if of_study else ""
+    return WorkError(f"{path}: {what}. {remedy}, then start again{kept}.")
 
 
 def why_not(exc: OSError, path: Path) -> str:
@@ -468,6 +472,16 @@ def reserve(file: IO[bytes], size: int) -> None:
     for start in range(0, size, len(block)):
         file.write(block[: size - start])
     file.flush()
+
+
+def inert_cell(value: Any) -> Any:
+    """Return a cell of a table with an apostrophe before a text that a spreadsheet would run as a formula.
+
+    Numbers stay as they are, as texts too.
+    """
+    if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
+        return value
+    return value if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?|[+-]inf", value) else f"'{value}"
 
 
 def sha256(path: Path) -> str:

@@ -27,7 +27,7 @@ from ruamel.yaml.representer import SafeRepresenter
 from ruamel.yaml.resolver import BaseResolver
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-from trackroller.errors import InputError, raise_all
+from trackroller.errors import InputError, checked_text, raise_all
 from trackroller.files import read_text
 
 MAX_VALUES = 200_000  # with aliases counted in full
@@ -73,6 +73,10 @@ class _Constructor(SafeConstructor):
             raise self.refused(node)
         return value
 
+    def text(self, node: Any) -> str:
+        """Return a text without control characters."""
+        return checked_text(str(self.construct_scalar(node)), f"line {node.start_mark.line + 1}", lines=True)
+
     def refused(self, node: Any) -> InputError:
         """Return the error for an ambiguous scalar, or one that no number can hold."""
         shown = node.value if len(node.value) <= 60 else f"{node.value[:57]}..."
@@ -92,8 +96,9 @@ class _Constructor(SafeConstructor):
         return super().construct_mapping(node, deep)
 
 
-for _tag in (None, *(f"{TAG}{_name}" for _name in ("null", "bool", "seq", "map", "str"))):  # None refuses other tags
+for _tag in (None, *(f"{TAG}{_name}" for _name in ("null", "bool", "seq", "map"))):  # None refuses other tags
     _Constructor.add_constructor(_tag, SafeConstructor.yaml_constructors[_tag])
+_Constructor.add_constructor(f"{TAG}str", _Constructor.text)
 _Constructor.add_constructor(f"{TAG}int", lambda self, node: int(node.value))
 _Constructor.add_constructor(f"{TAG}float", _Constructor.number)
 _Constructor.add_constructor(AMBIGUOUS, _Constructor.ambiguous)

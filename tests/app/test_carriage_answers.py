@@ -106,15 +106,41 @@ def test_lives_are_those_of_the_command():
 
 
 def test_the_page_writes_over_its_own_files_only(folder):
+    mine = f"# mine\n{EXAMPLE}"
     assert save_carriage(EXAMPLE, "cart.yaml") == {"file": "cart.yaml"}
-    save_carriage(EXAMPLE + "\n", "cart.yaml")
+    save_carriage(EXAMPLE + "\n", "cart.yaml", "cart.yaml")
     assert carriage_files()["files"] == ["cart.yaml"]
-    (folder / "cart.yaml").write_text("mine")
+    (folder / "cart.yaml").write_text(mine)
     with pytest.raises(InputError, match="is there already"):
-        save_carriage(EXAMPLE, "cart.yaml")
-    assert open_carriage("cart.yaml") == {"text": "mine"}
-    save_carriage(EXAMPLE, "cart.yaml")
+        save_carriage(EXAMPLE, "cart.yaml", "cart.yaml")
+    assert open_carriage("cart.yaml") == {"text": mine}
+    for opened in ("", "other.yaml"):
+        with pytest.raises(InputError, match="is there already"):
+            save_carriage(EXAMPLE, "cart.yaml", opened)
+    save_carriage(EXAMPLE, "cart.yaml", "cart.yaml")
     assert (folder / "cart.yaml").read_text() == EXAMPLE
+
+
+@pytest.mark.parametrize("name", ["config/materials.yaml", "config/Materials.YAML", "config.yaml", "profiles/a.yaml"])
+def test_names_of_other_kinds_of_files_are_refused(folder, name):
+    (folder / name).parent.mkdir(exist_ok=True)
+    (folder / name).write_text(EXAMPLE)
+    for act in (lambda: open_carriage(name), lambda: save_carriage("materials: {}\n", name, name)):
+        with pytest.raises(InputError, match="is a name of another kind of file"):
+            act()
+    assert (folder / name).read_text() == EXAMPLE and name not in carriage_files()["files"]
+
+
+@pytest.mark.parametrize("text", ["axial_force: 3\n", "materials: {}\n", "mass: 3\nrollers: {}\n", ""])
+def test_only_a_carriage_is_opened_and_saved(folder, text):
+    (folder / "a.yaml").write_text(text)
+    with pytest.raises(InputError, match="is no carriage file"):
+        open_carriage("a.yaml")
+    with pytest.raises(InputError, match="is no carriage file"):
+        save_carriage(text, "new.yaml")
+    with pytest.raises(InputError, match="is there already"):
+        save_carriage(EXAMPLE, "a.yaml", "a.yaml")
+    assert (folder / "a.yaml").read_text() == text and not (folder / "new.yaml").exists()
 
 
 def test_the_list_holds_what_can_be_opened(folder):

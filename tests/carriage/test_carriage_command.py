@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
@@ -12,8 +14,9 @@ from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.files import spectrum_of, study_of
 from trackroller.carriage.loads import GRAVITY
-from trackroller.carriage.solve import doubts_of_rollers, forces_of, with_lives
+from trackroller.carriage.solve import cases_of, doubts_of_rollers, forces_of, with_lives
 from trackroller.cli.main import app
+from trackroller.damage import LIMITS
 from trackroller.errors import InputError
 from trackroller.report.words.carriage import sentences
 from trackroller.roller.stored_inputs import doubts_of
@@ -158,11 +161,42 @@ def test_rollers_that_no_table_can_hold_are_refused(change, message):
 
 def test_a_table_of_somebody_else_is_kept(folder):
     (folder / "study.csv").write_text("mine\n")
-    assert "of somebody else" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
+    assert "which somebody has changed" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
     assert (folder / "study.csv").read_text() == "mine\n" and not (folder / "study.yaml").exists()
     (folder / "study.csv").unlink()
     for _ in range(2):
         assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
+
+
+def test_rows_that_somebody_added_are_kept(folder):
+    assert run("shuttle.yaml", "--study", "-o", "study.yaml").exit_code == 0
+    table = folder / "study.csv"
+    more = table.read_text() + "by hand,FL,0.1,-900,0,30\n"
+    table.write_text(more)
+    assert "which somebody has changed" in str(run("shuttle.yaml", "--study", "-o", "study.yaml").exception)
+    assert table.read_text() == more
+    assert run("shuttle.yaml", "--study", "-o", "other.yaml").exit_code == 0, "the remedy works"
+
+
+@pytest.mark.parametrize(
+    ("name", "made"),
+    [
+        ("my shuttle", "my-shuttle-loads"),
+        ("Lift 7 (new)", "Lift-7-new-loads"),
+        ("Fördergerät/2", "Fordergerat-2-loads"),
+        ("滑车", "loads"),
+        ("-" * 90, "loads"),
+        ("x" * 90, f"{'x' * 40}-{'x' * 14}-loads"),
+    ],
+)
+def test_any_name_of_a_carriage_makes_a_name_of_a_study(tmp_path, name, made):
+    whole = load_carriage(shuttle(name=name))
+    study, rows = study_of(whole, forces_of(whole), "s.csv")
+    (tmp_path / "s.csv").write_text(rows)
+    (tmp_path / "s.yaml").write_text(write_yaml(study))
+    assert tr.load_study(tmp_path / "s.yaml").name == made
+    of_roller = spectrum_of(whole, forces_of(whole), "FL")
+    assert tr.load_study(study | {"name": of_roller["name"], "table": str(tmp_path / "s.csv")}).name.endswith("FL")
 
 
 def test_a_study_of_one_load_case(tmp_path):
@@ -302,6 +336,34 @@ def test_the_example_answers_how_many_years(tmp_path, monkeypatch):
     assert run("--example", "-o", "shuttle.yaml").exit_code == 0
     said = run("shuttle.yaml").output
     assert "is the worst one" in said and "years)" in said
+    ds = tr.carriage("shuttle.yaml")
+    last = " ".join(said.split()).rpartition("The carriage lasts ")[2]
+    worst = ds.attrs["worst_roller"]
+    body, limit = (str(ds[name].sel(roller=worst).values) for name in ("first_body", "first_limit"))
+    place = {"guide": f"the rail under roller {worst}", "roller": f"roller {worst}"}[body]
+    years = float(ds.life_years.sel(roller=worst))
+    assert re.search(
+        rf"\(([\d.]+) years\): then {place} reaches its first limit, {re.escape(LIMITS[limit].title)}\.$", last
+    ), last
+    assert float(re.search(r"\(([\d.]+) years", last)[1]) == pytest.approx(years, rel=0.05)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("more", "body", "limit"), [({}, None, "fatigue"), ({"guide_overrollings_per_hour": 1e9}, "guide", None)]
+)
+def test_the_body_and_the_limit_that_end_a_carriage(more, body, limit):
+    """One load case: the first body and limit are those of `trackroller.solve` under the same loads."""
+    whole = load_carriage(cart(rollers=rollers_below(roller=ROLLER | more), cases=[{"name": "run", "speed": "1 m/s"}]))
+    ds = with_lives(forces_of(whole), whole)
+    case = cases_of(whole, ds)[0, 0]
+    one = tr.solve(case, ("forces", "peak_stress", "life", "limits"), contact_model="sliding")
+    alone = one.life_to_first_limit_hours.values
+    first = ["roller", "guide"][int(np.nanargmin(alone))]
+    words = one.limiting_mechanism.attrs["flag_meanings"].split()
+    assert str(ds.first_body.values[0]) == first and (body is None or first == body)
+    which = words[list(one.limiting_mechanism.attrs["flag_values"]).index(int(one.limiting_mechanism.sel(body=first)))]
+    assert str(ds.first_limit.values[0]) == which and (limit is None or which == limit)
 
 
 def test_the_report_of_a_data_set(tmp_path):

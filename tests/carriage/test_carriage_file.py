@@ -6,9 +6,12 @@ import numpy as np
 import pytest
 from carts import ROLLER, cart, rollers_below, rollers_between, shuttle
 
+import trackroller as tr
 from trackroller.carriage.file import load_carriage
 from trackroller.carriage.solve import solve_carriage
+from trackroller.cli.carriage import MANY
 from trackroller.errors import InputError
+from trackroller.files import files_beside
 from trackroller.yaml_file import write_yaml
 
 
@@ -51,10 +54,19 @@ HALF = rollers_between()
 for rear in ("RL", "RR"):
     HALF[rear]["kind"] = "floating"
 
+MAKER = {"radial_force": 800, "axial_force": 300, "basic_life": 100}
 WRONG = [
     (cart(rollers=ON_A_LINE), "rolls about the x axis without any resistance"),
     (shuttle(rollers=HALF), "pitches about the y axis without any resistance. Allowed: .*locating"),
     (cart(rollers=rollers_below(kind="floating")), "at least one locating roller.*kind: locating"),
+    *(
+        (shuttle(cases=[{"name": "run", "payload": own}]), r"payload = .* is no share; a mass in kg seems meant")
+        for own in (5, 1.5, "5", "5 kg", "500 g")
+    ),
+    (shuttle(cases=[{"name": "run", "payload": "150 %"}]), "a share of the payloads from 0 to 1"),
+    (shuttle(cases=[{"name": "run", "payload": -0.5}]), "a share of the payloads from 0 to 1"),
+    (cart(cases=[{"name": "run", "payload": 0.5}]), r"payload = 0.5 has no payload to count.*Add payloads: \["),
+    (changed_roller(catalogue=MAKER, roller=ROLLER | {"catalogue": MAKER}), "FL.catalogue = .* stands in both"),
     (changed_roller(kind="fixed"), "kind = 'fixed' is not known"),
     (cart(mass={"value": 40, "at": [200, 0, 60]}), "case = 'stand' tips the carriage.*pitches about the y axis"),
     (
@@ -90,6 +102,39 @@ def test_mistakes_are_named(values, words):
     with pytest.raises(InputError, match=words) as error:
         solve_carriage(values, lives=False)
     assert len(error.value.errors) == 1
+
+
+@pytest.mark.parametrize("form", ["file", "mapping"])
+def test_an_error_of_a_shared_roller_stands_once(tmp_path, form):
+    shared = ROLLER | {"friction_coefficient": -1}
+    (tmp_path / "roller.yaml").write_text(write_yaml(shared))
+    own = {"file": "roller.yaml", "mapping": shared}[form]
+    (tmp_path / "cart.yaml").write_text(write_yaml(cart()))
+    with pytest.raises(InputError, match="friction_coefficient = -1") as error, files_beside(tmp_path / "cart.yaml"):
+        load_carriage(cart(rollers=rollers_below(roller=own)))
+    assert len(error.value.errors) == 1
+
+
+def test_an_option_that_the_study_of_a_carriage_contradicts_is_named_once():
+    keys = {"name": "s", "carriage": cart(), "factors": {"carriage_wheelbase": {"values": [300, 400]}}}
+    with pytest.raises(InputError, match="the option of the study") as error:
+        tr.load_study(keys | {"contact_model": "kalker", "outputs": ["forces", "life"]})
+    assert len(error.value.errors) == 1
+
+
+def test_load_cases_are_counted_one_by_one_for_the_progress_bar():
+    cases = [{"name": str(i), "gradient": f"{i / 1000} %"} for i in range(2000)]
+    told = []
+    few = load_carriage(cart(cases=cases[:MANY], rollers=rollers_below(stiffness=1e4)))
+    solve_carriage(few, lives=False, advanced=told.append)
+    assert told == [1] * MANY
+    assert len(load_carriage(cart(cases=cases)).cases) == 2000
+
+
+@pytest.mark.parametrize(("given", "share"), [(0, 0), (0.5, 0.5), ("50 %", 0.5), (1, 1), ("100 %", 1)])
+def test_shares_of_the_payloads(given, share):
+    whole = load_carriage(shuttle(cases=[{"name": "run", "payload": given}]))
+    assert whole.cases[0].payload == pytest.approx(share, rel=1e-15)
 
 
 def test_errors_have_their_line(tmp_path):

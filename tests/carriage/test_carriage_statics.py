@@ -367,7 +367,7 @@ def test_a_maker_s_example_of_the_load_factor():
         cart(
             rollers=rollers_below(
                 catalogue={"radial_force": 9700, "axial_force": 4000, "basic_life": 6.84 * inches}
-                | {"lubricated": True, "offset": 0}
+                | {"law": "lubricated", "offset": 0}
             )
         )
     ).rollers[0]
@@ -376,9 +376,9 @@ def test_a_maker_s_example_of_the_load_factor():
     assert float(roller.catalogue.life(0.38)) / inches == pytest.approx(124.7, abs=0.1)
 
 
-@pytest.mark.parametrize(("lubricated", "power"), [(False, 2), (True, 3)])
-def test_catalogue_lives(lubricated, power):
-    catalogue = {"radial_force": "1 kN", "axial_force": "400 N", "basic_life": "100 km", "lubricated": lubricated}
+@pytest.mark.parametrize(("law", "power"), [("dry", 2), ("lubricated", 3)])
+def test_catalogue_lives(law, power):
+    catalogue = {"radial_force": "1 kN", "axial_force": "400 N", "basic_life": "100 km", "law": law}
     ds = solved(cart(rollers=rollers_below(catalogue=catalogue)))
     factor = 10 * G / 1000
     assert np.allclose(ds.load_factor, factor)

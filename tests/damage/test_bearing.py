@@ -12,7 +12,7 @@ from trackroller.errors import InputError
 
 BEARING = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 4000, "static_rating": 2000}
 BEARING |= {"e": 0.27, "X": 0.56, "Y": 1.6, "X0": 0.6, "Y0": 0.5}
-CATALOGUE = {"radial": 800, "axial": 300, "moment": 4000, "basic_life_km": 100, "law": "dry"}
+CATALOGUE = {"radial_force": 800, "axial_force": 300, "moment": 4000, "basic_life": 100, "law": "dry"}
 BALL, ROLLER = np.array(["ball"], dtype=object), np.array(["roller"], dtype=object)
 
 
@@ -78,6 +78,18 @@ def test_catalogue_laws():
     assert catalogue_km(np.zeros(3), np.full(3, 70.0), law[:3])[2] == np.inf
 
 
+def test_a_catalogue_without_a_moment_and_with_an_offset():
+    """Moment, law and offset may be left out; an offset of 0 leaves BL/LF^2."""
+    short = {name: CATALOGUE[name] for name in ("radial_force", "axial_force", "basic_life")}
+    catalogues = [short, short | {"moment": 1e12, "law": "dry"}, short | {"offset": 0}, short | {"law": "cubic"}]
+    cases = [tr.Case(motor_force=40, axial_force=20, catalogue=one) for one in catalogues]
+    ds = tr.solve(cases, ("bearing", "limits"), contact_model="sliding")
+    factor = ds.catalogue_load_factor.values
+    assert factor == pytest.approx(np.full(4, np.hypot(200, 40) / 800 + 20 / 300), rel=1e-6)
+    km = 100 * np.array([(0.03 + 0.97 * factor[0]) ** -2] * 2 + [factor[0] ** -2, factor[0] ** -3])
+    assert ds.catalogue_life_km.values == pytest.approx(km, rel=1e-6)
+
+
 def test_a_roller_with_bearing_and_catalogue():
     """Free rolling without axial force: no moment, each row carries half the radial force."""
     case = {"motor_force": 0, "axial_force": 0, "bearing": BEARING, "catalogue": CATALOGUE}
@@ -115,7 +127,12 @@ def test_cases_with_other_bearings_share_their_mechanics():
         ("bearing", {"dynamic_ratng": 5}, "Did you mean 'dynamic_rating'"),
         ("bearing", {"kind": "needle"}, "ball, roller"),
         ("catalogue", {"law": "wet"}, "dry, lubricated, cubic"),
-        ("catalogue", {"moment": None}, "lacks moment"),
+        ("catalogue", {"basic_life": None}, "lacks basic_life"),
+        ("catalogue", {"radial": 800}, "Write radial_force"),
+        ("catalogue", {"axial": 300}, "Write axial_force"),
+        ("catalogue", {"basic_life_km": 100}, "Write basic_life"),
+        ("catalogue", {"lubricated": True}, "Write law: lubricated"),
+        ("catalogue", {"offset": 2}, "offset"),
     ],
 )
 def test_contradictory_ratings_are_refused_by_name(field, change, told):

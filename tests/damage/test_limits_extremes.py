@@ -42,7 +42,7 @@ def cases(count, seed):
         bearing = {"rows": 2, "row_distance": spread(rng, 0.1, 100), "kind": str(rng.choice(["ball", "roller"]))}
         bearing |= {name: spread(rng, 1e-2, 1e7) for name in ("dynamic_rating", "static_rating")}
         bearing |= {"e": rng.uniform(0.1, 0.9), "X": 0.5, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
-        maker = {name: spread(rng, 1e-2, 1e7) for name in ("radial", "axial", "moment", "basic_life_km")}
+        maker = {name: spread(rng, 1e-2, 1e7) for name in ("radial_force", "axial_force", "moment", "basic_life")}
         out.append(
             case
             | {body: limit_values(case[body], rng) for body in ("roller_material", "guide_material")}

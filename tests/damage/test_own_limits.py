@@ -41,8 +41,8 @@ def command(place, *words, code=0):
     return done.stdout + done.stderr
 
 
-def solve(place, *more, code=0):
-    quick = [w for key in ("outputs=contact,lining", "contact_model=sliding") for w in ("--set", key)]
+def solve(place, *more, code=0, outputs="contact,lining"):
+    quick = [w for key in (f"outputs={outputs}", "contact_model=sliding") for w in ("--set", key)]
     return command(place, "solve", "case.yaml", "--json", *quick, *more, code=code)
 
 
@@ -116,3 +116,32 @@ def test_a_file_may_import_parameters_from_the_catalogue_and_must_not_take_a_nam
     file.write_text(lines.replace('"permissible_pressure"', '"hardness"'))
     said = solve(place, "--allow-code", code=2)
     assert "'hardness' is a value of a material already" in said
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "why"),
+    [
+        ("def evaluate", "import sys; sys.exit(0)\ndef evaluate", "stops with SystemExit: 0"),
+        ("def evaluate", "raise SystemExit\ndef evaluate", "stops with SystemExit"),
+        ("def evaluate", "def evaluate(:", "stops with SyntaxError"),
+        ("def evaluate", "1 / 0\ndef evaluate", "stops with ZeroDivisionError"),
+        ('"max_pressure"', '"max_presure"', "stops with KeyError: 'max_presure'"),
+        ("    pressure = solved", "    raise SystemExit(0)\n    pressure = solved", "stops with SystemExit: 0"),
+        ('worst(found["lining_utilisation"])', 'worst(found["lining"])', "stops with KeyError: 'lining'"),
+    ],
+)
+def test_an_error_of_a_file_names_the_file_and_its_line(place, old, new, why):
+    file = place / "config" / "limits" / "lining.py"
+    lines = file.read_text(encoding="utf-8").replace(old, new)
+    file.write_text(lines)
+    said = solve(place, "--allow-code", code=2, outputs="contact,lining,limits")
+    row = lines[: lines.index(new)].count("\n") + 1
+    assert re.search(rf"lining\.py, line {row}: limits = 'lining\.py' {why}", said), said
+    assert "internal error" not in said
+
+
+def test_a_file_that_exits_does_not_vouch_for_a_damaged_folder(place):
+    (place / "config" / "limits" / "lining.py").write_text("import sys\nsys.exit(0)\n")
+    (place / "results" / "own").mkdir(parents=True)
+    assert "lining.py, line 2" in command(place, "verify", "results/own", "--allow-code", code=2)
+    assert command(place, "verify", "results/own", code=2)

@@ -17,7 +17,7 @@ STEEL = "1.7225-normalised"
 BEARING = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 3000, "static_rating": 1500}
 BEARING |= {"e": 0.3, "X": 0.56, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
 ONE_ROW = BEARING | {"rows": 1}
-CATALOGUE = {"radial": 800, "axial": 300, "moment": 2000, "basic_life_km": 100, "law": "dry"}
+CATALOGUE = {"radial_force": 800, "axial_force": 300, "moment": 2000, "basic_life": 100, "law": "dry"}
 CURVE = {"like": STEEL, "fatigue_limit": 300, "cycles_at_fatigue_limit": 2e6}
 
 
@@ -44,8 +44,8 @@ CURVE = {"like": STEEL, "fatigue_limit": 300, "cycles_at_fatigue_limit": 2e6}
         ),
         ({"bearing": BEARING | {"static_rating": 1.5}}, "if 1.5 kN is meant, write '1.5 kN' or 1500"),
         ({"bearing": ONE_ROW | {"permissible_moment": 2}}, "if 2 Nm is meant, write '2 Nm' or 2000"),
-        ({"catalogue": CATALOGUE | {"radial": 0.8}}, "if 0.8 kN is meant, write '0.8 kN' or 800"),
-        ({"catalogue": CATALOGUE | {"axial": 0.3}}, "if 0.3 kN is meant, write '0.3 kN' or 300"),
+        ({"catalogue": CATALOGUE | {"radial_force": 0.8}}, "if 0.8 kN is meant, write '0.8 kN' or 800"),
+        ({"catalogue": CATALOGUE | {"axial_force": 0.3}}, "if 0.3 kN is meant, write '0.3 kN' or 300"),
         ({"catalogue": CATALOGUE | {"moment": 2}}, "if 2 Nm is meant, write '2 Nm' or 2000"),
         (
             {"roller_material": CURVE | {"woehler_exponent": 0.085}},

@@ -18,7 +18,7 @@ POINTS = [[float(x), -0.01 * x * x] for x in range(-5, 6)]
 
 BEARING = {"rows": 2, "row_distance": 8, "kind": "ball", "dynamic_rating": 3000, "static_rating": 1500}
 BEARING |= {"e": 0.3, "X": 0.56, "Y": 1.5, "X0": 0.6, "Y0": 0.5}
-CATALOGUE = {"radial": 800, "axial": 300, "moment": 2000, "basic_life_km": 100, "law": "dry"}
+CATALOGUE = {"radial_force": 800, "axial_force": 300, "moment": 2000, "basic_life": 100, "law": "dry"}
 
 
 @pytest.mark.parametrize(

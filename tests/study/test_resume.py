@@ -325,9 +325,13 @@ def test_full_disk_ends_with_a_clear_message_and_leaves_nothing_behind(tmp_path)
             beside.write_bytes(b"half")
             stream.write(b"x")
 
-    with pytest.raises(WorkError, match=r"disk is full.*kept"):
+    with pytest.raises(WorkError, match=r"disk is full\. Free some space, then start again\.$"):
         write_whole(tmp_path / "out.nc", write)
     assert list(tmp_path.iterdir()) == []
+    (tmp_path / "plan.json").write_text("{}")
+    with pytest.raises(WorkError, match=r"disk is full.*every finished case is kept"):
+        write_whole(tmp_path / "out.nc", write)
+    assert [path.name for path in tmp_path.iterdir()] == ["plan.json"]
 
 
 def test_really_full_disk_and_then_resume(tmp_path, solved):

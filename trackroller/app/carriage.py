@@ -19,7 +19,7 @@ import xarray as xr
 from trackroller.app.studies import RESULTS, TEXTS, WRITTEN
 from trackroller.carriage.example import EXAMPLE
 from trackroller.carriage.file import Carriage, carriage_of
-from trackroller.carriage.files import spectrum_of
+from trackroller.carriage.files import name_of_study, spectrum_of
 from trackroller.carriage.solve import forces_of, solve_carriage
 from trackroller.errors import InputError
 from trackroller.files import files_beside, is_link, read_text, sha256
@@ -36,6 +36,7 @@ from trackroller.yaml_file import change_yaml, errors_by_line, parse_mapping, wr
 LONGEST = 200_000  # bytes of a file that the list looks into
 HEADS = tuple(re.compile(rf"^{key}\s*:", re.M) for key in ("mass", "rollers", "cases"))
 WHAT = "carriage file"
+RESERVED = ("materials.yaml", "materials.yml", "config.yaml", "mkdocs.yml", "workflow", "profiles")  # of others
 RECORD = WRITTEN / "carriages.sha256"  # which files the page has read or written
 
 
@@ -58,13 +59,26 @@ def _is_carriage(path: Path) -> bool:
         text = read_text(_place(path.as_posix(), "file"), WHAT, LONGEST)
     except InputError:
         return False
+    return _has_heads(text)
+
+
+def _has_heads(text: str) -> bool:
+    """Return whether a text has the keys that every carriage file has."""
     return all(head.search(text) for head in HEADS)
 
 
+def _check_kind(text: str, path: Path) -> None:
+    """Refuse a text that is no carriage file, which may be a file of another kind."""
+    if not _has_heads(text):
+        allowed = "a carriage file, with mass, rollers and cases at the beginning of lines"
+        raise InputError("file", path.as_posix(), allowed, "Give the name of a carriage file.", "is no carriage file")
+
+
 def open_carriage(file: str) -> dict[str, Any]:
-    """Return the text of a carriage file of the folder; the page may write this file from now on."""
+    """Return the text of a carriage file of the folder, which the page may save under this name again."""
     path = _place(file, "file")
     text = read_text(path, WHAT)
+    _check_kind(text, path)
     _note(path, {sha256(path)})
     return {"text": text}
 
@@ -158,16 +172,36 @@ def _lives(ds: xr.Dataset) -> dict[str, Any]:
     }
 
 
-def save_carriage(text: str, file: str) -> dict[str, str]:
-    """Write a carriage file into the folder."""
-    return {"file": _write(_place(file, "file"), text)}
+def save_carriage(text: str, file: str, opened: str = "") -> dict[str, str]:
+    """Write a carriage file into the folder.
+
+    Parameters
+    ----------
+    text : str
+        The text of the page.
+    file : str
+        Name of the file.
+    opened : str
+        The file from which the text comes, "" for the example: no other file is replaced.
+
+    Raises
+    ------
+    InputError
+        If the file is there and the text comes from another one, or if somebody has changed it in the meantime.
+    """
+    path = _place(file, "file")
+    _check_kind(text, path)
+    if os.path.lexists(path) and Path(opened) != path:
+        remedy = "Give it another name, or open the file first."
+        raise InputError("file", path.as_posix(), "the file that is open, or a new one", remedy, "is there already")
+    return {"file": _write(path, text)}
 
 
 def carriage_spectrum(text: str, roller: str, file: str = "") -> dict[str, str]:
     """Write the load spectrum of a roller into the folder, as `trackroller carriage --spectrum` does."""
     whole = _carriage(text, file)
     values = spectrum_of(whole, forces_of(whole), roller)
-    name = re.sub(r"[^\w.-]+", "-", f"{whole.name}-{roller}").strip(".-") or "spectrum"
+    name = name_of_study(f"{whole.name}-{roller}")
     return {"file": _write(_place((Path(file).parent / f"{name}.yaml").as_posix(), "file"), write_yaml(values))}
 
 
@@ -179,6 +213,9 @@ def _place(file: str, field: str) -> Path:
     hidden = any(part.startswith(".") for part in path.parts)
     if not whole or hidden or len(path.parts) > 2 or path.parts[0] in (RESULTS.name, TEXTS.name):
         raise InputError(field, file[:200], allowed, "Give the file a name that ends in .yaml.")
+    if path.name.lower() in RESERVED or path.parts[0].lower() in RESERVED:
+        remedy = "Give the file another name, such as shuttle.yaml."
+        raise InputError(field, file, allowed, remedy, "is a name of another kind of file")
     if is_link(path) or is_link(path.parent):
         raise InputError(field, file, allowed, "Copy the file here.", "is a link")
     return path
@@ -188,10 +225,9 @@ def _write(path: Path, text: str) -> str:
     """Write a file, unless somebody else has changed it since the page read or wrote it."""
     digest, known = hashlib.sha256(text.encode()).hexdigest(), read_record(RECORD)[1].get(path.as_posix(), set())
     if os.path.lexists(path) and (not path.is_file() or sha256(path) not in known | {digest}):
+        allowed = "a file as this page last read or wrote it"
         remedy = "Give it another name, or open the file first."
-        raise InputError(
-            "file", path.as_posix(), "a name whose file this page read or wrote", remedy, "is there already"
-        )
+        raise InputError("file", path.as_posix(), allowed, remedy, "is there already")
     _note(path, known | {digest})
     ownership.write_text(path, text)
     return path.as_posix()

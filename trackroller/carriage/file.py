@@ -15,14 +15,15 @@ from __future__ import annotations
 import copy
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from trackroller.damage.catalogue import travel_km
-from trackroller.errors import Collector, InputError, check_names, unknown_name
+from trackroller.damage.catalogue import FIELD as CATALOGUE
+from trackroller.damage.catalogue import LAWS, catalogue_km
+from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in, number_or_nan
 from trackroller.numerics.plain import mapping_of
@@ -30,7 +31,7 @@ from trackroller.numerics.units import split_quantity
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.roller.aliases import ALIASES
 from trackroller.roller.case import Case
-from trackroller.roller.duty import checked_duty
+from trackroller.roller.duty import STROKES, checked_duty, in_hours, is_of_strokes, refuse_overrollings
 from trackroller.roller.settings import LOADS, checked_case
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
@@ -40,7 +41,6 @@ FILE_FIELDS = (
 )
 ROLLER_FIELDS = ("at", "pushes", "x_R", "kind", "roller", "stiffness", "bearing", "structure", "catalogue")
 CASE_FIELDS = (*("name", "share", "acceleration", "speed", "curve_radius", "gradient", "cant", "payload", "forces"),)
-CATALOGUE_FIELDS = ("radial_force", "axial_force", "basic_life", "lubricated", "offset")
 KINDS = ("locating", "floating")
 OF_LOADS = (*LOADS, "velocity")  # parameters of a roller that its carriage gives
 SQUARE = 1e-6  # largest cosine between directions that count as perpendicular
@@ -59,7 +59,7 @@ class PointMass:
 
 @dataclass(frozen=True)
 class CatalogueRoller:
-    """What a maker's catalogue states of a roller.
+    """What a maker's catalogue states of a roller, with the keys of the field `catalogue` of a case.
 
     Parameters
     ----------
@@ -67,25 +67,28 @@ class CatalogueRoller:
         Permissible radial and axial force [N].
     basic_life : float
         Basic life BL [km].
-    lubricated : bool
-        Whether the life falls with the third power of the load factor, instead of the second.
+    law : str
+        Law of the life by the load factor, see `trackroller.damage.catalogue.catalogue_km`.
     offset : float
-        Load factor that counts without any load [1], 0.03 as a rule.
+        Load factor that counts without any load [1]; NaN for that of the law.
+    moment : float
+        Permissible moment [N mm], which does not count here: the statics of a carriage knows no moment of a roller.
     """
 
     radial_force: float
     axial_force: float
     basic_life: float
-    lubricated: bool = False
-    offset: float = 0.03
+    law: str = LAWS[0]
+    offset: float = math.nan
+    moment: float = math.nan
 
     def load_factor(self, radial: np.ndarray, axial: np.ndarray) -> np.ndarray:
         """Return the sum of the ratios of both forces [N] to their permissible values [1]."""
         return np.abs(radial) / self.radial_force + np.abs(axial) / self.axial_force
 
     def life(self, load_factor: np.ndarray) -> np.ndarray:
-        """Return the life at load factors [1], BL/(0.03 + 0.97 LF)^2, or ^3 if it is lubricated [km]."""
-        return travel_km(load_factor, self.basic_life, 3.0 if self.lubricated else 2.0, self.offset)
+        """Return the life at load factors [1], in km."""
+        return catalogue_km(load_factor, np.asarray(self.basic_life), np.asarray(self.law), self.offset)
 
 
 @dataclass(frozen=True)
@@ -197,6 +200,8 @@ class Carriage:
         Travel per shift [m].
     duty : mapping, optional
         Hours a day and days a year of travel.
+    stroke : float
+        Length of a stroke, one way [m], if the duty is given in strokes; otherwise NaN.
     """
 
     name: str
@@ -209,6 +214,7 @@ class Carriage:
     preloads: tuple[Preload, ...] = ()
     distance: float = 1000.0
     duty: Mapping[str, float] | None = None
+    stroke: float = math.nan
 
 
 def load_carriage(source: Path | str | Mapping[str, Any]) -> Carriage:
@@ -312,8 +318,46 @@ def carriage_of(values: Mapping[str, Any]) -> Carriage:
             made["preloads"] = _preloads(values["preload"], made["rollers"])
     with wrong.part():
         check_curves(made["cases"], made["rollers"])
+    with wrong.part():
+        if is_of_strokes(made.get("duty")):
+            made |= _by_strokes(made["duty"], made["cases"], made["rollers"])
+    with wrong.part():
+        _check_payloads(values["cases"], made)
+    with wrong.part():
+        made["name"] = checked_text(str(values.get("name", "carriage")), "name")
+    with wrong.part():
+        made["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
     wrong.check()
-    return Carriage(str(values.get("name", "carriage")), description=str(values.get("description", "")), **made)
+    return Carriage(**made)
+
+
+def _by_strokes(
+    duty: Mapping[str, float], cases: Sequence[LoadCase], rollers: Sequence[MountedRoller]
+) -> dict[str, Any]:
+    """Return the duty of a carriage in hours, and the length of its stroke."""
+    if STROKES[2] in duty:
+        wrong = "is not known of a carriage: it follows from the places of its rollers"
+        raise InputError(f"duty.{STROKES[2]}", duty[STROKES[2]], "strokes_per_day and stroke", "Remove it.", wrong)
+    for roller in rollers:
+        given = None if roller.case is None else roller.case.guide_overrollings_per_hour
+        refuse_overrollings(given, f"rollers.{roller.name}.roller.guide_overrollings_per_hour")
+    for case in cases:
+        if case.speed is None:
+            allowed = "the speed of each load case, which turns strokes into hours"
+            raise InputError(f"case '{case.name}'.speed", None, allowed, "Add speed: 1 m/s.")
+    hours_per_km = sum(case.share / (3.6 * case.speed) for case in cases if case.speed is not None)
+    return {"duty": in_hours(duty, hours_per_km), "stroke": duty["stroke"]}
+
+
+def _check_payloads(given: Sequence[Mapping[str, Any]], made: Mapping[str, Any]) -> None:
+    """Refuse a load case that states a share of payloads where the carriage has no payload."""
+    for case, entry in zip(made["cases"], given, strict=True):
+        if case.payload > 0 and entry.get("payload") is not None and not made.get("payloads"):
+            allowed = "a share of the payloads of the carriage"
+            remedy = "Add payloads: [{value: 60 kg, at: [80, 0, 150]}], or remove payload here."
+            raise InputError(
+                f"case '{case.name}'.payload", entry["payload"], allowed, remedy, "has no payload to count"
+            )
 
 
 _NEEDED = {"mass": "the carriage's own mass", "rollers": "the rollers by name", "cases": "a list of load cases"}
@@ -382,10 +426,10 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     if not isinstance(value, Mapping) or not value:
         raise InputError("rollers", value, "rollers by name", f"Write {_EXAMPLES['rollers']}.")
     wrong, made = Collector(), []
-    files: dict[str, Any] = {}
+    files: dict[object, Any] = {}
     for name, entry in value.items():
         with wrong.part("rollers", str(name)):
-            made.append(_roller(str(name), entry, files))
+            made.append(_roller(checked_text(str(name), "name of a roller"), entry, files))
     wrong.check()
     if not any(roller.locating for roller in made):
         remedy = "Write kind: locating for the rollers that guide the carriage along their axes."
@@ -395,7 +439,7 @@ def _rollers(value: Any) -> tuple[MountedRoller, ...]:
     return tuple(made)
 
 
-def _roller(name: str, value: Any, files: dict[str, Any]) -> MountedRoller:
+def _roller(name: str, value: Any, files: dict[object, Any]) -> MountedRoller:
     where = f"rollers.{name}"
     entry = _entries(
         value, where, ROLLER_FIELDS, "{at: [150, 40, 0], pushes: [0, -1, 0], x_R: [0, 0, 1], roller: r.yaml}"
@@ -421,6 +465,11 @@ def _roller(name: str, value: Any, files: dict[str, Any]) -> MountedRoller:
         made["catalogue"] = _catalogue(entry["catalogue"], f"{where}.catalogue") if "catalogue" in entry else None
     wrong.check()
     _check_directions(where, made["pushes"], made["x_R"])
+    own = made["roller"].get("case")
+    if made["catalogue"] is not None and own is not None and own.catalogue is not None:
+        allowed = "the catalogue once"
+        remedy = "Remove it here: the one in the file of the roller counts its moment, too."
+        raise InputError(f"{where}.catalogue", entry["catalogue"], allowed, remedy, "stands in both places")
     locating = entry.get("kind", KINDS[0]) == KINDS[0]
     more = {key: made[key] for key in ("stiffness", "compliance", "catalogue")} | made["roller"]
     return MountedRoller(name, made["at"], made["pushes"], made["x_R"], locating, **more)
@@ -439,21 +488,31 @@ def _check_directions(where: str, pushes: np.ndarray, axis: np.ndarray) -> None:
             raise InputError(f"{where}.{key}", way.tolist(), allowed, "The carriage travels along x: write x as 0.")
 
 
-def _case(value: Any, where: str, files: dict[str, Any]) -> dict[str, Any]:
-    """Return case, options and given values of a roller: a file, a mapping or a `Case`."""
+def _case(value: Any, where: str, files: dict[object, Any]) -> dict[str, Any]:
+    """Return case, options and given values of a roller: a file, a mapping or a `Case`.
+
+    Rollers may share a file or a mapping, which is read once and kept in `files`; its errors are stated once.
+    """
     if isinstance(value, Case):
         return {"case": value, "given": {n: v for n, v in value.as_dict().items() if n not in value.not_given}}
+    shared: object = id(value) if isinstance(value, Mapping) else str(value)
+    if shared not in files:
+        files[shared] = {}  # stays where the roller is wrong
+        files[shared] = _read_roller(value, where)
+    return dict(files[shared])
+
+
+def _read_roller(value: Any, where: str) -> dict[str, Any]:
+    """Return case, options and given values of the roller of a mapping or a file."""
     if isinstance(value, Mapping):
         case, options, _ = checked_case(value)
         return {"case": case, "options": options, "given": dict(value)}
-    if str(value) not in files:
-        path = find_beside(value, where)
-        text = read_text(path, "roller file")
-        given = parse_mapping(text, str(path))
-        with errors_by_line(text, file=str(path), aliases=ALIASES):
-            case, options, _ = checked_case(given)
-        files[str(value)] = {"case": case, "options": options, "given": given}
-    return dict(files[str(value)])
+    path = find_beside(value, where)
+    text = read_text(path, "roller file")
+    given = parse_mapping(text, str(path))
+    with errors_by_line(text, file=str(path), aliases=ALIASES):
+        case, options, _ = checked_case(given)
+    return {"case": case, "options": options, "given": given}
 
 
 def _stiffness(value: Any, where: str) -> tuple[float, float]:
@@ -466,14 +525,11 @@ def _stiffness(value: Any, where: str) -> tuple[float, float]:
 
 
 def _catalogue(value: Any, where: str) -> CatalogueRoller:
-    entry = _entries(value, where, CATALOGUE_FIELDS, "{radial_force: 9700 N, axial_force: 4000 N, basic_life: 174 km}")
-    made: dict[str, Any] = {}
-    for key, unit in (("radial_force", "N"), ("axial_force", "N"), ("basic_life", "km")):
-        made[key] = _number(entry.get(key), f"{where}.{key}", unit, "a number > 0", lower=1e-9)
-    made["offset"] = _number(entry.get("offset", 0.03), f"{where}.offset", "-", "a number from 0 to 1", 0.0, 1.0)
-    if not isinstance(made.setdefault("lubricated", entry.get("lubricated", False)), bool):
-        raise InputError(f"{where}.lubricated", made["lubricated"], "true or false", "Write lubricated: true.")
-    return CatalogueRoller(**made)
+    """Return the entries of a maker's catalogue, which are those of the field `catalogue` of a case."""
+    if not isinstance(value, Mapping):
+        example = "{radial_force: 9700 N, axial_force: 4000 N, basic_life: 174 km, law: dry}"
+        raise InputError(where, value, "a mapping of the values of a catalogue", f"Write {example}.")
+    return CatalogueRoller(**replace(CATALOGUE, name=where).canonical(value))
 
 
 def _preloads(value: Any, rollers: Sequence[MountedRoller]) -> tuple[Preload, ...]:
@@ -551,7 +607,7 @@ def _with_share(case: LoadCase, share: float) -> LoadCase:
 
 def _load_case(value: Any, number: int) -> LoadCase:
     entry = _entries(value, f"cases[{number}]", CASE_FIELDS, "{name: run, share: 1, speed: 1 m/s}")
-    name = str(entry.get("name", f"case {number}"))
+    name = checked_text(str(entry.get("name", f"case {number}")), "name of a load case")
     where, wrong, made = f"case '{name}'", Collector(), {}
     for key, read in _OF_CASE.items():
         with wrong.part():
@@ -592,6 +648,17 @@ def _forces(value: Any, where: str) -> tuple[tuple[np.ndarray, np.ndarray], ...]
     return tuple(made)
 
 
+def _share_of_payloads(value: Any, where: str) -> float:
+    """Return the share of the payloads that is on board; ask back where it may be a mass."""
+    parts = split_quantity(value)
+    share = math.nan if parts is not None and parts[1] == "%" else number_or_nan(value)
+    if share > 1 or (parts is not None and parts[1] in ("kg", "g", "t")):
+        allowed = "the share of the payloads that is on board, from 0 to 1"
+        remedy = "Write payload: 1 for all of them. A larger payload is a value of its own in payloads."
+        raise InputError(where, value, allowed, remedy, "is no share; a mass in kg seems meant")
+    return _number(value, where, "-", "a share of the payloads from 0 to 1", 0.0, 1.0)
+
+
 _OF_CASE: dict[str, Callable[[Any, str], Any]] = {
     "share": lambda v, where: _number(v, where, "-", "a share from 0 to 1", 0.0, 1.0),
     "acceleration": lambda v, where: _number(v, where, "m/s2", "an acceleration along the track"),
@@ -599,7 +666,7 @@ _OF_CASE: dict[str, Callable[[Any, str], Any]] = {
     "curve_radius": _radius,
     "gradient": _angle,
     "cant": _angle,
-    "payload": lambda v, where: _number(v, where, "-", "a share of the payloads >= 0", lower=0.0),
+    "payload": _share_of_payloads,
     "forces": _forces,
 }
 

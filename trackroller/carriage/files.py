@@ -4,6 +4,9 @@ from __future__ import annotations
 
 import csv
 import io
+import math
+import re
+import unicodedata
 from collections.abc import Mapping
 from typing import Any
 
@@ -11,10 +14,14 @@ import xarray as xr
 
 from trackroller.carriage.file import OF_LOADS, Carriage
 from trackroller.carriage.solve import cases_of
+from trackroller.carriage.strokes import passes_per_km
 from trackroller.errors import InputError, check_names
+from trackroller.files import inert_cell
 from trackroller.parameters import MAPPING_FIELDS, OPTIONS, PARAMETERS
+from trackroller.roller.duty import OVERROLLINGS
 from trackroller.roller.settings import LOADS, parts_for_spectrum
 
+MOST_LETTERS = 64  # of the name of a study
 HEADS = "load_case,roller,share"  # the columns before them, which say where a load comes from
 
 
@@ -50,7 +57,7 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     cases = {i: case for (i, own), case in cases_of(whole, ds).items() if own == j}
     if not cases:
         raise InputError("--spectrum", name, "a roller that carries load in a load case", "Name another roller.")
-    blocks = [
+    blocks: list[dict[str, Any]] = [
         {
             "name": whole.cases[i].name,
             "distance": _short(whole.cases[i].share * whole.distance),
@@ -59,6 +66,10 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
         }
         for i, case in cases.items()
     ]
+    passes = float(passes_per_km(whole)[j])
+    if math.isfinite(passes):
+        for block in blocks:
+            block["guide_overrollings"] = _short(passes * block["distance"] / 1000)
     lifted = [case for i, case in enumerate(whole.cases) if i not in cases]
     share = sum(case.share for case in lifted)
     text = f"Roller {name} of {whole.name}, {whole.distance:g} m of travel per shift."
@@ -66,7 +77,7 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
         named = ", ".join(case.name for case in lifted)
         text += f" No block holds {100 * share:.4g} % of the travel, in which the roller is lifted: {named}."
     base, options = parts_for_spectrum(roller.given)
-    head = {"name": f"{whole.name}-{name}", "description": text, "base": base, "blocks": blocks}
+    head = {"name": name_of_study(f"{whole.name}-{name}"), "description": text, "base": base, "blocks": blocks}
     duty = whole.duty if whole.duty is not None else roller.given.get("duty")
     return head | ({"duty": dict(duty)} if isinstance(duty, Mapping) else {}) | options
 
@@ -100,20 +111,28 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     _check_settled(ds)
     _check_same_options(whole)
     base, varying = _shared(whole)
-    units = {name: PARAMETERS[name].unit for name in (*varying, *OF_LOADS) if name in PARAMETERS}
-    heads = [*HEADS.split(","), *OF_LOADS, *varying]
+    of_travel = (*OF_LOADS, OVERROLLINGS) if math.isfinite(whole.stroke) else OF_LOADS
+    units = {name: PARAMETERS[name].unit for name in (*varying, *of_travel) if name in PARAMETERS}
+    heads = [*HEADS.split(","), *of_travel, *varying]
     rows: list[list[Any]] = [[f"{name} [{units[name]}]" if units.get(name, "-") != "-" else name for name in heads]]
     for (i, j), case in sorted(cases_of(whole, ds).items()):
-        fields = [getattr(case, name) for name in (*OF_LOADS, *varying)]
+        fields = [getattr(case, name) for name in (*of_travel, *varying)]
         shown = [value if isinstance(value, str) else f"{value:.10g}" for value in fields]
-        rows.append([whole.cases[i].name, whole.rollers[j].name, f"{whole.cases[i].share:.10g}", *shown])
+        names = [inert_cell(name) for name in (whole.cases[i].name, whole.rollers[j].name)]
+        rows.append([*names, f"{whole.cases[i].share:.10g}", *shown])
     out = io.StringIO()
     csv.writer(out, lineterminator="\n").writerows(rows)
     lifted = ds["radial_force"].size - (len(rows) - 1)
     text = f"Loads of the rollers of {whole.name} by load case."
     if lifted:
         text += f" Rollers that are lifted carry no load and have no row, {lifted} in all."
-    study = {"name": f"{whole.name}-loads", "description": text, "base": base, "design": "table", "table": table}
+    study = {
+        "name": name_of_study(f"{whole.name}-loads"),
+        "description": text,
+        "base": base,
+        "design": "table",
+        "table": table,
+    }
     columns = zip(heads, zip(*rows[1:], strict=True), strict=True)
     varies = [name for name, column in columns if name not in OF_LOADS and len({*column}) > 1]
     study["roles"] = dict.fromkeys(varies, "condition")  # all cases are conditions of one design
@@ -121,6 +140,17 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     given = whole.rollers[0].options
     options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}
     return study | duty | options, out.getvalue()
+
+
+def name_of_study(text: str) -> str:
+    """Return a name that a study or spectrum may have, made of any text: 'my-shuttle-loads' of 'my shuttle-loads'.
+
+    Accents are removed, other signs than letters and digits become '-', and long names are cut in the middle.
+    """
+    plain = unicodedata.normalize("NFKD", text).encode("ascii", "ignore").decode()
+    name = re.sub(r"[^A-Za-z0-9_]+", "-", plain).strip("-_")
+    name = name if len(name) <= MOST_LETTERS else f"{name[:40]}-{name[-20:]}"
+    return name or "carriage"
 
 
 def _check_settled(ds: xr.Dataset) -> None:

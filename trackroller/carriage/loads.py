@@ -5,6 +5,7 @@ A wrench holds Fx, Fy, Fz [N] and the moments Mx, My, Mz about the origin [N mm]
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -55,18 +56,80 @@ class Loads:
         return self.payload + self.other
 
 
-def loads_of(carriage: Carriage, case: LoadCase) -> Loads:
+def _all_forces(carriage: Carriage, case: LoadCase) -> Iterator[tuple[bool, np.ndarray, np.ndarray]]:
+    """Yield whether a force is of a payload, each force (3,) [N] but the drive, and its point (3,) [mm]."""
+    for one in carriage.payloads:
+        yield True, case.payload * force_on(one, case), one.at
+    yield False, force_on(carriage.mass, case), carriage.mass.at
+    for force, at in case.forces:
+        yield False, force, at
+
+
+def swing_of(carriage: Carriage, case: LoadCase, hinge: np.ndarray) -> float | None:
+    """Return the angle about the x axis [rad] to which a load case swings a carriage that hangs on one line.
+
+    Parameters
+    ----------
+    carriage : Carriage
+        The carriage.
+    case : LoadCase
+        The load case.
+    hinge : numpy.ndarray, shape (2,)
+        Place of the line along y and z [mm].
+
+    Returns
+    -------
+    float or None
+        Angle, > 0 if the left side goes up; None if the carriage would fall to the other side of the line.
+
+    Notes
+    -----
+    The forces keep their directions, and their points r swing about the line. Their moment is A cos(phi) - B sin(phi)
+    with A the sum of r_y F_z - r_z F_y and B that of r_y F_y + r_z F_z, so that tan(phi) = A/B. The carriage is stable
+    where the moment falls with the angle: within 90 deg if B > 0, that is, if the loads pull away from the line.
+
+    ASSUME: the swing does not change the radius of a mass in a curve.
+    """
+    across = [(at[1:] - hinge, force[1:]) for _, force, at in _all_forces(carriage, case)]
+    turning = sum(r[0] * f[1] - r[1] * f[0] for r, f in across)
+    holding = sum(float(r @ f) for r, f in across)
+    size = sum(float(np.linalg.norm(r) * np.linalg.norm(f)) for r, f in across)
+    if holding <= NEGLIGIBLE * size:
+        return None
+    return float(np.arctan(turning / holding))
+
+
+def _turned(force: np.ndarray, angle: float) -> np.ndarray:
+    """Return a force (3,) as a carriage sees it that has swung by an angle about the x axis [rad]."""
+    cosine, sine = np.cos(angle), np.sin(angle)
+    return np.array([force[0], cosine * force[1] + sine * force[2], cosine * force[2] - sine * force[1]])
+
+
+def loads_of(carriage: Carriage, case: LoadCase, swing: float = 0.0) -> Loads:
     """Return the loads of a load case, balanced along the track by the drive.
+
+    Parameters
+    ----------
+    carriage : Carriage
+        The carriage.
+    case : LoadCase
+        The load case.
+    swing : float
+        Angle by which the carriage has swung about its line of rollers [rad], see `swing_of`. The loads are those that
+        the carriage sees, so that they turn by the opposite angle.
 
     Raises
     ------
     InputError
         If a force along the track needs a drive, and the carriage has none.
     """
-    none = np.zeros(6)
-    payload = sum((case.payload * wrench_at(force_on(one, case), one.at) for one in carriage.payloads), none)
-    other = wrench_at(force_on(carriage.mass, case), carriage.mass.at)
-    other = sum((wrench_at(force, at) for force, at in case.forces), other)
+    payload, other = np.zeros(6), np.zeros(6)
+    for of_payload, force, at in _all_forces(carriage, case):
+        wrench = wrench_at(force if swing == 0 else _turned(force, swing), at)
+        if of_payload:
+            payload = payload + wrench
+        else:
+            other = other + wrench
     drive = float(-(payload + other)[0])
     if carriage.drive is None:
         if abs(drive) > NEGLIGIBLE:

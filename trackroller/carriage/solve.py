@@ -11,20 +11,23 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.carriage.file import OF_LOADS, Carriage, MountedRoller, load_carriage
+from trackroller.carriage.file import IN_LINE, OF_LOADS, Carriage, MountedRoller, load_carriage
 from trackroller.carriage.lives import Lives, hours_per_km
-from trackroller.carriage.loads import Loads, loads_of
+from trackroller.carriage.loads import Loads, loads_of, swing_of
 from trackroller.carriage.statics import (
     MOTIONS,
     Equilibrium,
     Moves,
     Springs,
     equilibrium,
-    free_motion,
+    free_ways,
     is_determinate,
+    motion_of,
     multipliers,
     to_one_contact,
+    without,
 )
+from trackroller.carriage.strokes import passes_per_km
 from trackroller.contact.hertz import contact_modulus, unit_approach
 from trackroller.damage import verdict
 from trackroller.damage.miner import block_damage
@@ -34,7 +37,7 @@ from trackroller.parameters import BODIES
 from trackroller.roller.case import Case, to_table
 from trackroller.roller.dataset import file_attributes, validity_bit
 from trackroller.roller.doubts import doubts, ratings
-from trackroller.roller.duty import with_duty, years
+from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour, with_duty, years
 from trackroller.roller.geometry import contact_geometry
 from trackroller.roller.settings import LOADS
 from trackroller.roller.stored_inputs import DOUBTS
@@ -60,7 +63,9 @@ TIPPING = MOTIONS[2:4]  # motions that a user calls tipping
 _RC, _R, _C = ("load_case", "roller"), ("roller",), ("load_case",)
 
 
-def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: bool = True) -> xr.Dataset:
+def solve_carriage(
+    source: Path | str | Mapping[str, Any] | Carriage, lives: bool = True, advanced: Callable[[int], object] = int
+) -> xr.Dataset:
     """Compute the loads of the rollers of a carriage, and their lives.
 
     Parameters
@@ -69,6 +74,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
         A carriage file, or a mapping with its keys; see "Carriage" in the how-to guides.
     lives : bool
         Whether each roller is solved under its loads, by `trackroller.solve`.
+    advanced : callable
+        Called with the number of load cases whose forces and margins are done since the last call.
 
     Returns
     -------
@@ -78,8 +85,8 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
         `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
         (load_case) is False where no state fulfils all conditions of an equilibrium; its forces, margins and the lives
         of all rollers are NaN. A margin beyond the one to a single contact is one of rollers that carry axial load both
-        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`, `life_km` and
-        `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
+        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`,
+        `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
         roller with the shortest one.
 
     Raises
@@ -104,8 +111,9 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
     array([[-98.07, -98.07, -98.07, -98.07]])
     """
     whole = source if isinstance(source, Carriage) else load_carriage(source)
-    springs, loads = springs_of(whole), [loads_of(whole, case) for case in whole.cases]
-    ds = _solution(whole, springs, loads).assign(_margins(whole, springs, loads))
+    springs = springs_of(whole)
+    loads, swings = _loads(whole, springs)
+    ds = _solution(whole, springs, loads, swings).assign(_margins(whole, springs, loads, advanced))
     ds.attrs[DOUBTS] = json.dumps(doubts_of_rollers(whole, ds))
     if lives and (without := [roller.name for roller in whole.rollers if roller.case is None]):
         return ds.assign_attrs(without_case=", ".join(without))
@@ -114,14 +122,36 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
 
 def forces_of(whole: Carriage) -> xr.Dataset:
     """Return the forces of the rollers in each load case, without margins and lives; see `solve_carriage`."""
-    return _solution(whole, springs_of(whole), [loads_of(whole, case) for case in whole.cases])
+    springs = springs_of(whole)
+    return _solution(whole, springs, *_loads(whole, springs))
 
 
-def _solution(whole: Carriage, springs: Springs, loads: list[Loads]) -> xr.Dataset:
+def _loads(whole: Carriage, springs: Springs) -> tuple[list[Loads], np.ndarray]:
+    """Return the loads of each load case, and the angles [rad] to which they swing a carriage on a line of rollers."""
+    if springs.hinge is None:
+        return [loads_of(whole, case) for case in whole.cases], np.full(len(whole.cases), np.nan)
+    swings = []
+    for case in whole.cases:
+        swing = swing_of(whole, case, springs.hinge)
+        if swing is None:
+            wrong = (
+                f"leave the carriage free: it {MOTIONS[2]} without any resistance, and falls in case '{case.name}', "
+                "because its loads do not hang below the line of its rollers"
+            )
+            raise _free(whole, wrong)
+        swings.append(swing)
+    pairs = zip(whole.cases, swings, strict=True)
+    return [loads_of(whole, case, swing) for case, swing in pairs], np.array(swings)
+
+
+def _solution(whole: Carriage, springs: Springs, loads: list[Loads], swings: np.ndarray) -> xr.Dataset:
     """Return the forces of the rollers as a data set with places, load cases and conventions."""
     found = [_equilibrium(whole, springs, one, case.name) for one, case in zip(loads, whole.cases, strict=True)]
     variables = _forces(whole, found, loads)
     variables |= _of_catalogue(whole, variables) | _places(whole)
+    if springs.hinge is not None:
+        long_name = "angle to which the carriage swings about its line of rollers, in whose axes the forces stand"
+        variables["swing"] = (_C, np.degrees(swings), _attrs("degree", long_name))
     coords = {
         "load_case": ("load_case", [case.name for case in whole.cases], {"long_name": "load case"}),
         "roller": ("roller", [roller.name for roller in whole.rollers], {"long_name": "roller of the carriage"}),
@@ -173,15 +203,31 @@ def springs_of(whole: Carriage, unknown: Sequence[float] = ()) -> Springs:
         offset=np.zeros(len(rollers)),
         length=length,
     )
-    motion = free_motion(springs)
-    if motion is not None:
-        names = ", ".join(roller.name for roller in rollers)
-        wrong = f"leave the carriage free: it {motion} without any resistance"
-        remedy = "Add a roller, put the rollers further apart, or make one with kind: floating a locating one."
-        raise InputError(
-            "rollers", names, "rollers that hold the carriage in all directions across the track", remedy, wrong
-        )
-    return _preloaded(springs, whole)
+    ways = free_ways(springs)
+    if len(ways) == 0:
+        return _preloaded(springs, whole)
+    hinge = _hinge(whole, ways[0], length) if len(ways) == 1 else None
+    if hinge is None:
+        raise _free(whole, f"leave the carriage free: it {motion_of(ways[-1])} without any resistance")
+    return _preloaded(without(springs, ways[0], hinge), whole)
+
+
+def _free(whole: Carriage, wrong: str) -> InputError:
+    """Return the error for rollers that do not hold the carriage."""
+    names = ", ".join(roller.name for roller in whole.rollers)
+    remedy = "Add a roller, put the rollers further apart, or make one with kind: floating a locating one."
+    allowed = "rollers that hold the carriage in all directions across the track"
+    return InputError("rollers", names, allowed, remedy, wrong)
+
+
+def _hinge(whole: Carriage, way: np.ndarray, length: float) -> np.ndarray | None:
+    """Return the place (2,) along y and z of the line of all rollers about which a motion (5,) turns, None without."""
+    angle = way[2] / length
+    if np.abs(way[3:]).max() > 1e-6 * abs(way[2]) or angle == 0:
+        return None
+    line = np.array([-way[1], way[0]]) / angle  # where the motion is 0
+    off = max(float(np.abs(roller.at[1:] - line).max()) for roller in whole.rollers)
+    return line if off <= IN_LINE * length else None
 
 
 def _preloaded(springs: Springs, whole: Carriage) -> Springs:
@@ -211,15 +257,15 @@ def _compliance(roller: MountedRoller) -> tuple[float, float, tuple[float, float
     return approach / (2 * cosine) ** (2 / 3) / cosine, float(np.tan(geometry.contact_angle[0])), roller.compliance
 
 
-def _reduced(wrench: np.ndarray, length: float) -> np.ndarray:
-    """Return the five components of a wrench that the rollers carry; moments over `length`."""
-    return np.concatenate([wrench[1:3], wrench[3:] / length])
+def _reduced(wrench: np.ndarray, springs: Springs) -> np.ndarray:
+    """Return the components of a wrench that the rollers carry; moments over `springs.length`."""
+    return springs.basis.T @ np.concatenate([wrench[1:3], wrench[3:] / springs.length])
 
 
 def _equilibrium(whole: Carriage, springs: Springs, loads: Loads, name: str) -> Equilibrium:
     """Return the forces of the rollers in a load case; an error names the case."""
     try:
-        found = equilibrium(springs, _reduced(loads.all, springs.length))
+        found = equilibrium(springs, _reduced(loads.all, springs))
     except Moves as error:
         allowed = "loads that rollers which only press can carry"
         tips = "tips" if error.motion in TIPPING else "does not hold"
@@ -247,7 +293,7 @@ def _decided(whole: Carriage, loads: Loads, found: Equilibrium) -> bool:
     for compliance in (1e-5 * steps, 1e-5 * steps[::-1]):
         springs = springs_of(whole, compliance.tolist())
         try:
-            other = equilibrium(springs, _reduced(loads.all, springs.length))
+            other = equilibrium(springs, _reduced(loads.all, springs))
         except Moves:
             return False
         near = 1e-6 * float(found.radial.max(initial=0.0))
@@ -304,21 +350,37 @@ def _places(whole: Carriage) -> dict[str, Any]:
     }
 
 
-def _margins(whole: Carriage, springs: Springs, loads: list[Loads]) -> dict[str, Any]:
+def _margins(
+    whole: Carriage, springs: Springs, loads: list[Loads], advanced: Callable[[int], object]
+) -> dict[str, Any]:
     """Return the multipliers of payload and of all loads to one contact, to lift-off and to tipping."""
     angles = [np.nan if roller.case is None else roller.case.contact_angle for roller in whole.rollers]
     tangent = np.tan(np.radians(np.array(angles, dtype=float)))
     out: dict[str, list[float]] = {}
     for one in loads:
-        payload, other = (_reduced(part, springs.length) for part in (one.payload, one.other))
-        for name, fixed, varying in (("payload", other, payload), ("loads", np.zeros(5), payload + other)):
+        payload, other = (_reduced(part, springs) for part in (one.payload, one.other))
+        for name, fixed, varying in (("payload", other, payload), ("loads", 0.0 * other, payload + other)):
+            if name == "payload" and _swings_further(springs, one):
+                for end in ENDS:
+                    out.setdefault(f"{name}_to_{end}", []).append(np.nan)
+                continue
             lift_off, tipping = multipliers(springs, fixed, varying)
             one_contact = to_one_contact(springs, fixed, varying, tangent, lift_off)
             for end, value in zip(ENDS, (one_contact, lift_off, tipping), strict=True):
                 out.setdefault(f"{name}_to_{end}", []).append(value)
+        advanced(1)
     words = {"payload": "multiplier of the payload", "loads": "multiplier of all loads"}
     names = {f"{name}_to_{end}": f"{words[name]} {ENDS[end]}" for name in words for end in ENDS}
     return {name: (_C, np.array(out[name]), _attrs("1", long)) for name, long in names.items()}
+
+
+def _swings_further(springs: Springs, loads: Loads) -> bool:
+    """Return whether another payload swings a carriage on a line of rollers, so that no margin of it is known."""
+    if springs.hinge is None:
+        return False
+    force, moment = loads.payload[1:3], loads.payload[3]
+    about = moment - float(springs.hinge[0] * force[1] - springs.hinge[1] * force[0])
+    return abs(about) > 1e-9 * springs.length * float(np.linalg.norm(force))
 
 
 def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, Any]:
@@ -340,11 +402,16 @@ def _of_catalogue(whole: Carriage, variables: Mapping[str, Any]) -> dict[str, An
 def cases_of(whole: Carriage, ds: xr.Dataset) -> dict[tuple[int, int], Case]:
     """Return the `Case` of each roller that carries load, by the numbers of load case and roller."""
     made = {}
+    passes = passes_per_km(whole)
     for i, j in np.argwhere(ds["radial_force"].values < 0).tolist():
         speed, case = whole.cases[i].speed, whole.rollers[j].case
         if case is not None:
             loads = {name: float(ds[name][i, j]) for name in ("radial_force", "axial_force")}
-            made[i, j] = replace(case, **loads, **({} if speed is None else {"velocity": 60 * speed}))
+            if speed is not None:
+                loads["velocity"] = 60 * speed
+            if np.isfinite(passes[j]):
+                loads[OVERROLLINGS] = float(overrollings_per_hour(passes[j], loads["velocity"]))
+            made[i, j] = replace(case, **loads)
     return made
 
 
@@ -372,9 +439,13 @@ def _doubted_ratings(roller: MountedRoller, radial: np.ndarray) -> Iterator[str]
     """Yield a sentence for each rating of a maker's catalogue that is small beside the radial forces (n,) [N]."""
     if roller.catalogue is None:
         return
-    rated = {"radial": roller.catalogue.radial_force, "axial": roller.catalogue.axial_force}
-    for text in ratings({"radial_force": radial, "catalogue": rated}):
-        yield text.replace("radial =", "radial_force =").replace("axial =", "axial_force =")
+    rated = {name: getattr(roller.catalogue, name) for name in ("radial_force", "axial_force")}
+    yield from ratings({"radial_force": radial, "catalogue": rated})
+    if np.isfinite(roller.catalogue.moment):
+        yield (
+            f"catalogue.moment = {roller.catalogue.moment:g} N mm does not count: the statics of a carriage gives no "
+            "moment of a roller. Put the catalogue into the file of the roller, where it does."
+        )
 
 
 def _unused_loads(roller: MountedRoller) -> Iterator[str]:
@@ -390,6 +461,18 @@ def _flags(solved: xr.Dataset) -> np.ndarray:
     own = solved["validity_body"].transpose(..., "body").values
     ends = np.where(lives[..., BODIES.index("guide")] < lives[..., BODIES.index("roller")], own[..., 1], own[..., 0])
     return np.asarray((solved["validity"].values & ~deep) | (ends & deep))
+
+
+def _first_ends(lives: Lives, solved: xr.Dataset) -> np.ndarray:
+    """Return which body of each roller ends first, and by which limit, (roller, 2), as texts."""
+    hours = np.nan_to_num(lives.summed["life_to_first_limit_hours"], nan=np.inf)
+    body = np.argmin(hours, axis=1)
+    attrs = solved["limiting_mechanism"].attrs
+    words = dict(zip(np.ravel(attrs["flag_values"]).tolist(), attrs["flag_meanings"].split(), strict=True))
+    numbers = lives.summed["limiting_mechanism"][np.arange(len(body)), body]
+    return np.array(
+        [[BODIES[k], words[number]] for k, number in zip(body, numbers.tolist(), strict=True)], dtype=object
+    )
 
 
 def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset] | None = None) -> xr.Dataset:
@@ -417,6 +500,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
     own = np.array([roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float)
     pace = hours_per_km(ds["share"].values, np.tile(ds["speed"].values, (n, 1)), own)
+    ends = np.full((n, 2), "", dtype=object)  # body and limit
     flags: Mapping[str, Any] = {}
     cases = cases_of(whole, ds)
     groups: dict[str, list[tuple[int, int]]] = {}
@@ -433,6 +517,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         lives = Lives(j, ds["share"].values[i], speed, pace[j], solved)
         for end in lasts:
             lasts[end][j[lives.first]] = lives.summed[f"{LIFE}{end}"]
+        ends[j[lives.first]] = _first_ends(lives, solved)
         case_hours[i, j], regime[i, j] = solved[LIFE].values, solved["regime"].values
         flagged[i, j] = _flags(solved)
         damage[i, j] = block_damage(lives.time, solved[LIFE].values)  # of a km of travel
@@ -442,6 +527,7 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     if not ds["converged"].values[ds["share"].values > 0].all():
         for end in lasts:
             lasts[end] = np.full(n, np.nan)
+    ends[~np.isfinite(lasts[""])] = ""
     travel = lasts[""] / pace
     variables: dict[str, Any] = {
         "case_life_hours": (_RC, case_hours, _attrs("h", "life to the first limit under a load case alone")),
@@ -450,6 +536,8 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         "roller_validity": (_RC, flagged, {"long_name": "validity flags of the roller, as of `trackroller.solve`"}),
         "life_km": (_R, travel, _attrs("km", f"travel of the carriage {first}")),
         "life_hours": (_R, lasts[""], _attrs("h", f"hours of travel {first}")),
+        "first_body": (_R, ends[:, 0].astype(str), {"long_name": "roller or rail, whichever reaches its limit first"}),
+        "first_limit": (_R, ends[:, 1].astype(str), {"long_name": "limit that is reached first"}),
         "life_hours_low": (_R, lasts["_low"], _attrs("h", f"low end of the hours of travel {first}")),
         "life_hours_high": (_R, lasts["_high"], _attrs("h", f"high end of the hours of travel {first}")),
     }

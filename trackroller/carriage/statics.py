@@ -9,6 +9,9 @@ damped Newton method, which linearises each spring at its load. The axial stiffn
 computed again until the forces stay the same; close to the solution, Newton's method solves for both together. A roller
 that is about to lift loses its axial load by a jump, beyond which no equilibrium with this roller exists.
 
+Rollers on one line leave the carriage free to roll about it, as a door leaf that hangs on its rail. This freedom is
+left out: the carriage swings until the loads have no moment about the line, see `trackroller.carriage.loads.swing_of`.
+
 ASSUME: displacements are small; a lifted locating roller carries no axial load.
 """
 
@@ -16,7 +19,7 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -77,6 +80,10 @@ class Springs:
         Approach before any displacement [mm]: that of the preload, negative for play.
     length : float
         Length that turns rotations into displacements [mm].
+    basis : numpy.ndarray, shape (5, m)
+        The freedoms that the rollers hold, as columns; `radial` and `axial` have m columns then. All five by default.
+    hinge : numpy.ndarray, optional
+        Place (2,) along y and z of the line about which the carriage swings [mm].
     """
 
     radial: np.ndarray
@@ -88,6 +95,8 @@ class Springs:
     axial_compliance: np.ndarray
     offset: np.ndarray
     length: float
+    basis: np.ndarray = field(default_factory=lambda: np.eye(len(MOTIONS)))
+    hinge: np.ndarray | None = None
 
     def approach(self, force: np.ndarray) -> np.ndarray:
         """Return the approach of each roller to its rail under radial forces >= 0 (n,) [N], in mm."""
@@ -169,14 +178,19 @@ class Equilibrium:
         return self.radial > 0
 
 
-def free_motion(springs: Springs) -> str | None:
-    """Return how the carriage can move although all rollers touch their rails, None if they hold it."""
+def free_ways(springs: Springs) -> np.ndarray:
+    """Return the motions (k, 5) of the carriage although all rollers touch their rails; k is 0 if they hold it."""
     rows = np.vstack([springs.radial, springs.axial[springs.locating]])
     _, values, ways = np.linalg.svd(rows)
-    values = np.concatenate([values, np.zeros(5 - values.size)]) if values.size < 5 else values
-    if values[4] > 1e-9 * values[0]:
-        return None
-    return motion_of(ways[4])
+    values = np.concatenate([values, np.zeros(len(ways) - values.size)])
+    return np.asarray(ways[values <= 1e-9 * values[0]])
+
+
+def without(springs: Springs, way: np.ndarray, hinge: np.ndarray) -> Springs:
+    """Return the springs without one freedom, a motion (5,) of length 1 about the line `hinge`."""
+    _, _, ways = np.linalg.svd(way[None, :])
+    basis = ways[1:].T
+    return replace(springs, radial=springs.radial @ basis, axial=springs.axial @ basis, basis=basis, hinge=hinge)
 
 
 def motion_of(way: np.ndarray) -> str:
@@ -303,7 +317,7 @@ def _enumerated(springs: Springs, wrench: np.ndarray, size: float, place: np.nda
     rest = wrench - (sets * (stiffness * approach)) @ springs.radial
     rest -= (sets * (of_axial * (springs.axial @ place))) @ springs.axial
     damping = 1e-14 * np.trace(curve[-1])  # where a set leaves the carriage free, it moves as little as possible
-    step = np.linalg.solve(curve + damping * np.eye(5), rest[:, :, None])[:, :, 0]
+    step = np.linalg.solve(curve + damping * np.eye(len(wrench)), rest[:, :, None])[:, :, 0]
     forces = stiffness * (approach + step @ springs.radial.T)
     good = (np.where(sets, forces, -forces) >= -TOUCHES * size).all(axis=1)
     for i in np.flatnonzero(good)[np.argsort(-sets[good].sum(axis=1), kind="stable")]:
@@ -332,7 +346,7 @@ def _other_sets(springs: Springs, visited: list[np.ndarray]) -> list[np.ndarray]
 def _stiff_place(springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float) -> np.ndarray:
     """Return the displacement (5,) if some rollers carry axial load with the stiffness under an equal radial load."""
     stiffness = np.where(carries, springs.axial_stiffness(np.full(carries.shape, size / carries.size)), 0.0)
-    return _minimum(springs, stiffness, wrench, np.zeros(5), size)
+    return _minimum(springs, stiffness, wrench, np.zeros(len(wrench)), size)
 
 
 def _from_start(
@@ -374,7 +388,7 @@ def _check_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) ->
     columns = np.vstack([springs.radial, axial, -axial]).T
     forces, rest = nnls(columns, wrench)
     if rest > _INFEASIBLE * max(1e-30, float(np.abs(wrench).max())):
-        raise Moves(motion_of(wrench - columns @ forces))
+        raise Moves(motion_of(springs.basis @ (wrench - columns @ forces)))
 
 
 def _settled(
@@ -384,7 +398,7 @@ def _settled(
     least = 1e-6 * size
     stiffness = np.where(carries, springs.axial_stiffness(np.maximum(radial, least)), 0.0)
     if start is None:
-        start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(5), size)
+        start = _minimum(springs.linear_at(size / radial.size), stiffness, wrench, np.zeros(len(wrench)), size)
     place, converged = start, not (carries.any() and springs.contact.any())
     for turn in range(1 if converged else MOST_PASSES):
         place = _minimum(springs, stiffness, wrench, place, size)
@@ -485,7 +499,7 @@ def _minimum(
         if np.abs(slope).max() <= 1e-12 * size or damping > 1e4:
             break
         scale = max(float(np.trace(curve)), 1e-6 * size)
-        step = np.linalg.solve(curve + damping * scale * np.eye(5), -slope)
+        step = np.linalg.solve(curve + damping * scale * np.eye(len(slope)), -slope)
         new = at(place + step)
         better = new[0] <= energy + 1e-4 * float(slope @ step)
         flat = np.abs(new[1]).max() < 0.5 * np.abs(slope).max() and new[0] <= energy + 1e-12 * abs(energy)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 import shlex
 from collections.abc import Mapping
@@ -10,8 +11,10 @@ from pathlib import Path
 from trackroller.cli.case import YAML, writable, writable_data, writable_page, write_result, write_yaml_file
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
-from trackroller.files import write_text
+from trackroller.files import sha256, write_text
 
+TABLE_OF_US = "# Written beside it: {}, SHA-256 {}"  # line of a study by which its table is known to be unchanged
+MANY = 20  # load cases from which on a progress bar is shown
 START = "trackroller carriage --example -o {}"  # how a user gets a file to change
 
 
@@ -43,20 +46,24 @@ def run_carriage(
     from trackroller.report.pages.carriage import print_carriage, write_carriage  # heavy: jinja2
     from trackroller.report.pages.sheet import as_json as text_of
     from trackroller.roller.stored_inputs import doubts_of
+    from trackroller.study.progress import progress_bar
 
     whole = load_carriage(file)
     if (spectrum is not None or study) and page is None and not as_json:
         ds = forces_of(whole)  # loads need neither margins nor lives
         print_doubts(doubts_of_rollers(whole, ds))
     else:
-        ds = solve_carriage(whole)
+        with progress_bar(whole.name, len(whole.cases) >= MANY) as bar:
+            bar.started(len(whole.cases), 0)
+            ds = solve_carriage(whole, advanced=lambda count: bar.advanced(count, 0))
         print_doubts(doubts_of(ds))
     if target is not None and spectrum is not None:
         write_yaml_file(target, spectrum_of(whole, ds, spectrum))
     elif target is not None and table is not None:
         keys, rows = study_of(whole, ds, table.name)
         write_text(table, rows)
-        write_yaml_file(target, keys)
+        digest = hashlib.sha256(rows.encode()).hexdigest()
+        write_yaml_file(target, keys, TABLE_OF_US.format(table.name, digest))
     elif target is not None:
         write_result(ds, target)
     if page is not None:
@@ -97,13 +104,17 @@ def _write_example(file: Path | None, out: Path | None, others: Mapping[str, obj
 
 
 def _beside(study: Path) -> Path:
-    """Return the table of cases to write beside a study; refuse to replace a file of somebody else."""
-    from trackroller.carriage.files import HEADS  # heavy: scipy
-
+    """Return the table of cases to write beside a study; refuse to replace one that is not as it was written."""
     table = study.with_suffix(".csv")
-    if os.path.lexists(table) and (not table.is_file() or not table.read_bytes().startswith(HEADS.encode())):
-        allowed, wrong = f"a name beside which {table.name} is free", f"would replace {table.name} of somebody else"
-        raise InputError("--out", study.name, allowed, "Give another name with -o.", wrong)
+    if not os.path.lexists(table):
+        return table
+    written = study.read_text(encoding="utf-8").splitlines() if study.is_file() else []
+    if not table.is_file() or TABLE_OF_US.format(table.name, sha256(table)) not in written:
+        allowed = f"a name beside which {table.name} is free, or as this command wrote it"
+        remedy = f"Give another name with -o, or move {table.name} away."
+        raise InputError(
+            "--out", study.name, allowed, remedy, f"would replace {table.name}, which somebody has changed"
+        )
     return table
 
 

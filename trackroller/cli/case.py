@@ -168,9 +168,12 @@ def _is_ours(path: Path, suffix: str) -> bool:
     )
 
 
-def write_yaml_file(target: Path, values: Mapping[str, Any]) -> None:
-    """Write a spectrum or study file as YAML, with the mark by which `writable` knows it; `target` comes from there."""
-    write_text(target, f"{BY_US}\n{write_yaml(values)}")
+def write_yaml_file(target: Path, values: Mapping[str, Any], comment: str = "") -> None:
+    """Write a spectrum or study file as YAML, with the mark by which `writable` knows it; `target` comes from there.
+
+    A `comment` is a line below the mark.
+    """
+    write_text(target, "\n".join([BY_US, *([comment] if comment else []), write_yaml(values)]))
 
 
 def free_for_page(page: Path) -> None:

@@ -9,10 +9,12 @@ from typing import Any
 from typer.core import TyperGroup
 from typer.exceptions import TyperException
 
+from trackroller.errors import escaped
+
 
 def print_line(text: str) -> None:
     """Print a message on stderr in one line, after the name of the program."""
-    print("trackroller: " + " ".join(text.split()), file=sys.stderr)
+    print("trackroller: " + " ".join(escaped(text).split()), file=sys.stderr)
 
 
 def print_doubts(texts: Iterable[str]) -> None:

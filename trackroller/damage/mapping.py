@@ -32,6 +32,8 @@ class MappingField:
         Keys that are lists of numbers.
     may_miss : tuple of str
         Keys that may be left out.
+    renamed : mapping of str to str
+        Former spellings of keys with the one to write now.
     check : callable, optional
         Function of the checked mapping that raises `InputError` where keys contradict each other.
     """
@@ -42,11 +44,16 @@ class MappingField:
     words: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     lists: tuple[Parameter, ...] = ()
     may_miss: tuple[str, ...] = ()
+    renamed: Mapping[str, str] = field(default_factory=dict)
     check: Callable[[dict[str, Any]], None] | None = None
 
     def canonical(self, value: Mapping[str, Any]) -> dict[str, Any]:
         """Return the checked mapping; raise the errors of unknown, missing or impossible entries together."""
         keys = [*self.words, *(number.name for number in (*self.numbers, *self.lists))]
+        for old, new in self.renamed.items():
+            if old in value:
+                known = ", ".join(keys)
+                raise InputError(f"{self.name}.{old}", value[old], known, f"Write {new}.", "has another name now")
         check_names(f"{self.name}: key", value, keys)
         missing = [key for key in keys if value.get(key) is None and key not in self.may_miss]
         if missing:
@@ -56,8 +63,9 @@ class MappingField:
         wrong = Collector()
         for key, allowed in self.words.items():
             with wrong.part():
-                check_names(f"{self.name}.{key}", [value[key]], allowed)
-                given[key] = str(value[key])
+                if value.get(key) is not None:
+                    check_names(f"{self.name}.{key}", [value[key]], allowed)
+                    given[key] = str(value[key])
         for number in (*self.numbers, *self.lists):
             with wrong.part():
                 if value.get(number.name) is not None:

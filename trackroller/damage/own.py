@@ -8,10 +8,15 @@ inherit.
 from __future__ import annotations
 
 import contextlib
+import functools
 import hashlib
 import importlib.util
 import os
 import sys
+import traceback
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -19,6 +24,7 @@ from typing import Any
 from trackroller.damage.limit import Limit
 from trackroller.errors import InputError
 
+FUNCTIONS = ("evaluate", "verdict", "shared")  # of a limit
 VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
 
 
@@ -57,14 +63,50 @@ def _load(path: Path) -> Limit:
     spec = importlib.util.spec_from_file_location(f"own_limit_{path.stem}", path)
     assert spec is not None and spec.loader is not None
     module = importlib.util.module_from_spec(spec)
-    try:
-        with contextlib.redirect_stdout(sys.stderr):  # what a file prints must not stand among the results
-            spec.loader.exec_module(module)
-    except Exception as error:
-        why = f"{type(error).__name__}: {error}"
-        raise InputError("limits", str(path), "a file that Python can load", f"Correct it: {why}") from error
+    with _errors_of(path), contextlib.redirect_stdout(sys.stderr):  # its prints must not stand among the results
+        spec.loader.exec_module(module)
     limit = getattr(module, "LIMIT", None)
     if not isinstance(limit, Limit) or limit.name != path.stem:
         declares = f"{path.name} must declare LIMIT = Limit(name='{path.stem}', ...)"
         raise InputError("limits", str(path), "a file that declares one LIMIT", declares)
-    return limit
+    own: dict[str, Any] = {
+        name: _guarded(getattr(limit, name), path) for name in FUNCTIONS if getattr(limit, name) is not None
+    }
+    return replace(limit, **own)
+
+
+def _guarded(function: Callable[..., Any], path: Path) -> Callable[..., Any]:
+    """Return a function of a file whose errors name the file and the line."""
+
+    @functools.wraps(function)
+    def call(*arguments: Any) -> Any:
+        with _errors_of(path):
+            return function(*arguments)
+
+    return call
+
+
+@contextmanager
+def _errors_of(path: Path) -> Iterator[None]:
+    """Raise an error of a file as an error of the user, with the file and its line.
+
+    `sys.exit` in a file is an error as well: it would end a command as if its work were done.
+    """
+    try:
+        yield
+    except (InputError, KeyboardInterrupt, MemoryError):
+        raise
+    except BaseException as error:
+        why = f"{type(error).__name__}: {error}".rstrip(": ")
+        wrong = f"stops with {why}"
+        remedy = "Correct this line, or leave out --allow-code."
+        told = InputError("limits", path.name, "a program without errors", remedy, wrong)
+        raise told.at(path, _line_of(error, path)) from error
+
+
+def _line_of(error: BaseException, path: Path) -> int:
+    """Return the line of a file in which an error began, 1 if the traceback does not name it."""
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        return error.lineno or 1
+    lines = [one.lineno for one in traceback.extract_tb(error.__traceback__) if one.filename == str(path)]
+    return lines[-1] or 1 if lines else 1

@@ -13,7 +13,7 @@ import numpy as np
 import xarray as xr
 from scipy.special import ndtri
 
-from trackroller.errors import InputError, check_names, listing
+from trackroller.errors import InputError, check_names, checked_text, listing
 from trackroller.files import all_or_none, write_whole
 from trackroller.fit import SHOWN
 from trackroller.fit.line import Interval, Line
@@ -470,8 +470,9 @@ def check_texts(**texts: Any) -> None:
             continue
         if not isinstance(text, str):
             raise InputError(field_name, text, "a text", "Write the name in quotes.")
-        if len(text) > LONGEST_NAME or not text.isprintable():
-            allowed = f"one line of at most {LONGEST_NAME} characters that can be printed"
+        checked_text(text, field_name)
+        if len(text) > LONGEST_NAME:
+            allowed = f"at most {LONGEST_NAME} characters"
             raise InputError(field_name, text, allowed, "Shorten the name, such as 'rig steel'.")
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from trackroller.errors import Collector, InputError, check_names, unknown_name
+from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials.material import UNNAMED, Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
 from trackroller.materials.sn_curve import (
@@ -142,6 +142,7 @@ class EntryParser:
         if not isinstance(name, str) or not name.strip():
             remedy = f'Put it in quotes: "{name}".'
             raise InputError("name of a material", name, "a text", remedy)
+        checked_text(name, "name of a material")
         where = f"{self.prefix}{name}"
         if not isinstance(entry, Mapping):
             raise InputError(where, entry, f"a mapping with {', '.join(REQUIRED)}")

@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
-from trackroller.errors import InputError
+from trackroller.errors import InputError, checked_text
 from trackroller.numerics.units import stated_unit
 
-_PLAIN = (float, int, str, bool, type(None))
+_PLAIN = (float, int, bool, type(None))
 MOST_LEVELS = 40  # of lists in lists
 
 
@@ -40,13 +40,16 @@ def plain(value: Any, field: str = "value", level: int = 0) -> Any:
     Raises
     ------
     InputError
-        For an iterator, masked values, a data frame with two columns of one name, and lists that contain themselves.
+        For an iterator, a text with control characters, masked values, a data frame with two columns of one name, and
+        lists that contain themselves.
 
     Examples
     --------
     >>> plain({"uniform": [np.int64(0), np.float32(0.1)], "values": np.arange(3)})
     {'uniform': [0, 0.1], 'values': [0, 1, 2]}
     """
+    if type(value) is str:
+        return checked_text(value, field, lines=True)
     if type(value) in _PLAIN:
         return value
     if level > MOST_LEVELS:

@@ -17,6 +17,7 @@ import xarray as xr
 
 from trackroller.damage.verdict import STATES
 from trackroller.errors import InputError
+from trackroller.files import inert_cell
 from trackroller.parameters import REGIME_LABELS
 from trackroller.parameters.carriage_fields import parameter_of
 from trackroller.parameters.validity import VALIDITY
@@ -52,7 +53,7 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
     for table in tables:
         path = folder / f"{table.name}.csv"
         with path.open("w", newline="", encoding="utf-8") as file:
-            csv.writer(file).writerows([_inert(value) for value in row] for row in [table.heads, *table.rows])
+            csv.writer(file).writerows([inert_cell(value) for value in row] for row in [table.heads, *table.rows])
         paths.append(path)
     book = folder / "tables.xlsx"
     put(book, lambda beside: _save(beside, tables))
@@ -79,7 +80,7 @@ def write_answer(answer: Answer, folder: Path) -> list[Path]:
     book, table, record_file = (folder / f"answer.{ending}" for ending in ("xlsx", "csv", "json"))
     put(book, lambda beside: _save(beside, [_headline_sheet(answer), rows, *_further_sheets(answer)]))
     with table.open("w", newline="", encoding="utf-8") as file:
-        csv.writer(file).writerows([_inert(value) for value in row] for row in [rows.heads, *rows.rows])
+        csv.writer(file).writerows([inert_cell(value) for value in row] for row in [rows.heads, *rows.rows])
     put_text(record_file, json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n")
     return [book, table, record_file]
 
@@ -155,7 +156,7 @@ def write_cases(table: pd.DataFrame, path: Path) -> Path:
     """
     if path.suffix.lower() == ".csv":
         texts = table.select_dtypes(exclude="number")
-        inert = table.assign(**{str(name): texts[name].map(_inert) for name in texts})
+        inert = table.assign(**{str(name): texts[name].map(inert_cell) for name in texts}).rename(columns=inert_cell)
         return put(path, lambda beside: inert.to_csv(beside, index=False))
     if path.suffix.lower() != ".xlsx":
         raise InputError("cases", str(path), "a file whose name ends in .xlsx or .csv", "Change the name.")
@@ -256,13 +257,6 @@ _WORDS: dict[str, Callable[[int], str]] = {name: _word(words) for name, (_, word
     "validity": _flags_set,
     "at_surface": _word(("no", "yes")),
 }
-
-
-def _inert(value: Any) -> Any:
-    """Return a cell with an apostrophe before a text that a spreadsheet would run as a formula; numbers stay."""
-    if not isinstance(value, str) or not value.startswith(("=", "+", "-", "@", "\t", "\r")):
-        return value
-    return value if re.fullmatch(r"[+-]?[\d.,]+(e[+-]?\d+)?", value) else f"'{value}"
 
 
 def _save(path: Path, tables: Sequence[Table], heads: int = 1) -> None:

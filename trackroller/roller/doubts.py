@@ -57,10 +57,10 @@ OTHER_UNITS = {
 # entries of mappings that the radial force of a roller usually does not exceed, in N; the others in N mm times 1 mm
 RATINGS = {
     "bearing": {"dynamic_rating": "N", "static_rating": "N", "permissible_moment": "N mm"},
-    "catalogue": {"radial": "N", "axial": "N", "moment": "N mm"},
+    "catalogue": {"radial_force": "N", "axial_force": "N", "moment": "N mm"},
 }
 LARGER_UNITS = {"N": "kN", "N mm": "Nm"}
-SMALL = {"axial": 0.02}  # share of the radial force below which a rating is asked about; 1 for the others
+SMALL = {"axial_force": 0.02}  # share of the radial force below which a rating is asked about; 1 for the others
 # ASSUME: width of measured points over the radius of the guide; inches as mm are below, micrometres above.
 MEASURED_WIDTH = 0.05, 20.0
 TURNED = 5.0  # ASSUME: deg; contact angles of a drawn section that differ by less are drawn alike

@@ -6,12 +6,12 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import Collector, InputError, check_names, unknown_name
+from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, RADII, renamed
 from trackroller.roller.case import FIELDS, Case
-from trackroller.roller.duty import checked_duty
+from trackroller.roller.duty import checked_duty, is_of_strokes, of_roller
 from trackroller.roller.fields import other_than_default
 from trackroller.roller.log_answers import checked_log
 from trackroller.roller.output_names import PARTS
@@ -48,6 +48,7 @@ def checked_sheet(value: Any) -> dict[str, str]:
             if isinstance(text, bool) or not isinstance(text, (str, int, float)) or len(str(text)) > LONGEST:
                 allowed = f"a text of at most {LONGEST} signs"
                 raise InputError(f"sheet.{name}", text, allowed, "Write a short text, in quotes.")
+            checked_text(str(text), f"sheet.{name}")
     wrong.check()
     return {name: str(text) for name, text in given.items()}
 
@@ -102,6 +103,17 @@ def _checked_beside(key: str, value: Any, duty: Mapping[str, float] | None) -> A
     return written(required)
 
 
+def _by_strokes(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the duty of a roller in hours, and what follows from its strokes; {} for a duty in hours."""
+    duty = checked_duty(values["duty"])
+    if not is_of_strokes(duty):
+        return {}
+    case = Case.from_dict({key: value for key, value in values.items() if key in (*FIELDS, *ALIASES, *RADII)})
+    velocity = None if "velocity" in case.not_given else case.velocity
+    in_time, given = of_roller(duty, velocity, case.guide_overrollings_per_hour)
+    return {"duty": in_time, **given}
+
+
 def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, Any]]:
     """Return the case, the options of `solve`, and the entries `BESIDE` of a case file that are given.
 
@@ -125,6 +137,9 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     wrong = Collector()
     beside: dict[str, Any] = {}
     options = {key: left.pop(key) for key in OPTIONS if key in left}
+    if left.get("duty") is not None:
+        with wrong.part():
+            left |= _by_strokes(left)
     for key in (name for name in BESIDE if name in left):
         with wrong.part():
             beside[key] = _checked_beside(key, left.pop(key), beside.get("duty"))

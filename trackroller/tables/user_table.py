@@ -24,7 +24,7 @@ from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, S
 from dataclasses import dataclass
 from pathlib import Path
 
-from trackroller.errors import Collector, InputError, listing
+from trackroller.errors import Collector, InputError, checked_text, listing
 from trackroller.files import read_bytes, text_of
 from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.table_cells import (
@@ -148,10 +148,18 @@ def read_user_table(
     return table
 
 
+def _check_texts(lines: Iterable[Row], source: Source) -> None:
+    """Refuse lines with characters that no terminal should receive."""
+    for number, cells in lines:
+        with source.in_line(number):
+            checked_text(" ".join(cells), source.kind.field, lines=True)
+
+
 def _named_columns_of(lines: Iterable[Row], separator: str, used: Collection[str], source: Source) -> UserTable:
     """Return the lines of a file as a table of named columns, whose cells are as they stand in the file."""
     kind = source.kind
     filled = [(number, cells) for number, cells in lines if any(cells)]
+    _check_texts(filled, source)
     head, heads, below = split_lines(filled, kind)
     rows = dict(_without_comments(below, heads, source))
     _check_rows(rows, heads, source)

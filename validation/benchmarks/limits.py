@@ -28,7 +28,7 @@ GIVEN: dict[str, Any] = {
         **{"rows": 2, "row_distance": 8.0, "kind": "ball", "dynamic_rating": 4000.0, "static_rating": 2000.0},
         **{"e": 0.27, "X": 0.56, "Y": 1.6, "X0": 0.6, "Y0": 0.5},
     },
-    "catalogue": {"radial": 800.0, "axial": 300.0, "moment": 4000.0, "basic_life_km": 100.0, "law": "dry"},
+    "catalogue": {"radial_force": 800.0, "axial_force": 300.0, "moment": 4000.0, "basic_life": 100.0, "law": "dry"},
     "guide_overrollings_per_hour": 100.0,
     "heat_transfer_coefficient": 20.0,
     "cooled_area": 5000.0,

@@ -14,6 +14,7 @@ from typing import Any
 
 from markupsafe import Markup
 
+from trackroller.files import inert_cell
 from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
 from trackroller.report.numbers import count, long_name, on_duty, plain, rounded, unit_text
 from trackroller.report.pictures import curves
@@ -196,8 +197,8 @@ def download_of(answer: Answer) -> str:
         return ""
     text = io.StringIO()
     writer = csv.writer(text)
-    writer.writerow(answer.table.columns)
-    writer.writerows(answer.table.itertuples(index=False))
+    for row in (answer.table.columns.to_list(), *answer.table.to_numpy(object).tolist()):
+        writer.writerow([inert_cell(value) for value in row])
     return f"data:text/csv;base64,{base64.b64encode(text.getvalue().encode()).decode('ascii')}"
 
 

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import LIMITS
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import lasting
@@ -41,11 +42,13 @@ def sentences(ds: xr.Dataset) -> list[Sentence]:
         _worst(ds),
         *_without_life(ds),
         *_unsettled(ds),
+        *_swinging(ds),
         *_lifted(ds),
         *_one_contact(ds),
         *_margins(ds),
         *_catalogue(ds),
         *_flags(ds),
+        *_years(ds),
     ]
 
 
@@ -65,6 +68,17 @@ def _worst(ds: xr.Dataset) -> Sentence:
     return say("carriage", "carriage_worst", **values)
 
 
+def _years(ds: xr.Dataset) -> Iterator[Sentence]:
+    """Say how long the carriage lasts, and which body ends it by which limit."""
+    roller = ds.attrs.get("worst_roller")
+    if not roller or not str(ds["first_limit"].sel(roller=roller).values):
+        return
+    body, limit = (str(ds[name].sel(roller=roller).values) for name in ("first_body", "first_limit"))
+    life = lasting(float(ds["life_hours"].sel(roller=roller)), "h")
+    title = LIMITS[limit].title if limit in LIMITS else "a limit that is not known"
+    yield say("carriage", "carriage_years", roller=roller, body=body, limit=title, life=life)
+
+
 def _without_life(ds: xr.Dataset) -> Iterator[Sentence]:
     if ds.attrs.get("without_case"):
         yield say("carriage", "carriage_without_case", rollers=ds.attrs["without_case"].split(", "))
@@ -77,6 +91,14 @@ def _unsettled(ds: xr.Dataset) -> Iterator[Sentence]:
     cases = ds["load_case"].values[~ds["converged"].values].tolist()
     if cases:
         yield say("carriage", "carriage_unsettled", cases=cases)
+
+
+def _swinging(ds: xr.Dataset) -> Iterator[Sentence]:
+    if "swing" in ds:
+        angles = ds["swing"].values
+        i = int(np.argmax(np.abs(angles)))
+        case, unknown = str(ds["load_case"].values[i]), bool(np.isnan(ds.get("payload_to_tipping", angles)).any())
+        yield say("carriage", "carriage_swings", angle=float(angles[i]), case=case, unknown=unknown)
 
 
 def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:

@@ -19,9 +19,11 @@ from trackroller.carriage.fields import changed
 from trackroller.carriage.file import OF_LOADS
 from trackroller.carriage.lives import Lives, hours_per_km
 from trackroller.carriage.solve import forces_of
+from trackroller.carriage.strokes import passes_per_km
 from trackroller.errors import InputError
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES
 from trackroller.parameters.carriage_fields import field_of
+from trackroller.roller.duty import OVERROLLINGS, overrollings_per_hour
 from trackroller.roller.settings import LOADS
 from trackroller.study.design.build import build, columns_of, dataset_of
 from trackroller.study.design.entries import GEOMETRY
@@ -40,6 +42,8 @@ DIGITS = 8  # of a force: the last digits depend on the processor, and a case is
 
 def given_by(whole: Carriage) -> tuple[str, ...]:
     """Return the parameters of a roller that a carriage gives, so that no study may."""
+    if np.isfinite(whole.stroke):
+        return (*OF_LOADS, OVERROLLINGS)
     return OF_LOADS if any(case.speed is not None for case in whole.cases) else LOADS
 
 
@@ -88,6 +92,8 @@ def expanded(config: StudyFile, design: Design, materials: MaterialDatabase, who
         velocity, speed = columns["velocity"].astype(float), places["speed"][own]
         hours.append(hours_per_km(shares, places["speeds"][own], velocity))
         columns["velocity"] = np.where(np.isnan(speed), velocity, 60 * speed)
+        if np.isfinite(whole.stroke):
+            columns[OVERROLLINGS] = overrollings_per_hour(places["passes"][own], columns["velocity"])
         parts.append(dataset_of(columns, given.get("material_pair"), {}, friction))
         order.append(own)
     if not parts:
@@ -153,7 +159,7 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
         return f"case {', '.join(unsettled)}: no forces of the rollers fulfil all conditions of an equilibrium"
     i, j = np.nonzero(ds["radial_force"].values < 0)
     speeds = ds["speed"].values
-    forces = {name: _rounded(ds[name].values[i, j]) for name in LOADS}
+    forces = {name: _rounded(ds[name].values[i, j]) for name in LOADS} | {"passes": passes_per_km(own)[j]}
     return {"load_case": i, "roller": j, "speed": speeds[i], "speeds": np.tile(speeds, (len(i), 1)), **forces}
 
 

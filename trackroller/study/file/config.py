@@ -19,7 +19,7 @@ from pydantic import (
     field_validator,
 )
 
-from trackroller.carriage.file import written_out
+from trackroller.carriage.file import carriage_of, written_out
 from trackroller.errors import InputError, collected
 from trackroller.methods import METHODS, Method
 from trackroller.methods.method import study_keys
@@ -58,6 +58,10 @@ Name = Annotated[str, BeforeValidator(check_name)]
 Correlations = Annotated[tuple[tuple[str, str, float], ...], BeforeValidator(check_entries)]
 Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
 Goals = Annotated[dict[str, str], BeforeValidator(directions)]
+DUTY_MEANING = (
+    "hours_per_day and days_per_year of travel: lives in years beside hours; or strokes_per_day, stroke [m] (one way), "
+    "days_per_year and rollers_on_rail, which give hours and guide_overrollings_per_hour by the velocity"
+)
 Duty = Annotated[dict[str, float] | None, BeforeValidator(checked_duty)]
 Comparisons = Annotated[tuple[str, ...], AfterValidator(comparisons)]
 _ENDS: dict[str, Any] = {
@@ -140,7 +144,7 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     analysis: Analysis = Field(
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
     )
-    duty: Duty = Field(None, description="hours_per_day and days_per_year of travel: lives in years beside hours")
+    duty: Duty = Field(None, description=DUTY_MEANING)
     requirement: Requirements = Field(
         {},
         description="what is wanted of outputs: min, max, and probability, the share of the conditions that have to "
@@ -197,7 +201,8 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
     def _requirement(cls, value: Any, info: Any) -> Any:
         if "duty" not in info.data:  # it is wrong itself
             return {}
-        on_carriage = (info.data.get("carriage") or {}).get("duty")
+        carriage = info.data.get("carriage") or {}
+        on_carriage = carriage_of(carriage).duty if carriage.get("duty") is not None else None
         return checked_requirement(value, info.data["duty"] or on_carriage)
 
     @field_validator("question")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
@@ -16,11 +17,13 @@ from trackroller.damage.own import digests
 from trackroller.errors import Collector, InputError, nearest, raise_all, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
+from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
 from trackroller.parameters import MATERIAL_FIELDS
 from trackroller.parameters.carriage_fields import field_of
 from trackroller.parameters.example import not_given
 from trackroller.roller.aliases import ALIASES, study_with_radii
+from trackroller.roller.duty import OVERROLLINGS, checked_duty, is_of_strokes, of_roller
 from trackroller.study.design.carriage_cases import common_values, given_by
 from trackroller.study.file.checks import check_cells, check_geometry, cross_check, named_materials
 from trackroller.study.file.config import StudyFile
@@ -123,6 +126,8 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     wrong = Collector()
     data = study_with_radii(with_present_keys(data), wrong)
+    with wrong.part():
+        data = _by_strokes(data)
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))
         wrong.check()
@@ -140,6 +145,36 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         wrong.check()
         raise
     return config
+
+
+def _by_strokes(data: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Return a study file whose duty is in hours, and whose guide has the overrollings of the strokes.
+
+    Raises
+    ------
+    InputError
+        If the cases of the study differ in velocity, so that they have no hours in common.
+    """
+    if not is_of_strokes(_mapping(data.get("duty"))):
+        return data
+    duty, base = checked_duty(data["duty"]), dict(_mapping(data.get("base")))
+    remedies = {
+        "carriage": "Write the strokes into the file of the carriage.",
+        "table": "Write hours_per_day here, and guide_overrollings_per_hour in the table.",
+    }
+    for key, remedy in remedies.items():
+        if data.get(key) is not None:
+            raise InputError("duty.stroke", duty["stroke"], "hours_per_day", remedy, f"stands beside a {key}")
+    for name in ("velocity", OVERROLLINGS):
+        if name in _mapping(data.get("factors")):
+            wrong = "varies beside the strokes of the duty"
+            remedy = "Write hours_per_day in place of the strokes."
+            raise InputError(f"factors.{name}", None, "one velocity", remedy, wrong)
+    velocity = None
+    if base.get("velocity") is not None:
+        velocity = number_in(base["velocity"], "base.velocity", "a velocity > 0 [m/min]", 1e-9, 1e9, "m/min")
+    in_time, given = of_roller(duty, velocity, base.get(OVERROLLINGS))
+    return {**data, "duty": in_time, "base": base | given}
 
 
 def _mapping(value: Any) -> Mapping[str, Any]:
@@ -184,12 +219,16 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
     fields = [name for name in study.factors if field_of(name)]  # in their order: a file is written the same again
     with wrong.part():
         check_fields(whole, fields)
+    checked: set[tuple[str, str]] = set()
     for roller in whole.rollers:
         if roller.case is None:
             wrong.errors.append(
                 InputError(f"carriage.rollers.{roller.name}.roller", None, "its file", "Add roller: FILE.")
             )
         for key, value in roller.options.items():
+            if (key, str(value)) in checked:  # rollers may share a file, whose error is stated once
+                continue
+            checked.add((key, str(value)))
             with wrong.part():
                 _check_option(config, key, value, f"carriage.rollers.{roller.name}.roller.{key}")
     if "life" not in config.outputs:
@@ -198,6 +237,9 @@ def _on_carriage(study: Study, whole: Carriage, names: set[str]) -> tuple[dict[s
     duty = whole.duty if config.duty is None else config.duty
     if whole.duty is not None and duty != whole.duty:
         wrong.errors.append(InputError("duty", config.duty, "the duty of the carriage", "Remove one of them."))
+    if math.isfinite(whole.stroke) and (faster := [name for name in fields if "carriage_speed" in name]):
+        remedy = "Write hours_per_day in place of the strokes."
+        wrong.errors.append(InputError(f"factors.{faster[0]}", None, "one speed", remedy, "varies beside strokes"))
     wrong.check()
     known = names | ({*MATERIAL_FIELDS} if "material_pair" in names else set())
     common = {name: value for name, value in common_values(whole).items() if name not in known}

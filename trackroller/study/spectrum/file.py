@@ -20,8 +20,8 @@ from __future__ import annotations
 import math
 import sys
 from collections import Counter
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -29,7 +29,7 @@ import numpy as np
 
 from trackroller.damage import groups_of, others
 from trackroller.damage.sn_curve import PROBABILITIES
-from trackroller.errors import Collector, InputError, check_names, nearest
+from trackroller.errors import Collector, InputError, check_names, checked_text, nearest
 from trackroller.files import files_beside, find_beside, read_text
 from trackroller.numerics.numbers import number_in
 from trackroller.numerics.plain import mapping_of
@@ -38,7 +38,14 @@ from trackroller.parameters import OPTIONS as SOLVE_OPTIONS
 from trackroller.parameters.example import used_of
 from trackroller.roller.aliases import ALIASES, renamed
 from trackroller.roller.case import FIELDS, Case
-from trackroller.roller.duty import checked_duty
+from trackroller.roller.duty import (
+    OVERROLLINGS,
+    checked_duty,
+    in_hours,
+    is_of_strokes,
+    passes_per_km,
+    refuse_overrollings,
+)
 from trackroller.roller.geometry import rolling_radius
 from trackroller.roller.options import Options
 from trackroller.study.file.user_columns import read_table
@@ -179,8 +186,35 @@ class Spectrum:
         with wrong.part():
             found["options"] = left_out | {key: values[key] for key in OPTIONS if key in values}
             Options(**found["options"])  # checked before any case is solved
+        with wrong.part():
+            found["name"] = checked_text(str(values.get("name", "spectrum")), "name")
+        with wrong.part():
+            found["description"] = checked_text(str(values.get("description", "")), "description", lines=True)
         wrong.check()
-        return cls(name=str(values.get("name", "spectrum")), description=str(values.get("description", "")), **found)
+        if is_of_strokes(found["duty"]):
+            found |= _by_strokes(found["duty"], found["blocks"])
+        return cls(**found)
+
+
+def _by_strokes(duty: Mapping[str, float], blocks: Sequence[Block]) -> dict[str, Any]:
+    """Return the duty of a spectrum in hours, and its blocks with the overrollings of the guide by the strokes."""
+    wrong = Collector()
+    for block in blocks:
+        with wrong.part():
+            refuse_overrollings(block.guide_overrollings, f"block '{block.name}'.guide_overrollings")
+        with wrong.part():
+            refuse_overrollings(block.case.guide_overrollings_per_hour, OVERROLLINGS)
+        with wrong.part():
+            if "velocity" in block.case.not_given:
+                allowed = "the velocity, which turns strokes into hours"
+                raise InputError("velocity", None, allowed, "Add velocity: 60 m/min to base.")
+    wrong.check()
+    travel = sum(block.distance for block in blocks) / 1000.0
+    if not travel > 0:
+        raise InputError("blocks", None, "a block with travel", "Give one of them a distance.", "have no travel")
+    in_time = in_hours(duty, sum(block.hours for block in blocks) / travel)
+    passes = passes_per_km(duty) / 1000.0
+    return {"duty": in_time, "blocks": tuple(replace(b, guide_overrollings=passes * b.distance) for b in blocks)}
 
 
 def load_spectrum(path: Path | str) -> Spectrum:
@@ -288,7 +322,7 @@ def _block(entry: Any, base: Mapping[str, Any], number: int) -> Block:
     if not isinstance(entry, Mapping):
         raise InputError(f"blocks[{number}]", entry, "a mapping such as {distance: 4000, radial_force: -300}")
     entry = renamed(entry)
-    name = str(entry.get("name") or f"block {number}")
+    name = checked_text(str(entry.get("name") or f"block {number}"), "name of a block")
     where, wrong = f"block '{name}'", Collector()
     with wrong.part():
         _check_fields(list(entry), where, entry)

@@ -22,9 +22,9 @@ import stat
 from pathlib import Path
 from typing import Any
 
-from trackroller.files import open_here, sha256
+from trackroller.files import STUDY_MARK, open_here, sha256
 
-MARK, METADATA = "plan.json", "ro-crate-metadata.json"
+MARK, METADATA = STUDY_MARK, "ro-crate-metadata.json"
 LONE = ".trackroller.sha256"  # record of a folder of figures that lies in no study
 OUTDATED = "# outdated\n"  # first line of the record of a result that is not, or not yet, the newest one
 LINE = re.compile(r"(?P<digest>[0-9a-f]{64})  (?P<name>[^\n]+)\n")

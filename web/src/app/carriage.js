@@ -232,7 +232,7 @@ export function carriageView(state, { changed }) {
   }
 
   async function store() {
-    const answer = await act("save_carriage", { text: area.value, file: name.value }, ({ file: made }) => `${made} is saved.`);
+    const answer = await act("save_carriage", { text: area.value, file: name.value, opened: file }, ({ file: made }) => `${made} is saved.`);
     if (!answer) return name.focus();
     take(answer.file);
     list();
