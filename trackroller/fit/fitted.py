@@ -470,7 +470,7 @@ def check_texts(**texts: Any) -> None:
             continue
         if not isinstance(text, str):
             raise InputError(field_name, text, "a text", "Write the name in quotes.")
-        checked_text(text, field_name)
+        checked_text(text, f"{field_name} of a material")
         if len(text) > LONGEST_NAME:
             allowed = f"at most {LONGEST_NAME} characters"
             raise InputError(field_name, text, allowed, "Shorten the name, such as 'rig steel'.")
