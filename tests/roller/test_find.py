@@ -120,7 +120,7 @@ def test_what_cannot_be_found_says_what_to_write(name, condition, said):
 def test_a_search_between_any_values_finds_the_same_limit(between):
     """The pressure of both contacts, equally loaded without axial force, grows with the cube root of the load."""
     case = FREE | {"axial_force": 0, "radial_force": -200}
-    now = float(tr.solve(case, outputs="forces", **SLIDING).max_pressure[0])
+    now = float(tr.solve(case, outputs="contact", **SLIDING).max_pressure[0])
     found = tr.find(case, "radial_force", "max_pressure < 900", between=between, **SLIDING)
     assert found.low == pytest.approx(-200.0 * (900.0 / now) ** 3, rel=1e-4)
     cut = between is not None and isinstance(between[0], float)

@@ -16,7 +16,7 @@ _QUANTITY = re.compile(rf"\s*({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})\s*", re.ASCI
 
 PLAIN = ("-", "1", "")  # ways to write that a number has no unit
 _COMPARED = re.compile(
-    rf"([A-Za-z_]\w*)(\s*[<>=!]=?\s*)({_NUMBER})\s*({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))", re.ASCII
+    rf"([A-Za-z_]\w*)(\s*[<>=!]=?\s*)({_NUMBER})\s*(?![eE][-+]?\d)({_UNIT})(?=\s*(?:\)|\bor\b|\band\b|$))", re.ASCII
 )
 
 

@@ -166,7 +166,8 @@ def find(
     start = getattr(given, name)
     if not isinstance(start, (int, float)) or not math.isfinite(start):
         raise InputError("find", name, "a parameter with a number in the case", f"Give the case a finite {name}.")
-    search, notes = _Search(given, name, condition, database, options), []
+    search = _Search(given, name, condition, database, options)
+    notes: list[str] = []
     if between is not None:
         between, notes = _cut(PARAMETERS[name], float(start), between)
     return search.found(float(start), _values(PARAMETERS[name], float(start), between), notes)
