@@ -44,9 +44,7 @@ NOUNS = {  # what a stranger must know: the word, and the class whose docstring 
     "fit": "fit.fitted.Fit",
     "results": "results.results.Results",
     "candidates": "results.candidates.Candidates",
-    "verdict": "results.verdict.Verdict",
-    "finding": "results.findings.Finding",
-    "sentence": "report.words.sentence.Sentence",
+    "answer": "results.answer.Answer",
 }
 WAY = (  # of a study: what makes the next thing of the one before, and the file that it writes
     ("study.file.load.load_study", ""),

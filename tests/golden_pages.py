@@ -1,7 +1,7 @@
 """The pages whose words `tests/report/pages/` keeps, and the command that writes them anew.
 
     python tests/golden_pages.py              write all pages anew
-    python tests/golden_pages.py search sheet write these pages anew
+    python tests/golden_pages.py front sheet  write these pages anew
 
 A golden page is the text of a page as a reader sees it: a sentence a line, further sentences of a block indented, a row
 of a table a line. Read the diff of git before you commit it: it shows what a change of words or of a decision means to
@@ -19,24 +19,27 @@ import sys
 import tempfile
 import warnings
 from collections.abc import Callable
+from html import escape
 from html.parser import HTMLParser
 from pathlib import Path
-from typing import Any
-
-import yaml
-from synthetic_results import PAIRS, grid_study, results_of
 
 import trackroller as tr
 from trackroller.carriage.example import EXAMPLE
 from trackroller.cli.case import groups_of
+from trackroller.report.headlines import headline_of, warning_line
+from trackroller.report.pages.blocks import empty_proof
 from trackroller.report.pages.carriage import write_carriage
 from trackroller.report.pages.sheet import render
 from trackroller.report.pages.spectrum import write_spectrum
-from trackroller.report.pages.study import contents, page_text
-from trackroller.results.sensitivity import analyse
+from trackroller.report.pages.study import page_text
+from trackroller.results.answer import WARNINGS, Caution
 from trackroller.study.spectrum.file import Spectrum
 from trackroller.study.spectrum.solve import solve_spectrum
 from trackroller.yaml_file import parse_mapping
+
+sys.path.insert(0, str(Path(__file__).parent / "report"))  # as pytest does
+
+import made_answers
 
 FOLDER = Path(__file__).parent / "report" / "pages"
 CLOSE = 0.01  # numbers may differ by this share: other tests hold them
@@ -44,124 +47,36 @@ ZERO = 1e-12  # numbers below it are rounding
 NUMBER = re.compile(r"[−+-]?\d[\d,]*(?:\.\d+)?(?:·10[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+|e[+-]?\d+)?")
 PLAIN = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-", ",")
 QUICK = {"contact_model": "sliding", "accuracy": "preview"}
-STEEL, HARD = "1.7225-normalised", "1.7225-quenched-tempered"
 LIVES = ["forces", "contact", "friction_work", "peak_stress", "life"]
 
 
 # the pages
 
 
-def _report(study: dict[str, Any], table: str = "") -> str:
-    """Solve a study and return its report, without figures."""
-    with tempfile.TemporaryDirectory() as place, contextlib.chdir(place):
-        if table:
-            Path("cases.csv").write_text(table, encoding="utf-8")
-            study = study | {"design": "table", "table": "cases.csv"}
-        results = tr.run(QUICK | study, progress=False)
-        return page_text(results, contents(results), Path(place))
+def headlines() -> str:
+    """Return the headlines and the warnings of made answers, one for each question and kind."""
+    lines = []
+    for name, make in made_answers.ALL.items():
+        answer = make()
+        lines.append(f"<h3>{name}: {escape(answer.question)}</h3><p>{escape(headline_of(answer).text)}</p>")
+    for code, meaning in WARNINGS.items():
+        lines.append(f"<h3>{escape(meaning)}</h3><p>{escape(warning_line(Caution(code, 3, 12, 'friction 0.05')))}</p>")
+    return "".join(lines)
 
 
-def wear() -> str:
-    """Return the report of a grid with materials that wear, and a range of their coefficients."""
-    base = {"axial_force": 5, "motor_force": 0, "guide_curve_radius": "inf", "guide_overrollings_per_hour": 60}
-    factors = {
-        "material_pair": {"values": [[HARD, HARD], ["POM", HARD], ["PA6", HARD]]},
-        "roller_profile_radius": {"values": [-6.2, -7]},
-        "friction_coefficient": {"values": [0.1, 0.2]},
-        "radial_force": {"values": [-30, -60]},
-    }
-    outputs = [*LIVES, "limits"]
-    return _report(
-        {"name": "wear", "base": base | {"permissible_wear_depth": 0.05}, "factors": factors, "outputs": outputs}
-    )
+def decide() -> str:
+    """Return the page of a decision of five candidates with long names and lives without an end."""
+    return page_text(made_answers.long_names(), empty_proof(), None)
 
 
-def draws() -> str:
-    """Return the report of designs under random conditions, with a target."""
-    factors = {
-        "roller_profile_radius": {"values": [-6.4, -7, -8]},
-        "friction_coefficient": {"truncnormal": [0.19, 0.04, 0.08, 0.32]},
-        "axial_force": {"uniform": [0, 20]},
-    }
-    target = {"target": {"roller_life_hours": {"min": 5}}}
-    study = {"name": "draws", "base": {"motor_force": 0}, "factors": factors, "design": "inner_outer", "samples": 64}
-    return _report(study | {"analysis": target, "outputs": LIVES})
+def matters() -> str:
+    """Return the page of an answer on what matters."""
+    return page_text(made_answers.what_matters(), empty_proof(), None)
 
 
-def loads() -> str:
-    """Return the report of a table of measured loads with a row each, and a target that no design reaches."""
-    rows = "roller_profile_radius,radial_force,axial_force\n"
-    rows += "".join(f"{r},{load}\n" for r in (-6.4, -7) for load in ("-90,6", "-180,12", "-240,20"))
-    base = {"motor_force": 0, "friction_coefficient": 0.15, "guide_overrollings_per_hour": 120}
-    return _report({"name": "loads", "base": base, "analysis": {"target": {"min": 5000}}}, rows)
-
-
-def proposals() -> str:
-    """Return the report of a table whose two designs share one load only, too few to compare them."""
-    rows = (
-        "roller_profile_radius,radial_force,axial_force\n-6.4,-90,6\n-6.4,-180,12\n-7,-90,6\n-6.6,-90,6\n-6.6,-180,12\n"
-    )
-    return _report({"name": "proposals", "base": {"motor_force": 0}}, rows)
-
-
-def indices() -> str:
-    """Return the report of a study that compares no designs: sampled indices of three loads."""
-    factors = {
-        "friction_coefficient": {"uniform": [0.1, 0.3]},
-        "axial_force": {"uniform": [0, 30]},
-        "radial_force": {"uniform": [-250, -150]},
-    }
-    study = {"name": "indices", "base": {"motor_force": 0}, "factors": factors, "design": "saltelli", "samples": 16}
-    return _report(study | {"outputs": LIVES})
-
-
-def search() -> str:
-    """Return the report of a search for designs of long life and little friction."""
-    factors = {
-        "roller_profile_radius": {"values": [-6.4, -6.6, -7, -7.5, -8, -9]},
-        "contact_angle": {"values": [25, 30, 35, 40]},
-        "friction_coefficient": {"values": [0.1, 0.2]},
-    }
-    base = {"motor_force": -5, "guide_curve_radius": "inf", "guide_overrollings_per_hour": 600}
-    study = {"name": "search", "base": base, "factors": factors, "design": "optimise", "outputs": LIVES}
-    goals = {"pair_life_hours": "max", "mean(friction_power)": "min"}
-    return _report(study | {"goals": goals, "budget": {"designs": 16, "population": 4}})
-
-
-def tie() -> str:
-    """Return the report of two designs whose lives lie within the error of the solution."""
-    factors = {"contact_angle": {"values": [38, 38.2]}, "friction_coefficient": {"values": [0.1, 0.2]}}
-    return _report({"name": "tie", "base": {"motor_force": 0}, "factors": factors, "outputs": LIVES})
-
-
-def regimes() -> str:
-    """Return the report of made-up results with slip, lift-off, flags and a constraint."""
-    factors = {"friction_coefficient": [0.02, 0.2, 0.3], "roller_profile_radius": [-8.0, -7.0, -6.4]}
-    factors |= {"material_pair": list(PAIRS), "motor_force": [-30.0, 0.0], "axial_force": [0.0, 30.0, 130.0]}
-    ds = grid_study(factors)
-    told = {
-        "constraints": ["material_pair != 'POM / POM'"],
-        "goals": {"roller_life_hours": "max", "peak_stress": "min"},
-    }
-    ds.attrs["study"] = yaml.safe_dump(yaml.safe_load(ds.attrs["study"]) | told, sort_keys=False)
-    results = results_of(ds)
-    results = results_of(ds, analyse(results))
-    with tempfile.TemporaryDirectory() as place:
-        return page_text(results, contents(results), Path(place))
-
-
-def models() -> str:
-    """Return the report of a study that compares the contact models, free and driven."""
-    factors = {"friction_coefficient": {"values": [0.04, 0.3]}, "motor_force": {"values": [0, -10]}}
-    compared = {"contact_model": ["sliding", "kalker_table"], "outputs": LIVES}
-    return _report({"name": "models", "factors": factors} | compared)
-
-
-def grown() -> str:
-    """Return the report of a sample that doubles until its intervals are narrow."""
-    factors = {"axial_force": {"uniform": [20, 50]}, "friction_coefficient": {"uniform": [0.1, 0.3]}}
-    study = {"name": "grown", "base": {"motor_force": 0}, "factors": factors, "design": "sobol", "outputs": ["forces"]}
-    return _report(study | {"until": {"half_width": 0.04, "of": ["normal_force_1"], "at_most": 4096}})
+def front() -> str:
+    """Return the page of a search with two goals."""
+    return page_text(made_answers.best(), empty_proof(), None)
 
 
 def sheet() -> str:
@@ -206,8 +121,8 @@ def _written(write: Callable[[Path], object]) -> str:
         return page.read_text(encoding="utf-8")
 
 
-REPORTS = (wear, draws, loads, proposals, indices, search, tie, regimes, models, grown)
-PAGES: dict[str, Callable[[], str]] = {page.__name__: page for page in (*REPORTS, sheet, limits, spectrum, carriage)}
+ANSWERS = (headlines, decide, matters, front)
+PAGES: dict[str, Callable[[], str]] = {page.__name__: page for page in (*ANSWERS, sheet, limits, spectrum, carriage)}
 
 
 # what a reader sees of a page

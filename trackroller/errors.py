@@ -60,7 +60,9 @@ class InputError(ValueError):
 
     def named(self, field: str) -> InputError:
         """Return this error with another name of the field."""
-        return type(self)(field, self.value, self.allowed, self.remedy, self.wrong)
+        other = type(self)(field, self.value, self.allowed, self.remedy, self.wrong)
+        other.file, other.line, other.path = self.file, self.line, self.path
+        return other
 
     def at(self, file: object, line: int) -> InputError:
         """Return this error after noting the file and the line in which the value stands."""

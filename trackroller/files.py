@@ -107,6 +107,19 @@ def noted_reads() -> Iterator[Reads]:
 def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
     """Return the content of a user's file, see `read_text`, and note its digest for `noted_reads`."""
     path = Path(path)
+    with opened(path, what, most) as stream:
+        content = stream.read()
+    if (noted := _noted.get()) is not None:
+        noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
+    return content
+
+
+@contextmanager
+def opened(
+    path: Path | str, what: str, most: float, remedy: str = "Put many cases into a CSV file and use design: table."
+) -> Iterator[IO[bytes]]:
+    """Open a user's file to read its bytes; refuse a file as `read_text` does, a large one with a remedy of its own."""
+    path = Path(path)
     try:
         check_utf_8(path, what)
         _check_confined(path, what)
@@ -115,17 +128,10 @@ def read_bytes(path: Path | str, what: str, most: float = MAX_BYTES) -> bytes:
         if path.exists() and not path.is_file():
             raise InputError(what, str(path), "a regular file", "Give the path of a file.", "is a device or a pipe")
         if path.stat().st_size > most:
-            raise InputError(
-                what,
-                str(path),
-                f"a file of at most {MAX_BYTES // 1_000_000} MB",
-                "Put many cases into a CSV file and use design: table.",
-                f"has {path.stat().st_size / 1e6:,.0f} MB",
-            )
-        content = path.read_bytes()
-        if (noted := _noted.get()) is not None:
-            noted[path.resolve()] = what, hashlib.sha256(content).hexdigest()
-        return content
+            allowed = f"a file of at most {most / 1e6:,.0f} MB"
+            raise InputError(what, str(path), allowed, remedy, f"has {path.stat().st_size / 1e6:,.0f} MB")
+        with open(path, "rb") as stream:
+            yield stream
     except InputError:
         raise
     except FileNotFoundError:

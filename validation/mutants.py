@@ -8,21 +8,22 @@ from __future__ import annotations
 BORDERS = "results/test_decisions.py"
 SLIP = ("contact/test_slip.py", "contact/test_sliding.py", "contact/test_slip_terms.py")
 GEOMETRY = ("roller/test_geometry.py", "roller/test_equilibrium.py", "roller/test_solver.py")
-VERDICT = ("results/test_study_verdict.py",)
+ANSWER = ("results/test_answer.py",)
 WEAR = ("damage/test_wear.py",)
 SOBOL = ("results/test_sensitivity.py",)
 TABLE = ("contact/test_kalker_table.py",)
-CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_enough.py", "results/test_given_data.py")
+CONVERGENCE = (BORDERS, "results/test_sensitivity.py", "results/test_given_data.py")
 WORDS = (
     BORDERS,
     "report/test_sentences.py",
-    "report/test_truth.py",
-    "report/test_truth_analysis.py",
-    "report/test_report.py",
+    "report/test_headlines.py",
+    "report/test_answer_page.py",
+    "report/test_golden_pages.py",
+    "report/test_plots.py",
 )
-FITTED = ("results/test_fitted_effects.py",)
-DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py", "report/test_truth.py")
-TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py", "report/test_truth_targets.py")
+DECISIONS = ("results/test_decisions.py",)
+DESIGNS = (BORDERS, "results/test_candidates.py", "report/test_sentences.py")
+TARGETS = (BORDERS, "results/test_targets.py", "results/test_robustness.py")
 PACKED = (BORDERS, "report/test_explorer.py")
 STORE = (BORDERS, "study/test_resume.py", "study/test_two_runs.py")
 ANALYSED = (BORDERS, "results/test_sensitivity.py", "results/test_robustness.py", "report/test_report.py")
@@ -105,12 +106,6 @@ FORMULAS = {
     "wear-gap": ("damage/wear.py", "0.5 * curvature[:, None]", "curvature[:, None]", WEAR),
     "wear-standing-roller": ("damage/wear.py", "where(locked, 1.0,", "where(locked, 0.5,", WEAR),
     "wear-run-in": ("damage/wear.py", "np.max(counted, axis=2), axis=1)", "np.min(counted, axis=2), axis=1)", WEAR),
-    "wear-of-designs": (
-        "results/verdict.py",
-        "self.low[others] > self.high[i]",
-        "self.high[others] > self.high[i]",
-        VERDICT,
-    ),
     "carriage-curve": ("carriage/loads.py", "- inward * left", "+ inward * left", CARRIAGE),
     "carriage-moment": ("carriage/loads.py", "np.cross(at, force)", "np.cross(force, at)", CARRIAGE),
     "carriage-life Miner": (
@@ -136,21 +131,25 @@ FORMULAS = {
 # borders, signs and orders in study, analysis, report and command line
 DECISIONS = {
     "needed-samples": ("methods/convergence.py", "/ target) ** 2", "/ target)", CONVERGENCE),
-    "converged": ("report/words/samples.py", "if times <= 1 else", "if times <= 4 else", CONVERGENCE),
-    "interval-of-a-fit": ("results/effects.py", "inverse * (rest @ rest / free)", "inverse * (rest @ rest)", FITTED),
-    "rising": ("results/effects.py", "(steps > 0).sum()), int", "(steps >= 0).sum()), int", WORDS),
+    "figures-of-error": ("report/numbers.py", "figures = 2 if error >= COARSE", "figures = 2 if error < COARSE", WORDS),
+    "share-interval": ("results/comparison.py", "(share + z**2 / (2 * trials))", "(share + z**2 / trials)", ANSWER),
+    "requirement-error": ("results/case_ranges.py", "_shrunk(self.low, error)", "_grown(self.low, error)", ANSWER),
+    "curve-of-like-cases": (
+        "results/effect_curves.py",
+        "np.median(full, axis=0), ends",
+        "np.max(full, axis=0), ends",
+        ANSWER,
+    ),
     "fewest-conditions": ("results/candidates.py", "self.size.min() >= FEWEST", "self.size.max() >= FEWEST", DESIGNS),
     "unequal-loads": ("results/candidates.py", "np.min(loads, axis=0) /", "np.mean(loads, axis=0) /", DESIGNS),
     "median-case": ("results/candidates.py", "((number - 1) // 2, number", "(number // 2, number", DESIGNS),
     "beyond-data": ("results/results.py", "dtype=float)) | endless", "dtype=float)) & endless", DESIGNS),
     "class-of-a-value": ("results/groups.py", 'side="right") - 1', 'side="left") - 1', (*DESIGNS, *WORDS)),
-    "target-met": ("results/targets.py", "(values >= low) &", "(values > low) &", TARGETS),
+    "target-met": ("roller/requirement.py", "(values >= self.least) &", "(values > self.least) &", TARGETS),
     "all-targets": ("results/targets.py", ".min(axis=1) for body", ".max(axis=1) for body", TARGETS),
     "curve-in-words": ("report/numbers.py", "'outer' if value > 0", "'outer' if value < 0", WORDS),
     "drive-in-words": ("report/numbers.py", "'driven' if value < 0", "'driven' if value > 0", WORDS),
     "fold": ("report/numbers.py", "ratio = max(ratio, 1", "ratio = min(ratio, 1", WORDS),
-    "rounded-outwards": ("results/findings.py", "np.floor if way < 0", "np.floor if way > 0", WORDS),
-    "factors-that-go-together": ("results/effects.py", "> INFLATED:", "> 1e9 * INFLATED:", FITTED),
     "pareto-end": (
         "results/pareto.py",
         '-1.0 if way == "max" else 1.0',

@@ -7,10 +7,11 @@ import math
 import numpy as np
 import pytest
 from carts import SIDES, cart, rollers_below, rollers_between, shuttle
-from scipy.optimize import minimize
+from scipy.optimize import lsq_linear, minimize
 
 from trackroller.carriage import statics
 from trackroller.carriage.file import load_carriage
+from trackroller.carriage.files import study_of
 from trackroller.carriage.loads import GRAVITY, loads_of
 from trackroller.carriage.solve import forces_of, solve_carriage, springs_of
 from trackroller.carriage.statics import equilibrium
@@ -289,7 +290,9 @@ def test_the_slope_of_the_axial_stiffness():
 def test_forces_that_do_not_settle_are_told(monkeypatch):
     assert solved(sharing(900.0)).converged.values.tolist() == [True]
     monkeypatch.setattr(statics, "MOST_PASSES", 1)
+    monkeypatch.setattr(statics, "_searched", lambda *args: None)
     ds = solve_carriage(sharing(900.0), lives=False)
+    assert ds.radial_force.isnull().all() and ds.axial_force.isnull().all()
     assert ds.converged.values.tolist() == [False]
     assert "carriage_unsettled" in [one.kind for one in sentences(ds)]
     assert margin_table(ds).rows[0][0] == "push (not settled)"
@@ -380,3 +383,126 @@ def test_catalogue_lives(lubricated, power):
     factor = 10 * G / 1000
     assert np.allclose(ds.load_factor, factor)
     assert np.allclose(ds.catalogue_life_km, 100 / (0.03 + 0.97 * factor) ** power)
+
+
+def test_margins_beyond_one_contact_are_not_stated():
+    """The model of a roller on both contacts ends where an axial force lifts one of them."""
+    ds = solve_carriage(shuttle(cases=[{"name": "run"}]), lives=False)
+    assert float(ds.payload_to_one_contact[0]) < float(ds.payload_to_lift_off[0])
+    kinds = [one.kind for one in sentences(ds)]
+    assert "carriage_contact" in kinds and "carriage_margin" not in kinds
+    assert margin_table(ds).rows[0].count("beyond one contact") == 4
+
+
+def vehicle(rng):
+    """Return a random carriage with linear springs: side guides, with or without load wheels and hold-down rollers."""
+    x, y = rng.uniform(80, 300), rng.uniform(30, 150)
+    layout = rng.choice(["s", "sd", "sdu"])
+    rollers = {}
+    for name, (front, left) in {"FL": (1, 1), "FR": (1, -1), "RL": (-1, 1), "RR": (-1, -1)}.items():
+        made = {
+            "s": {"at": [front * x, left * y, 0], "pushes": [0, -left, 0], "x_R": [0, 0, 1]},
+            "d": {"at": [front * x, left * y, -20], "pushes": [0, 0, -1], "x_R": [0, 1, 0]},
+            "u": {"at": [front * x, left * y, -60], "pushes": [0, 0, 1], "x_R": [0, 1, 0]},
+        }
+        for group in layout:
+            locating = layout == "s" or rng.random() < 0.5
+            stiffness = {"radial": 10 ** rng.uniform(4, 5.5), "axial": 10 ** rng.uniform(3.5, 5.5)}
+            kind = "locating" if locating else "floating"
+            rollers[group + name] = made[group] | {"kind": kind, "stiffness": stiffness}
+    preload = [{"pair": [f"s{end}L", f"s{end}R"], "force": float(rng.uniform(0, 600))} for end in "FR"]
+    force = {
+        "force": rng.uniform([-200, -600, -400], [200, 600, 200]).tolist(),
+        "at": rng.uniform([-x, -y, -50], [x, y, 150]).tolist(),
+    }
+    values = cart(rollers=rollers, cases=[{"name": "push", "forces": [force]}])
+    values["mass"]["at"] = rng.uniform([-x, -y, -50], [x, y, 100]).tolist()
+    return values | ({"preload": preload} if rng.random() < 0.5 else {})
+
+
+def carrying_sets(springs, wrench):
+    """Return the forces of each set of carrying rollers that its least complementary energy confirms."""
+    n, size = len(springs.radial), max(np.abs(wrench).max(), springs.force(springs.offset)[0].max())
+    locating = np.flatnonzero(springs.locating)
+    confirmed = []
+    for number in range(2 ** len(locating)):
+        own = [place for k, place in enumerate(locating) if number >> k & 1]
+        compliance = np.concatenate([springs.radial_compliance, springs.axial_compliance[own]])
+        unloaded = np.concatenate([springs.offset / springs.radial_compliance, np.zeros(len(own))])
+        columns = np.vstack([springs.radial, springs.axial[own]]).T
+        root = np.sqrt(compliance / compliance.mean())
+        rows, right = np.vstack([np.diag(root), 1e5 * columns]), np.concatenate([root * unloaded, 1e5 * wrench])
+        least = np.concatenate([np.zeros(n), np.full(len(own), -np.inf)])
+        forces = lsq_linear(rows, right, (least, np.inf), tol=1e-14, method="bvls", max_iter=500).x
+        balanced = np.abs(columns @ forces - wrench).max() <= 1e-6 * size
+        if balanced and (springs.locating & (forces[:n] > 1e-7 * size)).nonzero()[0].tolist() == own:
+            confirmed.append(forces[:n])
+    return confirmed
+
+
+def reduced(whole, springs):
+    wrench = loads_of(whole, whole.cases[0]).all
+    return np.concatenate([wrench[1:3], wrench[3:] / springs.length])
+
+
+def test_random_vehicles_have_the_forces_of_a_set_that_the_least_energy_confirms():
+    """Every carrying set is tried by another method: its complementary energy, with the forces as unknowns."""
+    rng = np.random.default_rng(3)
+    settled = refused = open_ = searched = 0
+    for _ in range(300):
+        whole = load_carriage(vehicle(rng))
+        springs = springs_of(whole)
+        wrench = reduced(whole, springs)
+        try:
+            found = equilibrium(springs, wrench)
+        except statics.Moves:
+            refused += 1
+            assert not carrying_sets(springs, wrench)
+            continue
+        if not found.converged:
+            open_ += 1
+            assert not carrying_sets(springs, wrench)
+            continue
+        settled += 1
+        size = max(np.abs(wrench).max(), found.radial.max())
+        assert np.abs(springs.radial.T @ found.radial + springs.axial.T @ found.axial - wrench).max() < 1e-9 * size
+        assert (found.radial >= 0).all() and not found.axial[~(springs.locating & found.loaded)].any()
+        try:
+            quick = equilibrium(springs, wrench, thorough=False).converged
+        except statics.Moves:
+            quick = False
+        if not quick:
+            searched += 1
+            sets = carrying_sets(springs, wrench)
+            assert min(np.abs(forces - found.radial).max() for forces in sets) < 1e-4 * size
+    assert settled > 150 and refused > 20 and open_ > 0 and searched > 0
+
+
+def test_a_vehicle_without_a_consistent_set_has_no_forces_and_no_lives():
+    """No set of carrying rollers is consistent here: each locating wheel lifts if it carries, and not otherwise."""
+    guides = rollers_between(stiffness=1e5, kind="floating")
+    wheels = rollers_below(stiffness=1e5)
+    for name, (x, y) in SIDES.items():
+        place = [x, math.copysign(100, y), 0]
+        guides[name]["at"] = place
+        wheels[name] |= {"at": [*place[:2], -20], "kind": "locating" if y > 0 else "floating"}
+    rollers = {"g" + name: one for name, one in guides.items()} | {"v" + name: one for name, one in wheels.items()}
+    for name in SIDES:
+        up = {"at": [*wheels[name]["at"][:2], -60], "pushes": [0, 0, 1], "kind": "floating"}
+        rollers["u" + name] = wheels[name] | up
+    force = {"force": [0, -585, -293], "at": [-48, 0, 112]}
+    cases = [{"name": "side", "speed": 1, "forces": [force]}]
+    values = {"name": "cart", "mass": {"value": 40, "at": [76, 29, -35]}, "rollers": rollers, "cases": cases}
+    ds = solve_carriage(values)
+    assert not ds.converged.any() and ds.radial_force.isnull().all() and ds.life_km.isnull().all()
+    assert ds.attrs["worst_roller"] == ""
+    texts = " ".join(one.text for one in sentences(ds))
+    assert "not known" in texts and "More preload helps" in texts
+    whole = load_carriage(values)
+    assert not carrying_sets(springs_of(whole), reduced(whole, springs_of(whole)))
+    preload = [{"pair": [f"g{end}L", f"g{end}R"], "force": 600} for end in "FR"]
+    for one in guides:
+        rollers["g" + one]["kind"] = "locating"
+    assert solved(values | {"preload": preload}).converged.all()  # what the message advises
+    with pytest.raises(InputError, match="fulfil all conditions"):
+        study_of(whole, forces_of(whole), "loads.csv")

@@ -43,4 +43,12 @@ def test_the_tutorial_on_limits_states_what_its_study_finds():
     _, worst = tr.load_database().on(STEEL, STEEL).records["wear_coefficient"].range
     equal = worst * float(low.sel(material_pair=STEEL, **close) / high.sel(material_pair=POM, **close))
     assert "4.28·10⁻⁶" in told and equal == pytest.approx(4.28e-6, rel=2e-3)
-    assert results.verdict.kind == "measure" and results.verdict.turns[0].value == pytest.approx(equal)
+    measure = results.answer.headline["measure"]
+    assert (results.answer.kind, measure["what"], measure["of"]) == ("measure", "wear_coefficient", STEEL)
+    # the turn: where steel lasts as long as POM in its middle, each life in the middle of its two closed forms
+    both = (ds[f"pair_life_to_first_limit_hours{end}"] for end in ("_low", "_high"))
+    middle = np.exp(sum(map(np.log, both)) / 2).min(conditions)
+    steel, pom = (middle.sel(material_pair=name, **close) for name in (STEEL, POM))
+    target = float(np.sqrt(pom.min() * pom.max()))
+    assert measure["turn"] == pytest.approx(worst * float(steel.min()) / target, rel=0.02)
+    assert "1.6·10⁻⁵" in told

@@ -9,12 +9,6 @@ import trackroller as tr
 from trackroller.report.figures.maps import life_map
 from trackroller.report.numbers import percent
 from trackroller.report.pages.sheet import collect
-from trackroller.report.pages.study import contents
-from trackroller.report.words.findings import sentence_of
-from trackroller.report.words.optimum import optimum_sentences
-from trackroller.report.words.verdict import verdict_sentences
-from trackroller.results.findings import ends, most_frequent, why
-from trackroller.results.judging import optimum_of
 
 FIRST = "pair_life_to_first_limit_hours"
 FAST = {"contact_model": "sliding", "accuracy": "preview"}
@@ -34,80 +28,12 @@ def test_a_drive_at_the_limit_of_friction_skids_in_both_directions(drive):
     assert int(tr.solve(case | {"motor_force": 1.999 * drive}, **FAST)["regime"]) == 0
 
 
-def test_a_bell_shaped_factor_is_a_condition():
-    """Tolerances of one drawing: the study asks whether the drawing lasts, not which of its samples is best."""
-    factors = {"roller_profile_radius": {"normal": [-6.5, 0.04]}, "axis_distance": {"normal": [22, 0.05]}}
-    keys = {"base": BASE | {"radial_force": -100}, "factors": factors, "design": "lhs", "samples": 40}
-    results = run(**keys, analysis={"target": {"min": 10}})
-    assert set(results.roles.values()) == {"condition"}
-    lives = np.sort(results.column(FIRST))
-    said = " ".join(one.text for one in verdict_sentences(results))
-    assert said.startswith("The pair lasts") and "in nine of ten conditions" in said
-    told = float(re.search(r"lasts ([\d,]+) h", said)[1].replace(",", ""))
-    assert lives[2] <= told <= lives[6]  # nine of ten of 40
-
-
-def test_a_limit_is_counted_among_the_valid_cases():
-    """Rows that break lie outside the model: they are neither among the hits nor among the cases."""
-    base = BASE | {"roller_material": "C45", "guide_material": "100Cr6", "motor_force": -8}
-    factors = {"radial_force": {"values": [-200, -900, -2500]}, "friction_coefficient": {"values": [0.1, 0.25, 0.4]}}
-    results = run(base=base, factors=factors)
-    state = results.data["limit_state"]
-    words = state.attrs["flag_meanings"].split()
-    over = (state.sel(limit="shakedown") == words.index("exceeded")).any("body").transpose(*results.dims).values.ravel()
-    assert 0 < (over & results.valid).sum() and results.valid.sum() < len(over)
-    told = next(one for one in ends(results) if one.values["what"] == "shakedown")
-    assert (told.values["count"], told.values["of"]) == ((over & results.valid).sum(), results.valid.sum())
-    assert f"of {results.valid.sum()} valid cases" in sentence_of(results, told).text
-
-
-def test_of_levels_with_the_same_share_none_has_most():
-    """Events in half of the cases of two levels and in none of a third."""
-    factors = {"contact_angle": {"values": [30, 35, 40]}, "radial_force": {"linspace": [-200, -100, 30]}}
-    results = run(base=BASE, factors=factors)
-    angle, force = (results.table[name].to_numpy() for name in factors)
-    hit = (angle < 38) & (force < -150)
-    every = np.ones(len(angle), dtype=bool)
-    assert most_frequent(results, hit & (angle < 33), every)[:2] == ("contact_angle", (30.0, 15, 30))
-    assert most_frequent(results, hit, every) is None
-
-
 @pytest.mark.parametrize(
     ("value", "low", "high", "text"),
     [(1, 0.982, 1, "100 % (98 to 100 %)"), (0, 0, 0.028, "0 % (0 to 3 %)"), (0.5, 0.4, 0.6, "50 ± 10 %")],
 )
 def test_an_interval_on_one_side_is_written_with_both_ends(value, low, high, text):
     assert percent(value, low, high) == text
-
-
-def test_an_effect_of_pairs_that_differ_is_told_with_its_ends():
-    """The smallest and the largest ratio of all pairs, from the raw rows."""
-    factors = {"friction_coefficient": {"values": [0.05, 0.4]}, "contact_angle": {"values": [25, 60]}}
-    results = run(base=BASE, factors=factors | {"radial_force": {"values": [-80, -120, -160]}})
-    lives = results.data[FIRST].transpose("friction_coefficient", ...).values
-    ratios = (lives[0] / lives[1]).ravel()
-    told = {
-        one.values["effect"].factor: sentence_of(results, one).text for one in why(results) if "effect" in one.values
-    }
-    low, high = re.search(r"in all pairs, ([\d.]+)-fold to ([\d.]+)-fold", told["friction_coefficient"]).groups()
-    assert ratios.max() > 2 * ratios.min()
-    assert (float(low), float(high)) == (pytest.approx(ratios.min(), rel=0.01), pytest.approx(ratios.max(), rel=0.03))
-
-
-def test_a_page_says_at_how_many_failures_its_lives_stand():
-    results = run(base=BASE, factors={"radial_force": {"values": [-100, -200]}}, failure_probability=0.1)
-    assert contents(results)["facts"].endswith("lives at 10 % failures")
-
-
-def test_a_condition_that_every_design_misses_is_told_of_the_nearest():
-    factors = {"contact_angle": {"values": [30, 45]}, "motor_force": {"values": [0, -40]}}
-    base = BASE | {"radial_force": -100, "friction_coefficient": 0.2}
-    del base["motor_force"]
-    results = run(base=base, factors=factors, analysis={"target": {"min": 1}})
-    regime = results.data["regime"].transpose("motor_force", "contact_angle").values
-    assert (regime[results.data["motor_force"].values.tolist().index(-40)] == 1).all()
-    said = " ".join(one.text for one in verdict_sentences(results))
-    assert "where it skids, as no design is enough there" in said
 
 
 @pytest.fixture(scope="module")
@@ -126,17 +52,6 @@ def test_a_constraint_on_a_life_in_a_range_counts_its_low_end(search):
     low = search.quantity(f"{FIRST}_low")[0]
     assert np.array_equal(search.valid & (low > 200), search.valid) and (low <= 200).any()
     assert (search.column(FIRST)[~search.valid & search.inside] > 200).any()  # longer at the values of the placeholders
-
-
-@pytest.mark.slow
-def test_a_recommended_design_lasts_from_its_smallest_low_to_its_smallest_high_end(search):
-    many, best = search.design.meta["inner_samples"], optimum_of(search)["recommended"]
-    own = slice(best * many, (best + 1) * many)
-    wanted = [search.quantity(f"{FIRST}{end}")[0][own].min() for end in ("_low", "_high")]
-    said = " ".join(one.text for one in optimum_sentences(search))
-    told = re.search(r"lasts ([\d,]+) to ([\d,]+) h", said).groups()
-    assert [float(text.replace(",", "")) for text in told] == pytest.approx(wanted, rel=0.006)
-    assert "Not checked: bearing and heat." in said
 
 
 @pytest.mark.slow
@@ -168,20 +83,6 @@ def test_a_map_of_lives_is_left_out_where_every_body_breaks(tmp_path):
     assert (results.column(FIRST)[results.rolling] == 0).all() and results.rolling.any()
     assert life_map(results) is None
     assert results.report(tmp_path / "report.html").is_file()
-
-
-def test_levels_with_few_cases_do_not_hide_the_one_with_most():
-    """Nine valid cases of 27 at the first level, eight of them hits: no other level is told to have most."""
-    factors = {"contact_angle": {"values": [30, 35, 40]}, "radial_force": {"linspace": [-200, -100, 27]}}
-    results = run(base=BASE, factors=factors)
-    angle = results.table["contact_angle"].to_numpy()
-    number = np.concatenate([np.arange(27)[: (angle == level).sum()] for level in (30, 35, 40)])
-    place = np.empty(len(angle), dtype=int)
-    for level, own in zip((30, 35, 40), number.reshape(3, 27), strict=True):
-        place[angle == level] = own
-    among = (angle > 33) | (place < 9)
-    hit = among & np.where(angle < 33, place < 8, np.where(angle < 38, place < 17, place < 3))
-    assert most_frequent(results, hit, among) is None
 
 
 @pytest.mark.slow

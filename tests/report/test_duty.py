@@ -57,8 +57,7 @@ def test_solve_and_plan_take_the_duty(tmp_path):
     (tmp_path / "case.yaml").write_text("duty: {hours_per_day: 8, days_per_year: 220}\ncontact_model: sliding\n")
     told = trackroller("solve", "case.yaml", "--set", "accuracy=preview", cwd=tmp_path).stdout
     life = next(line for line in told.splitlines() if "roller, median life" in line)
-    hours = float(life.split("known):")[-1].split(" h (")[0].replace(",", "").split()[-1])
-    assert float(life.split(" h (")[1].split(" years")[0]) == pytest.approx(hours / 1760, rel=0.02)
+    assert " h" in life and "year" not in life  # it lasts less than one
     study = tr.load_study({"name": "d", "duty": DUTY, "outputs": ["forces", "life"]})
     assert tr.load_study(study.as_dict()).config.duty == {"hours_per_day": 8.0, "days_per_year": 220.0}
 
@@ -145,9 +144,9 @@ def test_a_study_has_years_in_tables_axes_explorer_and_cells(tmp_path, monkeypat
     assert (years_.label, years_.unit) == (columns["roller_life_hours"].label, "years")
     assert years_.values.tolist() == pytest.approx((columns["roller_life_hours"].values / 1760).tolist())
     page = solved.report("d.html").read_text(encoding="utf-8")
-    assert "[h; 1760 h = 1 year]" in page and " years)" in page
+    assert "1,760 h are 1 year" in page
     plain = tr.run("e.yaml", progress=False)
-    assert "1 year]" not in plain.report("e.html").read_text(encoding="utf-8")
+    assert "are 1 year" not in plain.report("e.html").read_text(encoding="utf-8")
     assert not any("years" in name for name in (*plain.to_table(), *(c.name for c in collect(plain))))
 
 

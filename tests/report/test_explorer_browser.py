@@ -16,7 +16,6 @@ from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 
 from trackroller.report.explorer.page import write_explorer
 from trackroller.report.numbers import BEYOND
-from trackroller.report.pages.study import write_report
 from trackroller.results.pareto import pareto, study_pareto
 from trackroller.results.sensitivity import analyse
 from trackroller.study.file.load import parse_study
@@ -797,27 +796,6 @@ def test_a_larger_study_shows_a_stated_sample_with_its_own_pareto_set(browser, p
 
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 400 300"><rect width="400" height="300"/></svg>'
-
-
-def test_a_closed_figure_returns_to_its_place_and_keeps_the_focus(browser, place, grid):
-    folder = place / "figures"
-    folder.mkdir()
-    names = ("life_map", "regime_map", "pareto-front")
-    for name in names:
-        (folder / f"{name}.svg").write_text(SVG)
-    (folder / "index.json").write_text(json.dumps([{"name": n, "caption": n, "sentence": ""} for n in names]))
-    page = browser.open(write_report(results_of(grid), folder, place / "report.html"))
-    for close in ("document.querySelector('figure:target .close').click()", "escape"):
-        page.box("#regime_map a")
-        page.run("document.querySelector('#regime_map a').click()")
-        page.until("document.querySelector('figure:target')?.id === 'regime_map'")
-        page.key("Escape") if close == "escape" else page.run(close)
-        page.until("document.querySelector('figure:target') === null")
-        assert page.run("document.activeElement.id") == "regime_map-small"
-        top, height = page.run("(b => [b.top, innerHeight])(document.activeElement.getBoundingClientRect())")
-        assert -1 <= top < height
-    assert page.complaints == []
-    page.close()
 
 
 @pytest.mark.skipif(not AXE.is_file(), reason="needs axe-core: run `npm ci` in web/")

@@ -5,10 +5,8 @@ from __future__ import annotations
 import pytest
 from golden_pages import FOLDER, PAGES, difference, made, same, visible
 
-SLOW = ("indices", "search", "grown")  # these take seconds
 
-
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] * (n in SLOW)) for n in PAGES])
+@pytest.mark.parametrize("name", PAGES)
 def test_a_page_says_what_its_golden_text_says(name):
     golden = (FOLDER / f"{name}.txt").read_text(encoding="utf-8").splitlines()
     changed = difference(name, golden, made(name))

@@ -17,27 +17,20 @@ from synthetic_results import PAIRS, grid_study, results_of, sampled_study
 import trackroller as tr
 from trackroller.errors import InputError
 from trackroller.materials import builtin_database
-from trackroller.report.figures import designs, style
+from trackroller.report.figures import style
 from trackroller.report.figures.contact import plot_case
 from trackroller.report.figures.contact_outline import case_name
 from trackroller.report.figures.contact_sections import sections, surface_stress
-from trackroller.report.figures.factors import by_factor
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import regime_map
 from trackroller.report.figures.panels import CLASSES, capped
 from trackroller.report.figures.study import OF_CASES, draw_all
 from trackroller.report.numbers import level_text, number, rounded
-from trackroller.report.words.designs import ends_words
-from trackroller.report.words.levels import held_words
 from trackroller.results.columns import at_surface
-from trackroller.results.effects import paired_effect
 from trackroller.results.groups import spaced_by_ratio
-from trackroller.results.ranking import ranked_factors
 from trackroller.results.sensitivity import analyse
 
 ALL = {
-    "designs",
-    "bands-roller_life_hours",
     "stress_against_fit",
     "life_map",
     "forces_against_axial_force",
@@ -146,14 +139,14 @@ def test_the_same_study_gives_the_same_svg(grid, tmp_path):
 
 @pytest.mark.slow
 def test_a_sample_along_case_gets_every_figure(tmp_path, unsaved):
-    assert drawn(sampled_study(200), tmp_path) == ALL - {"designs"}
+    assert drawn(sampled_study(200), tmp_path) == ALL
 
 
 @pytest.mark.slow
 def test_unlimited_lives_are_drawn_above_the_finite_ones(tmp_path, unsaved):
     values, top = capped(np.array([10.0, np.inf, np.nan, 0.0]))
     assert top == 100.0 and values[1] == 100.0 and np.isnan(values[2:]).all()
-    assert "bands-roller_life_hours" in drawn(grid_study(SMALL, unlimited=True), tmp_path)
+    assert "life_map" in drawn(grid_study(SMALL, unlimited=True), tmp_path)
 
 
 def test_a_loads_only_study_gets_forces_and_regimes_only(tmp_path):
@@ -186,26 +179,6 @@ def test_every_case_failed_still_leaves_an_index(tmp_path):
 
 def test_one_case_alone_draws_nothing_and_raises_nothing(tmp_path):
     assert drawn(sampled_study(1), tmp_path) == set()
-
-
-def test_held_factors_take_the_base_level_else_the_middle():
-    results = results_of(grid_study(SMALL))
-    assert results.grid and set(results.factors) == set(SMALL)
-    assert results.held_level("roller_profile_radius") == -7.0
-    assert results.held_level("axial_force") == 30.0
-    rows, held = results.hold(("friction_coefficient",))
-    said = held_words(held)
-    assert len(rows) == 2 and "roller profile radius −7 mm" in said and "driven −30 N" in said
-
-
-def test_an_effect_is_the_median_of_pairs():
-    results = results_of(grid_study(SMALL))
-    effect = paired_effect(results, "roller_life_hours", "motor_force", results.valid)
-    table = results.table[results.valid].set_index([f for f in SMALL if f != "motor_force"])
-    driven, free = (table[table["motor_force"] == level]["roller_life_hours"] for level in (-30.0, 0.0))
-    ratios = (driven / free).dropna()
-    assert {effect.low, effect.high} == {-30.0, 0.0} and effect.size == len(ratios) > 5
-    assert max(effect.ratio, 1 / effect.ratio) == pytest.approx(float(np.maximum(ratios, 1 / ratios).median()))
 
 
 def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():
@@ -250,34 +223,6 @@ def test_a_material_has_the_same_colour_in_every_list():
     assert pairs[:2] == [alone[polyamide], alone[steel]] and pairs[2] not in alone.values()
     guides = style.colours([f"{steel} on {polyamide}", f"{steel} on itself"], True)
     assert guides == [alone[polyamide], alone[steel]]
-
-
-def test_the_picture_of_candidates_has_the_numbers_of_the_verdict():
-    """Low and high end, median and best condition of each candidate, its target, and what ends it."""
-    factors = {
-        "friction_coefficient": {"values": [0.1, 0.25]},
-        "roller_material": {"values": ["1.7225-normalised", "1.7225-quenched-tempered"]},
-        "roller_profile_radius": {"values": [-6.3, -7.0]},
-    }
-    base = {"motor_force": 0, "radial_force": -80, "permissible_wear_depth": 0.1, "guide_overrollings_per_hour": 600}
-    told = {"name": "s", "base": base, "factors": factors, "analysis": {"target": {"min": 20}}}
-    solved = tr.run(told | {"contact_model": "sliding"}, progress=False)
-    with style.look():
-        figure, info = designs.candidates_side_by_side(solved)
-    axes, found = figure.axes[0], solved.verdict
-    shown = [one for one in found.candidates if one.low > 0]
-    marks = {line.get_label(): line for line in axes.lines}
-    assert marks["what is sure"].get_xdata() == pytest.approx([one.low for one in shown])
-    assert marks["median"].get_xdata() == pytest.approx([one.median for one in shown])
-    assert marks["target 20 h"].get_xdata()[0] == 20
-    spans = [np.array(lines.get_segments())[:, :, 0].ravel() for lines in axes.collections]
-    assert spans[0] == pytest.approx([end for one in shown for end in (one.low, one.best)])
-    assert spans[1] == pytest.approx([end for one in shown for end in (one.low, one.high)])
-    bodies = [dict.fromkeys([one.body, one.body_high] if one.high > one.low else [one.body]) for one in shown]
-    told = [f"{ends_words(one)}, {' or '.join(own)}" for one, own in zip(shown, bodies, strict=True)]
-    assert [text.get_text() for text in axes.texts] == told
-    assert ends_words(shown[1]) == "wear or fatigue" and shown[1].ends_high == "fatigue"
-    assert len(shown) == 4 and all(one.high > one.low for one in shown) and "ends it" in info.caption
 
 
 @pytest.mark.parametrize(
@@ -375,25 +320,6 @@ def test_a_case_that_lifts_off_is_solved_and_drawn(tmp_path, motor_force, unsave
     ds = solve_sliding(tr.Case(axial_force=150.0, motor_force=motor_force), outputs=OUTPUTS)
     assert int(ds["regime"]) == 2
     assert "contact_1_stress" not in {i.name for i in plot_case(ds, tmp_path)}
-
-
-def test_figures_rank_factors_by_the_indices_of_the_tables_else_by_the_study_file():
-    """The largest index leads, whatever the rows say; without an analysis the order of the study file counts."""
-    ds = grid_study({"material_pair": list(PAIRS[:3]), "friction_coefficient": [0.2, 0.3], "axial_force": [0.0, 30.0]})
-    sens = analyse(results_of(ds))
-    names = ("material_pair", "friction_coefficient", "axial_force")
-    sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.1, 0.2, 0.7]
-    assert list(ranked_factors(sens, "roller_life_hours", names)) == ["axial_force", "friction_coefficient", names[0]]
-    sens["main_share"].loc[{"output": "peak_stress_roller"}] = [0.2, 0.5, 0.3]
-    assert next(iter(ranked_factors(sens, "peak_stress_roller", names))) == "friction_coefficient"
-    assert (
-        list(ranked_factors(sens, "no_such_output", names)) == list(names) == list(ranked_factors(None, "slip", names))
-    )
-    assert next(iter(ranked_factors(sens, "roller_life_hours", names[:2]))) == "friction_coefficient"
-    sens["main_share"].loc[{"output": "roller_life_hours"}] = [0.05, 0.25, 0.7]
-    with style.look():
-        plain, coloured = (by_factor(results_of(ds, s))[0].legends[0].get_texts()[0].get_text() for s in (sens, None))
-    assert plain.startswith("axial force") and coloured == level_text("material_pair", PAIRS[0])
 
 
 def test_numbers_are_rounded_once():

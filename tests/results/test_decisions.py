@@ -8,17 +8,14 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-import xarray as xr
 
 from trackroller.errors import WorkError
 from trackroller.report.explorer.pack import RARE, _numbers, sample_rows
 from trackroller.report.numbers import level_text
-from trackroller.report.words.samples import samples
 from trackroller.results.candidates import FEWEST, Candidates, lift_off_margin
-from trackroller.results.effects import _of_steps
-from trackroller.results.findings import _outwards
 from trackroller.results.groups import classes
 from trackroller.results.targets import _all, hits_of
+from trackroller.roller.requirement import Requirement
 from trackroller.study import cost
 from trackroller.study.file.load import parse_study
 from trackroller.study.outputs import _countable
@@ -39,7 +36,7 @@ def test_a_value_on_an_edge_belongs_to_the_class_above():
 
 def test_a_target_is_met_at_its_limits():
     values = SimpleNamespace(values=np.array([9.9, 10.0, 15.0, 20.0, 20.1, np.nan]))
-    assert hits_of(values, {"min": 10.0, "max": 20.0}, None).tolist() == [0, 1, 1, 1, 0, 0]
+    assert hits_of(values, Requirement(10.0, 20.0), None).tolist() == [0, 1, 1, 1, 0, 0]
 
 
 def test_all_targets_of_a_body_are_met_with_the_least_of_their_probabilities():
@@ -94,19 +91,6 @@ def test_the_rate_of_several_models_is_that_of_their_times_together(monkeypatch)
     assert cost.study_rate(study) == pytest.approx(2 / (1 / 100 + 1 / 1))
 
 
-@pytest.mark.parametrize(("times", "kind"), [(1.0, "enough"), (2.0, "more")])
-def test_samples_are_enough_until_more_are_needed(times, kind):
-    columns = {"take_times": times, "half_width": 0.1, "output_name": "slip", "scale": "linear"}
-    sens = xr.Dataset({name: ("output", [value]) for name, value in columns.items()}, {"output": ["slip"]})
-    sens = sens.assign_attrs(method="sobol", samples=64)
-    assert samples(sens, 64).kind == kind
-
-
-def test_a_pair_without_a_change_neither_rises_nor_falls():
-    effect = _of_steps("axial_force", 0, 10, np.array([0.2, 0.0, 0.0, -0.1, 0.3]))
-    assert (effect.rising, effect.falling, effect.size) == (2, 1, 5)
-
-
 @pytest.mark.parametrize(("sizes", "comparable"), [((FEWEST, 90), True), ((FEWEST - 1, 90), False)])
 def test_each_design_needs_a_sample_of_its_conditions(sizes, comparable):
     candidates = SimpleNamespace(conditions=("axial_force",), matched=False, size=np.array(sizes), weighted=True)
@@ -116,11 +100,6 @@ def test_each_design_needs_a_sample_of_its_conditions(sizes, comparable):
 def test_the_margin_to_lift_off_is_the_light_contact_over_the_heavy_one():
     loads = {"normal_force_1": np.array([30.0, 80.0]), "normal_force_2": np.array([120.0, 20.0])}
     assert lift_off_margin(SimpleNamespace(column=loads.get, regime=np.zeros(2, dtype=int))).tolist() == [0.25, 0.25]
-
-
-@pytest.mark.parametrize(("value", "low", "high"), [(123.45, 123, 124), (-0.067891, -0.0679, -0.0678), (0.0, 0, 0)])
-def test_a_bound_is_rounded_away_from_the_values_inside_it(value, low, high):
-    assert (_outwards(value, -1), _outwards(value, 1)) == (low, high)
 
 
 def test_a_study_with_unsolved_cases_is_not_gathered(tmp_path):

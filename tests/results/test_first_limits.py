@@ -7,9 +7,6 @@ import pytest
 import trackroller as tr
 from trackroller.damage import LIMITS
 from trackroller.report.explorer.rows import collect
-from trackroller.report.numbers import quantity
-from trackroller.report.pages.study import contents
-from trackroller.report.words.designs import ended_by
 from trackroller.results.first_limits import deciding, first_limit, reached_by_body
 from trackroller.study.file.load import parse_study
 
@@ -80,29 +77,6 @@ def test_designs_are_ranked_by_the_first_limit(solved, rows):
     assert worst["low"].idxmax() == own and best["worst"] == worst["first"].loc[own]
 
 
-def test_where_one_limit_ends_all_cases_the_hours_of_the_others_are_told():
-    """The least of the low ends of the wear lives of both bodies; nothing where wear may come first."""
-    told = {}
-    for depth in (0.3, 100.0):
-        base = STUDY["base"] | {"permissible_wear_depth": depth, "radial_force": -90, "wear_coefficient_factor": 0.01}
-        pair = {"material_pair": {"values": [["1.7225-normalised"] * 2]}}
-        results = tr.run(parse_study(STUDY | {"base": base, "factors": STUDY["factors"] | pair}), progress=False)
-        low = results.data["life_hours_by_limit_low"]
-        fatigue = results.data["life_hours_by_limit"].sel(limit="fatigue").min("body")
-        wear = low.sel(limit="wear").min("body")
-        surely = bool((fatigue.values[results.regime.reshape(fatigue.shape) == 0] < wear.values.min()).all())
-        found = [one for one in contents(results)["said"]["why"] if one.kind == "first_limits"]
-        told[surely] = [one.text for one in found]
-        if surely:
-            (text,) = told[surely]
-            assert found[0].values["valid"] == results.valid.sum()
-            assert text.startswith(
-                f"Rolling-contact fatigue comes first in all {results.valid.sum()} valid cases; wear"
-            )
-            assert text.endswith(f"before {quantity(float(wear.min()), 'h')}.")
-    assert True in told and not any("comes first in all" in text for text in told.get(False, []))
-
-
 def test_the_factors_that_decide_the_limit_carry_its_information(solved):
     """A factor that changes no first limit is left out; the strongest one splits the limits best."""
     results = solved
@@ -111,17 +85,6 @@ def test_the_factors_that_decide_the_limit_carry_its_information(solved):
     assert set(deciding(results, made.astype(object))) == {"friction_coefficient", "roller_profile_radius"}
     alone = np.where(table["material_pair"].str.startswith("EN"), "rating", "heat").astype(object)
     assert deciding(results, alone) == ["material_pair"]
-
-
-def test_the_page_says_which_limit_rules_and_its_table_counts_every_valid_case(solved):
-    page = contents(solved)
-    said = " ".join(sentence.text for sentence in dict(page["summary"])["Verdict"])
-    best = solved.verdict.best[0]
-    assert best.ends == first_limit(solved)[best.case] and ended_by(best.ends) in said
-    table = next(t for t in page["tables"]["decide"] if t.name == "first_limits")
-    cells = [part for row in table.rows for cell in row[1:] for part in cell.split(", ") if part != "–"]
-    assert sum(int(part.rsplit(" ", 1)[1]) for part in cells) == solved.valid.sum()
-    assert any(one.text.startswith("The first limit of the pair is ") for one in page["said"]["why"])
 
 
 def test_results_of_limits_serve_as_goals_constraints_targets_and_outputs(solved):

@@ -1,4 +1,4 @@
-"""Fitted effects of samples: against closed forms and pairs solved anew; left out where a fit predicts little."""
+"""Curves of effects in samples: against closed forms; none where a fit predicts little."""
 
 import numpy as np
 import pytest
@@ -6,136 +6,82 @@ import xarray as xr
 import yaml
 from synthetic_results import results_of
 
-import trackroller as tr
-from trackroller.results.effects import fitted_effects
-from trackroller.results.findings import effect_of, strongest_effects, why
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.effect_curves import Effects
 
-STUDY = {
-    "name": "fits", "design": "lhs", "samples": 100, "contact_model": "sliding", "accuracy": "preview",
-    "outputs": ["forces", "peak_stress", "life"],
-    "base": {"axial_force": 5, "guide_curve_radius": "inf", "friction_coefficient": 0.2},
-    "factors": {
-        "radial_force": {"uniform": [-260, -80]}, "axis_distance": {"uniform": [16, 30]},
-        "roller_profile_radius": {"uniform": [-7.4, -6.4]},
-        "roller_material": {"values": ["1.7225-normalised", "1.7225-quenched-tempered"]},
-    },
-}  # fmt: skip
 LIFE = "roller_life_hours"
 
 
-def sample(life, **columns):
-    n = len(life)
+def effects(life, **columns):
+    """Return the effects of columns on a life, all of whose cases count."""
     ds = xr.Dataset({LIFE: ("case", life)}, {name: ("case", own) for name, own in columns.items()})
     ds.attrs["study"] = yaml.safe_dump({"design": "table", "name": "t", "factors": {name: {} for name in columns}})
-    return results_of(ds.assign_coords(case=np.arange(n)))
+    results = results_of(ds.assign_coords(case=np.arange(len(life))))
+    return Effects.of(CaseRanges(results, (LIFE, "life of the roller", "h"), True))
+
+
+def curves(life, **columns):
+    return {curve.factor: curve for curve in effects(life, **columns).curves()}
 
 
 def test_a_power_law_is_found_again():
-    """Life x^-3 times 5 for the hard material: the ratio between the values at a tenth from both ends, and 5."""
+    """Life x^-3 times 5 for the hard material: the ratio between the ends of the curve, and 5."""
     rng = np.random.default_rng(3)
     x, hard = rng.uniform(20, 90, 200), rng.random(200) < 0.4
     life = 1e9 * x**-3.0 * np.where(hard, 5.0, 1.0)
-    results = sample(life, axial_force=x, roller_material=np.where(hard, "hard", "soft"), velocity=rng.random(200))
-    share, found = fitted_effects(results, LIFE, results.valid)
-    load, material, speed = found
-    low, high = np.sort(x)[[20, 179]]
-    assert share > 0.995 and (load.low, load.high) == (low, high)
-    assert load.ratio == pytest.approx((high / low) ** -3.0, rel=0.03)
-    assert (material.low, material.high) == ("soft", "hard") and material.ratio == pytest.approx(5, rel=0.02)
-    assert speed.ratio == pytest.approx(1, rel=0.02) and effect_of(results, LIFE, "velocity") is None
+    found = curves(life, axial_force=x, roller_material=np.where(hard, "hard", "soft"), velocity=rng.random(200))
+    load = found["axial_force"]
+    expected = (load.levels[-1] / load.levels[0]) ** -3.0
+    assert load.middle[-1] / load.middle[0] == pytest.approx(expected, rel=0.03)
+    assert load.shape == "fall"
+    assert found["roller_material"].height == pytest.approx(5, rel=0.02)
+    assert found["velocity"].shape == "flat"
 
 
-def test_factors_that_go_together_have_no_effect_of_their_own():
-    """Two loads with a correlation of 0.9: the life follows one of them, and the cases do not tell which."""
-    rng = np.random.default_rng(5)
-    x, noise = rng.uniform(1, 2, (2, 300))
-    results = sample(1e5 * x**-4.0, axial_force=x, motor_force=x + 0.4 * noise)
-    assert fitted_effects(results, LIFE, results.valid)[1] == []
-    results = sample(1e5 * x**-4.0, axial_force=x, motor_force=noise)
-    one, other = fitted_effects(results, LIFE, results.valid)[1]
-    assert one.ratio == pytest.approx((one.high / one.low) ** -4.0, rel=0.05) and other.ratio == pytest.approx(
-        1, abs=0.05
-    )
-
-
-def test_noise_carries_no_effect():
+def test_noise_is_not_fitted():
     rng = np.random.default_rng(1)
     x = rng.uniform(0, 50, 300)
-    results = sample(10 ** (3 - x / 50 + rng.normal(0, 0.3, 300)), axial_force=x)
-    assert np.isnan(fitted_effects(results, LIFE, results.valid)[0]) and effect_of(results, LIFE, "axial_force") is None
-
-
-def test_a_wide_interval_is_told_and_holds_the_truth():
-    """Thirty noisy cases, forty times: the interval of 95 % holds the law, and is no wider than it has to be."""
-    from trackroller.report.words.findings import sentence_of
-
-    held = []
-    for seed in range(40):
-        rng = np.random.default_rng(seed)
-        x = rng.uniform(0, 1, 30)
-        results = sample(10 ** (3 - x + rng.normal(0, 0.05, 30)), axial_force=x)
-        (effect,) = fitted_effects(results, LIFE, results.valid)[1]
-        held.append(effect.interval[0] < 10 ** (effect.low - effect.high) < effect.interval[1])
-        assert effect.interval[1] < 1.4 * effect.ratio
-    assert sum(held) >= 34
-    said = sentence_of(results, effect_of(results, LIFE, "axial_force"))
-    assert said.values["verb"] == "shortens" and "95 % interval" in said.text
-
-
-@pytest.mark.slow
-def test_pairs_solved_anew_give_the_told_effects():
-    """Each told effect against the median of 40 pairs that differ in this factor only, solved for this test."""
-    results = tr.run(STUDY, progress=False)
-    found = strongest_effects(results, LIFE)
-    assert {one.kind for one in found} == {"fitted"} and len(found) == 3
-    table = results.table[results.valid].iloc[:40]
-    for effect in (one.values["effect"] for one in found):
-        cases = [STUDY["base"] | row[list(STUDY["factors"])].to_dict() for _, row in table.iterrows()]
-        both = [
-            np.array([_life(case | {effect.factor: level}) for case in cases]) for level in (effect.low, effect.high)
-        ]
-        assert effect.ratio == pytest.approx(10 ** np.nanmean(np.log10(both[1] / both[0])), rel=0.1)
-
-
-def _life(case):
-    return float(tr.solve(case, contact_model="sliding", accuracy="preview")[LIFE])
-
-
-def test_a_fit_takes_the_place_of_the_index_of_a_sample():
-    results = tr.run(STUDY | {"samples": 64}, progress=False)
-    kinds = [one.kind for one in why(results)]
-    assert kinds == ["fitted"] * 3
+    assert effects(10 ** (3 - x / 50 + rng.normal(0, 0.3, 300)), axial_force=x).fit is None
 
 
 def test_a_factor_that_is_even_in_its_logarithm_is_fitted_so():
     """Hours go as one over the speed, over 60 times the smallest speed; an even sample from near 0 is no such one."""
     rng = np.random.default_rng(7)
     speed, load = 5 * 60 ** rng.random(256), 20 * rng.random(256)
-    results = sample(1e5 / speed * np.exp(-load / 10), velocity=speed, axial_force=load)
-    found = {one.factor: one for one in fitted_effects(results, LIFE, results.valid)[1]}
+    found = curves(1e5 / speed * np.exp(-load / 10), velocity=speed, axial_force=load)
     fast, heavy = found["velocity"], found["axial_force"]
-    assert fast.ratio == pytest.approx(fast.low / fast.high, rel=0.01)
-    assert heavy.ratio == pytest.approx(np.exp((heavy.low - heavy.high) / 10), rel=0.01)
+    assert fast.height == pytest.approx(fast.levels[-1] / fast.levels[0], rel=0.02)
+    assert heavy.height == pytest.approx(np.exp((heavy.levels[-1] - heavy.levels[0]) / 10), rel=0.02)
 
 
 def test_a_kink_is_followed():
     """A life that falls five-fold beyond a friction of 0.28 and hardly before."""
     rng = np.random.default_rng(8)
     friction, speed = rng.uniform(0.08, 0.35, 512), rng.uniform(1, 2, 512)
-    bend = lambda x: -0.1 * (x - 0.08) / 0.2 - 0.7 * np.maximum(0, x - 0.28) / 0.07  # noqa: E731
-    results = sample(10 ** (3 + bend(friction)) / speed, friction_coefficient=friction, velocity=speed)
-    effect = next(e for e in fitted_effects(results, LIFE, results.valid)[1] if e.factor == "friction_coefficient")
-    assert effect.ratio == pytest.approx(10 ** (bend(effect.high) - bend(effect.low)), rel=0.1)
+
+    def bend(x):
+        return -0.1 * (x - 0.08) / 0.2 - 0.7 * np.maximum(0, x - 0.28) / 0.07
+
+    curve = curves(10 ** (3 + bend(friction)) / speed, friction_coefficient=friction, velocity=speed)[
+        "friction_coefficient"
+    ]
+    low, high = curve.levels[0], curve.levels[-1]
+    assert curve.middle[-1] / curve.middle[0] == pytest.approx(10 ** (bend(high) - bend(low)), rel=0.1)
 
 
-def test_an_output_that_is_asked_for_has_its_largest_effect_told():
-    """Friction power at equal other values is in proportion to the speed, which changes most: 4-fold."""
-    factors = {"velocity": {"values": [20, 80]}, "radial_force": {"values": [-100, -120, -150]}}
-    keys = {"design": "grid", "outputs": ["forces", "friction_work", "peak_stress", "life"], "factors": factors}
-    asked = {"analysis": {"outputs": [LIFE, "friction_power"]}}
-    base = STUDY["base"] | {"axis_distance": 22, "contact_angle": 35, "motor_force": 0}
-    results = tr.run({**STUDY, **keys, **asked, "base": base}, progress=False)
-    power = results.data["friction_power"].sum("contact").transpose("velocity", ...).values
-    last = why(results)[-1].values
-    assert (last["column"], last["effect"].factor) == ("friction_power", "velocity")
-    assert last["effect"].ratio == pytest.approx(np.median(power[1] / power[0])) == pytest.approx(4, rel=0.01)
+def test_a_hump_and_a_cliff_have_their_word():
+    x = np.repeat([0.0, 1.0, 2.0, 3.0, 4.0], 40)
+    other = np.tile(np.arange(40.0), 5)
+    hump = 1e4 * np.exp(-((x - 2.0) ** 2)) * (1 + other)
+    cliff = np.where(x < 2.5, 1e4, 1e2) * (1 - 0.01 * x) * (1 + other)
+    assert curves(hump, axial_force=x, velocity=other)["axial_force"].shape == "hump"
+    assert curves(cliff, axial_force=x, velocity=other)["axial_force"].shape == "cliff"
+
+
+def test_two_groups_have_their_word():
+    """Ten pairs rise six-fold and ten twelve-fold: the median of all is an effect that no pair has."""
+    x = np.tile([0.0, 1.0], 20)
+    pair = np.repeat(np.arange(20.0), 2)
+    step = np.where(pair < 10, 6.0, 12.0) * (1 + 0.01 * pair)
+    life = 100.0 * (1 + pair) * np.where(x > 0, step, 1.0)
+    assert curves(life, axial_force=x, velocity=pair)["axial_force"].shape == "groups"

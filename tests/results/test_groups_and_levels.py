@@ -9,9 +9,6 @@ from synthetic_results import results_of
 
 from trackroller.errors import InputError
 from trackroller.methods.saltelli import pairs_sharing, sobol
-from trackroller.report.words.in_short import in_short
-from trackroller.report.words.indices import part_tables
-from trackroller.results.findings import level_values
 from trackroller.results.sensitivity import analyse, within_levels
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study, without_former
@@ -184,39 +181,11 @@ def solved(data):
     return ds
 
 
-def test_groups_reach_analysis_table_and_summary(tmp_path):
-    analysis = {"groups": {"load": ["axial_force", "radial_force"]}, "outputs": ["roller_life_hours"]}
-    ds = solved(FILE | {"analysis": analysis})
-    assert ds.sizes["case"] == 64 * 8
-    sens = analyse(results_of(ds))
-    sens.to_netcdf(tmp_path / "sensitivity.nc")
-    assert sens["group"].values.tolist() == ["load", "friction_coefficient", "roller_material"]
-    assert "ST" not in sens and np.isfinite(sens["take_times"]).all()
-    table = part_tables(sens)[0]
-    assert [row[1] for row in table.rows] == ["Load", "Friction coefficient", "Roller material"]
-    said = [s for _, own in in_short(results_of(ds, sens), []) for s in own]
-    kinds = [s.kind for s in said]
-    text = said[kinds.index("groups")].text
-    assert text.index("roller material") < text.index("load") and "fitted" in kinds[kinds.index("groups") :]
-
-
 def test_the_key_exchange_of_earlier_versions_is_ignored_aloud():
     with pytest.warns(UserWarning, match="Ignored: exchange, because saltelli"):
         assert without_former(FILE | {"exchange": "groups", "analysis": {"scale": "log10"}}) == FILE | {
             "analysis": {"scale": "log10"}
         }
-
-
-def test_levels_reach_analysis_table_and_summary():
-    analysis = {"conditional_on": "roller_material", "outputs": ["roller_life_hours"]}
-    for design in ("saltelli", "lhs"):
-        ds = solved(FILE | {"design": design, "samples": 256, "analysis": analysis})
-        sens = analyse(results_of(ds))
-        assert sens["conditional_S1"].sel(level="POM", factor="friction_coefficient").item() > 0.7
-        lead = level_values(sens, "roller_life_hours")["lead"]
-        assert lead["POM"].factor == "friction_coefficient"
-        assert lead["PA6"].factor in ("axial_force", "radial_force")
-        assert [row[1] for row in part_tables(sens)[0].rows] == ["PA6", "POM"]
 
 
 def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):

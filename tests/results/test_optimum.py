@@ -1,7 +1,6 @@
 """A search finds the designs that a grid of all designs holds, and goes on where it was stopped."""
 
 import itertools
-import re
 
 import numpy as np
 import pytest
@@ -15,10 +14,7 @@ from trackroller.methods.optimise import (
     next_generation,
     nondominated_ranks,
 )
-from trackroller.report.numbers import quantity, rounded
-from trackroller.report.pages.best import best_of, write_best
-from trackroller.report.words.optimum import optimum_sentences
-from trackroller.results.judging import beyond_data, judge, optimum_of, shortfall
+from trackroller.results.judging import optimum_of, shortfall
 from trackroller.results.optimum import cheaper, search_designs
 from trackroller.results.pareto import pareto_mask
 from trackroller.study.file.load import load_study
@@ -162,106 +158,22 @@ def test_the_table_prunes_and_elements_decide():
     assert cheaper(halfspace) is halfspace
 
 
-@pytest.mark.long
-def test_optima_are_solved_again_at_reference_and_told(tmp_path):
-    solved = tr.open_study(search_designs(changed(), tmp_path).folder.root)
-    found = optimum_of(solved)
-    best = next(one for one in found["optima"] if one["design"] == found["recommended"])
-    np.testing.assert_allclose(judge(solved).values[found["recommended"]], best["values"])
-    assert best["reference"] != best["values"] and np.allclose(best["reference"], best["values"], rtol=0.2)
-    said, table = best_of(solved)
-    assert said[0].startswith(("Recommended: ", "Give a requirement. ")) and "t `reference` the goal" in " ".join(said)
-    assert table.heads[1] == "Recommended" and len(table.heads) <= 6
-    page = write_best(solved, tmp_path / "best.html").read_text()
-    assert "Optima of the search" in page and said[0].split(":")[0] in page
-
-
-@pytest.mark.slow
-def test_a_search_without_a_valid_design_solves_its_budget_only_and_says_why(tmp_path):
-    none = changed(constraints=["max_pressure < 100", "max_pressure > 200"], budget={"designs": 1})
-    solved = tr.open_study(search_designs(none, tmp_path).folder.root)
-    assert solved.data.sizes["case"] == 2 and optimum_of(solved)["optima"] == []  # one design at two conditions
-    said, _ = best_of(solved)
-    assert "budget of 1 design is spent" in said[-1]
-
-
 @pytest.mark.slow
 def test_best_names_the_designs_of_a_grid_too(tmp_path, capsys):
     grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
     best = tr.run(grid, progress=False, results=tmp_path).best(1)
     print_best("grid", tmp_path, tmp_path / "best.html")
-    said = capsys.readouterr().out
-    assert "Candidates" in said and f"contact angle {best['contact_angle'].iloc[0]:g}°" in said
-    assert "Candidates" in (tmp_path / "best.html").read_text()
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("keys", "says"),
-    [
-        ({"base": {"motor_force": 0, "roller_material": "POM", "radial_force": -300}}, "of them lie inside the model"),
-        ({"outputs": ["forces"], "base": {"motor_force": 0}}, "Add life or peak_stress to its outputs"),
-    ],
-)
-def test_best_says_what_is_left_out_and_what_is_missing(tmp_path, capsys, keys, says):
-    grid = {k: v for k, v in STUDY.items() if k not in ("goals", "budget")} | {"design": "grid", "name": "grid"}
-    tr.run(grid | keys, progress=False, results=tmp_path)
-    print_best("grid", tmp_path, None)
-    assert says in " ".join(capsys.readouterr().out.split())
+    assert f"contact angle {best['contact_angle'].iloc[0]:g}°" in capsys.readouterr().out
+    assert (tmp_path / "best.html").is_file()
 
 
 @pytest.mark.long
-def test_a_life_beyond_the_data_is_marked(tmp_path):
-    more = dict(base={**STUDY["base"], "radial_force": -80, "axial_force": 5}, goals={"pair_life_hours": "max"})
-    light = changed(**more, budget={"designs": 4, "population": 4})
-    solved = tr.open_study(search_designs(light, tmp_path).folder.root)
-    marked = beyond_data(solved, "pair_life_hours")
-    worst = solved.column("pair_life_hours").reshape(-1, 2).argmin(axis=1)
-    rows = solved.beyond_data("pair_life_hours").reshape(-1, 2)
-    assert marked.any() and np.array_equal(marked, rows[np.arange(len(rows)), worst])
-    assert "beyond the S-N data" in best_of(solved)[0][0]
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("goal", "way", "says"),
-    [
-        ("pair_life_hours", "max", "Recommended: roller profile radius"),
-        ("roller_profile_radius", "max", "have the same value of the goal"),
-    ],
-)
-def test_a_search_with_one_goal_has_a_report(goal, way, says, tmp_path):
+@pytest.mark.parametrize(("goal", "way"), [("pair_life_hours", "max"), ("roller_profile_radius", "max")])
+def test_a_search_with_one_goal_has_a_report(goal, way, tmp_path):
     solved = tr.run(changed(goals={goal: way}, budget={"designs": 8, "population": 4}), progress=False)
-    text = re.sub(r"\s+", " ", solved.report(tmp_path / "report.html").read_text(encoding="utf-8"))
-    assert says in text and "everything" not in text and "out of reach" not in text
-    assert "Its goal: " in text
+    assert solved.answer.question == "best"
+    assert solved.report(tmp_path / "report.html").stat().st_size > 0
     assert solved.explore(tmp_path / "explorer.html").stat().st_size > 0
-
-
-@pytest.mark.long
-@pytest.mark.parametrize(
-    ("keys", "says"),
-    [
-        ({"constraints": ["max_pressure < 100", "max_pressure > 200"]}, "No design is valid in any condition"),
-        ({"constraints": ["friction_coefficient < 0.15"]}, "No design is valid in all 2 conditions"),
-        ({"goals": {"axial_force": "max"}}, "have the same value of the goal, so the goal does not choose"),
-        (
-            {
-                "goals": {"probability(pair_life_hours)": "max"},
-                "analysis": {"target": {"pair_life_hours": {"min": 1e30}}},
-            },
-            "the goal is out of reach",
-        ),
-    ],
-)
-def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, says):
-    small = {"budget": {"designs": 4, "population": 4}}
-    solved = tr.open_study(search_designs(changed(**keys, **small), tmp_path).folder.root)
-    said, table = best_of(solved)
-    assert says in " ".join(said)
-    invalid = said[0].startswith("No design is valid")
-    assert invalid != any(text.startswith(("Recommended", "Give a requirement", "None. None of")) for text in said)
-    assert (table is None) == ("valid in any" in said[0])
 
 
 @pytest.mark.parametrize(
@@ -273,7 +185,7 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
         ({"goals": {"pair_life_hour": "max"}}, "Did you mean 'pair_life_hours'"),
         ({"goals": {"b10(max_pressure)": "min"}}, "b10 of a life"),
         ({"goals": {"median(pair_life_hours)": "max"}}, "mean, worst, b10 or probability of one. For example mean"),
-        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a target or of a regime"),
+        ({"goals": {"probability(pair_life_hours)": "max"}}, "the probability of a requirement or of a regime"),
         ({"goals": {"pair_life_hours": "up"}}, "Allowed: max, min"),
         ({"goals": {"pair_life_hours": "max", "worst(pair_life_hours)": "min"}}, "each result once"),
         ({"pareto": {"pair_life_hours": "max", "max_pressure": "min"}}, "Rename the key to goals"),
@@ -289,109 +201,6 @@ def test_goals_and_constraints_that_no_design_meets_are_told(tmp_path, keys, say
 def test_a_wrong_search_is_refused(keys, says):
     with pytest.raises(InputError, match=says.replace("(", r"\(")):
         changed(**keys).design()
-
-
-def test_the_target_of_a_study_decides_what_a_search_recommends():
-    """Rows by design: with a target only designs whose worst condition reaches it are recommended, otherwise none."""
-    base = {"motor_force": 0, "axial_force": 5, "guide_overrollings_per_hour": 150, "guide_curve_radius": "inf"}
-    base |= dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
-    keys = {"goals": {"pair_life_to_first_limit_hours": "max", "mean(friction_power)": "min"}, "base": base}
-    keys |= {"outputs": [*STUDY["outputs"], "limits"], "budget": {"designs": 16, "population": 8}}
-    lives, powers, said, chosen = [], [], [], []
-    for least in (None, 2000, 1e12):
-        more = {} if least is None else {"analysis": {"target": {"min": least}}}
-        results = tr.run(changed(**keys, **more), progress=False)
-        many = results.design.meta["inner_samples"]
-        lives.append(results.column("pair_life_to_first_limit_hours").reshape(-1, many).min(axis=1))
-        powers.append(results.data["friction_power"].sum("contact").values.reshape(-1, many).mean(axis=1))
-        chosen.append(lives[-1][optimum_of(results)["recommended"]])
-        said.append(optimum_sentences(results)[0].text)
-    assert lives[0].min() < 2000 < lives[0].max() and chosen[0] < lives[0].max()
-    assert said[0].startswith("Give a requirement.")
-    assert said[1].startswith("Recommended: ") and "target 2000 h" in said[1] and chosen[1] >= 2000
-    assert said[2].startswith(f"None. None of the {len(lives[2])} designs meets the target of ")
-    told = float(re.search(r"worst condition ([\d,]+) h", said[2])[1].replace(",", ""))  # at reference
-    assert told == pytest.approx(lives[2].max(), rel=0.03)  # the nearest one lasts longest
-    best = pareto_mask(np.stack([lives[1], powers[1]], axis=1), ["max", "min"])
-    meet = int(re.search(r"Of (\d+) Pareto-optimal designs that meet the target", said[1])[1])
-    within = [(best & (lives[1] >= end)).sum() for end in (2200, 2000)]  # the error of the solution
-    assert within[0] <= meet <= within[1]
-    assert len(said[1].split()) < 100
-
-
-def test_the_range_of_a_life_stands_beside_a_recommended_design():
-    base = {"motor_force": 0, "axial_force": 1, "guide_overrollings_per_hour": 60, "guide_curve_radius": "inf"}
-    base |= {"permissible_wear_depth": 0.1, "radial_force": -30, "contact_angle": 42, "guide_material": "C45"}
-    base |= {"roller_material": "1.7225-quenched-tempered"}
-    factors = {"roller_profile_radius": {"values": [-6.4, -7, -8]}, "friction_coefficient": {"values": [0.1, 0.2]}}
-    keys = {"goals": {"pair_life_to_first_limit_hours": "max"}, "base": base, "factors": factors}
-    keys |= {"outputs": [*STUDY["outputs"], "wear", "limits"], "budget": {"designs": 3}}
-    results = tr.run(changed(**keys, analysis={"target": {"min": 1}}), progress=False)
-    name = "pair_life_to_first_limit_hours"
-    own = slice(2 * optimum_of(results)["recommended"], 2 * optimum_of(results)["recommended"] + 2)
-    low, high = (results.data[f"{name}{end}"].values.ravel()[own].min() for end in ("_low", "_high"))
-    said = optimum_sentences(results)[0].text
-    assert high > 2 * low and f"{rounded(low)} to {quantity(high, 'h')}" in said and "wear ends it" in said
-    least = float(np.sqrt(low * high))
-    open_ = tr.run(changed(**keys, analysis={"target": {"min": least}}), progress=False)
-    assert "surely meets the target" in optimum_sentences(open_)[0].text
-
-
-def test_no_thirds_of_a_search_are_compared():
-    """A search draws where designs are good, so that the thirds of its rows say nothing of a factor alone."""
-    study = {
-        "name": "thirds",
-        "base": {"motor_force": 0, "axial_force": 5, "contact_angle": 40},
-        "factors": {
-            "axis_distance": {"uniform": [16, 28]},
-            "profile_ratio": {"uniform": [1.05, 1.3]},
-            "roller_profile_radius": {"expression": "-profile_ratio * guide_profile_radius"},
-            "radial_force": {"values": [-80, -160]},
-        },
-        "design": "optimise",
-        "goals": {"pair_life_to_first_limit_hours": "max", "axis_distance": "min"},
-        "budget": {"designs": 48},
-        "contact_model": "sliding",
-    }
-    results = tr.run(study, progress=False)
-    found = results.findings["why"]
-    assert {one.kind for one in found} and not any(one.kind == "fitted" for one in found)
-    said = [one.text for one in optimum_sentences(results)]
-    assert any(text.startswith("Not checked: bearing, heat, wear and guide") for text in said)
-
-
-def test_a_recommended_design_names_the_constraints_that_it_keeps():
-    from trackroller.report.words.sentence import say
-
-    values = {"least": 0.0, "design": "outer radius 14 mm", "goals": ["outer radius 14 mm"], "edges": [], "front": 1}
-    values |= {"short": 0.0, "target": "", "limits": [], "meeting": 1, "designs": 4, "conditions": 1}
-    values |= {"others": 0, "life": ""}
-    kept = say("optimum", "recommended", alike=True, constraints=["pair_life_hours >= 10000"], **values).text
-    assert "Its goal: outer radius 14 mm; it keeps `pair_life_hours >= 10000`." in kept
-    assert "keeps" not in say("optimum", "recommended", alike=True, constraints=[], **values).text
-
-
-def test_the_smallest_design_that_meets_the_target_is_sought():
-    """A size as the goal and a life as the target: of all designs that meet it the smallest one is recommended.
-
-    The life grows with the outer radius, so that a search without the target ends at the smallest size of the range.
-    """
-    base = {"motor_force": 0, "axial_force": 5, "guide_overrollings_per_hour": 150, "guide_curve_radius": "inf"}
-    base |= dict.fromkeys(("roller_material", "guide_material"), "1.7225-quenched-tempered")
-    factors = {"axis_distance": {"uniform": [12, 40]}, "radial_force": {"values": [-200, -320]}}
-    keys = {"goals": {"axis_distance": "min"}, "base": base, "factors": factors}
-    keys |= {"outputs": [*STUDY["outputs"], "limits"], "budget": {"designs": 24, "population": 8}}
-    free = tr.run(changed(**keys), progress=False)
-    least = float(np.median(free.column("pair_life_to_first_limit_hours").reshape(-1, 2).min(axis=1)))
-    results = tr.run(changed(**keys, analysis={"target": {"min": least}}), progress=False)
-    sizes = results.design.columns["axis_distance"][::2].astype(float)
-    lives = results.column("pair_life_to_first_limit_hours").reshape(-1, 2).min(axis=1)
-    chosen = optimum_of(results)["recommended"]
-    assert sizes[optimum_of(free)["recommended"]] < sizes[chosen]
-    surely = lives >= least * 1.5  # well beyond the error of the solution
-    assert lives[chosen] >= least and sizes[chosen] <= sizes[surely].min()
-    said = optimum_sentences(results)[0].text
-    assert said.startswith("Recommended: axis distance ") and f"lasts {quantity(lives[chosen], 'h')}" in said
 
 
 def test_a_target_on_a_force_decides_a_search_without_lives_and_stresses():

@@ -1,13 +1,11 @@
 """Sensitivities: analytic test functions through the whole chain, files included, and no silent bias."""
 
-import json
 import re
 
 import numpy as np
 import pytest
 import xarray as xr
 from synthetic_results import results_of
-from told import of_analysis
 
 from trackroller.errors import InputError
 from trackroller.methods import convergence
@@ -16,7 +14,6 @@ from trackroller.methods.arrays import effects
 from trackroller.methods.given_data import first_order, given_data, prcc
 from trackroller.methods.grid import grid_shares
 from trackroller.methods.saltelli import sobol
-from trackroller.report.words.in_short import in_short
 from trackroller.results.sensitivity import analyse
 from trackroller.study.design.sampling import sample
 from trackroller.study.file.load import parse_study
@@ -425,45 +422,3 @@ def test_outputs_of_a_solved_case_join_contacts_and_bodies():
     for name in ("peak_stres", "peak_stress"):
         with pytest.raises(InputError, match="peak_stress_roller"):
             outputs(ds, ["velocity"], [name])
-
-
-@pytest.mark.slow
-def test_every_figure_is_drawn_with_a_sentence_from_the_data(tmp_path):
-    """Saltelli study with life and friction power: files are there, the sentences name the right factor."""
-    from trackroller.report.figures.study import draw_all
-
-    def fake(design):
-        y = 2 * design["axial_force"].values + 0.3 * design["velocity"].values
-        return {"roller_life_hours": 10 ** (1 - y / 10), "friction_power": 20 + y * 0.5}
-
-    solved({"name": "i", "design": "saltelli", "samples": 128, "factors": CARRIERS}, fake, tmp_path / "study.nc")
-    results = results_of(tmp_path / "study.nc")
-    infos = draw_all(results_of(results, analyse(results)), tmp_path / "figures")
-    drawn = [i.name for i in infos]
-    assert {"tornado-roller_life_hours", "bands-roller_life_hours"} <= set(drawn)
-    told = dict(in_short(results_of(results, analyse(results)), []))["Why"]
-    first = told[0].values["first"]
-    share = 4 / (4 + 0.09)  # of effects 2 and 0.3 over equal ranges, by their squares
-    assert first.factor == "axial_force" and first.low < share < first.high and "± " in told[0].text
-    assert "shortens" in {one.values.get("verb") for one in told if one.kind in ("pairs", "fitted")}
-    assert "interactions-roller_life_hours" not in drawn  # the made-up life has none
-    listed = json.loads((tmp_path / "figures" / "index.json").read_text(encoding="utf-8"))
-    assert [entry["name"] for entry in listed] == drawn
-    for name in drawn:
-        assert (tmp_path / "figures" / f"{name}.svg").stat().st_size > 1000
-
-
-def test_morris_figures_and_words_name_what_matters(tmp_path):
-    """Morris: the straight factor of the larger effect comes first."""
-    from trackroller.report.figures import style
-    from trackroller.report.figures.sensitivity import morris_plane, tornado
-
-    def fake(design):
-        x, m = design["axial_force"].values, design["motor_force"].values
-        return {"friction_power": 5 * x + m * (design["velocity"].values - 4) * 2}
-
-    sens = analyse(results_of(solved({"name": "i", "design": "morris", "samples": 40, "factors": CARRIERS}, fake)))
-    with style.look():
-        assert morris_plane(sens, "friction_power") and tornado(sens, "friction_power")
-    first = of_analysis(sens, "index", "friction_power").values["first"]
-    assert (first.factor, first.value) == ("axial_force", pytest.approx(5 * 2 * PI))

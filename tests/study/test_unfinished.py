@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import dataclasses
 import json
 import warnings
 from pathlib import Path
@@ -12,7 +11,6 @@ import pytest
 from test_edits import command, draw_one
 
 import trackroller as tr
-from trackroller.report.words.in_short import in_short
 from trackroller.roller.solver import solve
 from trackroller.study.file.load import load_study, parse_study
 from trackroller.study.progress import progress_bar
@@ -167,15 +165,6 @@ def test_plan_and_run_say_before_solving_what_a_new_factor_costs(tmp_path, monke
     assert "0 of them solved" in out and said in out and "motor_force became a factor" in out
     run_study(load_study("grown.yaml"), tell=lines.append)
     assert said in lines[0], "before the first chunk"
-
-
-@pytest.mark.slow
-def test_an_unfinished_study_asks_for_no_more_samples_than_its_file(tmp_path):
-    basis = {"name": "part", "design": "saltelli", "samples": 32, "contact_model": "sliding", "accuracy": "preview"}
-    solved = tr.run(basis | {"outputs": ["forces", "life"], "factors": NUMBERS}, progress=False, results=tmp_path)
-    part = dataclasses.replace(solved, data=solved.data.assign_attrs(missing_cases=900))
-    kinds = [[one.kind for one in dict(in_short(results, []))["Why"]] for results in (solved, part)]
-    assert {"enough", "more"} & set(kinds[0]) and not {"enough", "more"} & set(kinds[1])
 
 
 def test_a_bar_counts_the_cases_beyond_the_budget_of_a_search_into_its_total():

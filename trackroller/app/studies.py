@@ -22,10 +22,10 @@ from trackroller.app.worker import LOCK, PAUSE, PROGRESS, is_held
 from trackroller.environment import python
 from trackroller.errors import InputError, WorkError
 from trackroller.files import files_beside, find_beside, open_here, read_text, refuse_links, sha256
+from trackroller.report.headlines import headline_of, shown_answer, warning_line
 from trackroller.report.html import write_page
 from trackroller.report.numbers import rounded, unit_text
 from trackroller.report.tables.inputs import factor_table
-from trackroller.report.words.in_short import in_short
 from trackroller.report.workbook import write_results
 from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported
@@ -294,7 +294,7 @@ def file_of_study(name: str, file: str) -> bytes:
 
 
 def headlines(name: str) -> dict[str, Any]:
-    """Return factors, headline numbers and the sentences of a study."""
+    """Return factors, headline numbers, and the headline and the warnings of a study."""
     results = open_as_reported(folder_of(name).root)
     table = factor_table(results)
     return {
@@ -302,8 +302,16 @@ def headlines(name: str) -> dict[str, Any]:
         "cases": len(results.table),
         "factors": {str(row[0]): f"{row[2]} {row[1]}".strip(" –") for row in table.rows} if table else {},
         "numbers": _numbers(results),
-        "short": [(head, " ".join(s.text for s in said)) for head, said in in_short(results, [])],
+        "short": _said(results),
     }
+
+
+def _said(results: Results) -> list[tuple[str, str]]:
+    """Return the headline and the warnings of a study, each with its head."""
+    answer = shown_answer(results)
+    warnings = " · ".join(warning_line(caution) for caution in answer.warnings)
+    lines = [("Answer", headline_of(answer).text), ("Warnings", warnings)]
+    return [(head, text) for head, text in lines if text]
 
 
 def _numbers(results: Results) -> dict[str, list[str]]:

@@ -46,6 +46,7 @@ def spectrum_of(whole: Carriage, ds: xr.Dataset, name: str) -> dict[str, Any]:
     roller = whole.rollers[j]
     if roller.case is None:
         raise InputError(f"rollers.{name}.roller", None, "the file of the roller", "Add roller: FILE.")
+    _check_settled(ds)
     cases = {i: case for (i, own), case in cases_of(whole, ds).items() if own == j}
     if not cases:
         raise InputError("--spectrum", name, "a roller that carries load in a load case", "Name another roller.")
@@ -96,6 +97,7 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     for roller in whole.rollers:
         if roller.case is None:
             raise InputError(f"rollers.{roller.name}.roller", None, "the file of the roller", "Add roller: FILE.")
+    _check_settled(ds)
     _check_same_options(whole)
     base, varying = _shared(whole)
     units = {name: PARAMETERS[name].unit for name in (*varying, *OF_LOADS) if name in PARAMETERS}
@@ -119,6 +121,15 @@ def study_of(whole: Carriage, ds: xr.Dataset, table: str) -> tuple[dict[str, Any
     given = whole.rollers[0].options
     options = {key: value for key, value in given.items() if "study" in OPTIONS[key].files and key != "outputs"}
     return study | duty | options, out.getvalue()
+
+
+def _check_settled(ds: xr.Dataset) -> None:
+    """Refuse load cases without an equilibrium: their loads are not known."""
+    unsettled = ds["load_case"].values[~ds["converged"].values].tolist()
+    if unsettled:
+        remedy = "Give the pairs a larger preload, or make more rollers locating ones."
+        wrong = "has no forces of the rollers that fulfil all conditions of an equilibrium"
+        raise InputError("case", ", ".join(unsettled), "load cases in which the rollers hold", remedy, wrong)
 
 
 def _check_same_options(whole: Carriage) -> None:

@@ -76,8 +76,10 @@ def solve_carriage(source: Path | str | Mapping[str, Any] | Carriage, lives: boo
         Dimensions `load_case` and `roller`. `radial_force` and `axial_force` [N] have the signs of `Case`; a lifted
         roller has 0 N. `approach` [mm] is that of the roller to its rail. `payload_to_lift_off`,
         `payload_to_tipping`, `loads_to_lift_off` and `loads_to_tipping` (load_case) are multipliers [1]. `converged`
-        (load_case) is False where the sharing of axial load among the rollers did not settle. With `lives`,
-        `life_km` and `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
+        (load_case) is False where no state fulfils all conditions of an equilibrium; its forces, margins and the lives
+        of all rollers are NaN. A margin beyond the one to a single contact is one of rollers that carry axial load both
+        ways, which a roller on one contact does not; tables and sentences leave it out. With `lives`, `life_km` and
+        `life_hours` (roller) are those to the first limit, and the attribute `worst_roller` names the
         roller with the shortest one.
 
     Raises
@@ -260,8 +262,9 @@ def _attrs(units: str, long_name: str, symbol: str = "") -> dict[str, str]:
 
 def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> dict[str, Any]:
     """Return the forces of rollers and drive, and what the file says of the load cases, as variables."""
-    radial = -np.array([one.radial for one in found])
-    axial = np.array([one.axial for one in found])
+    settled = np.array([one.converged for one in found])[:, None]
+    radial = np.where(settled, -np.array([one.radial for one in found]), np.nan)
+    axial = np.where(settled, np.array([one.axial for one in found]), np.nan)
     axial = np.where(np.abs(axial) <= ROUNDING * np.abs(radial).max(axis=1, keepdims=True), 0.0, axial)
     speeds = [np.nan if case.speed is None else case.speed for case in whole.cases]
     return {
@@ -269,14 +272,14 @@ def _forces(whole: Carriage, found: list[Equilibrium], loads: list[Loads]) -> di
         "axial_force": (_RC, axial, _attrs("N", "axial force", "F_ax")),
         "approach": (
             _RC,
-            np.array([one.approach for one in found]),
+            np.where(settled, np.array([one.approach for one in found]), np.nan),
             _attrs("mm", "approach of the roller to its rail"),
         ),
         "drive_force": (_C, np.array([one.drive for one in loads]), _attrs("N", "force of the drive along the track")),
         "converged": (
             _C,
             np.array([one.converged for one in found]),
-            {"long_name": "whether radial forces and axial stiffness belong together"},
+            {"long_name": "whether the forces are an equilibrium of the rollers"},
         ),
         "share": (_C, np.array([case.share for case in whole.cases]), _attrs("1", "share of the travel")),
         "speed": (_C, np.array(speeds), _attrs("m s-1", "speed")),
@@ -408,6 +411,8 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
         solve_cases = solve
     shape, n = ds["radial_force"].shape, len(whole.rollers)
     case_hours, regime, damage = np.full(shape, np.inf), np.full(shape, -1, dtype=np.int8), np.zeros(shape)
+    for values in (case_hours, damage):
+        values[~ds["converged"].values] = np.nan
     flagged = np.zeros(shape, dtype=np.int64)
     lasts = {end: np.full(n, np.inf) for end in verdict.ENDS}
     own = np.array([roller.case.velocity for roller in whole.rollers if roller.case is not None], dtype=float)
@@ -434,6 +439,9 @@ def with_lives(ds: xr.Dataset, whole: Carriage, solve: Callable[..., xr.Dataset]
     meanings = {**flags, "flag_values": np.append(np.int8(-1), np.asarray(flags.get("flag_values", []), dtype=np.int8))}
     meanings["flag_meanings"] = f"lifted {flags.get('flag_meanings', '')}".strip()
     first = "to the first limit of the roller or its rail"
+    if not ds["converged"].values[ds["share"].values > 0].all():
+        for end in lasts:
+            lasts[end] = np.full(n, np.nan)
     travel = lasts[""] / pace
     variables: dict[str, Any] = {
         "case_life_hours": (_RC, case_hours, _attrs("h", "life to the first limit under a load case alone")),

@@ -20,7 +20,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import brentq, linprog, nnls
+from scipy.optimize import brentq, linprog, nnls, root
 
 MOTIONS = (
     "moves sideways",
@@ -32,6 +32,12 @@ MOTIONS = (
 MOST_PASSES = 24  # of the axial stiffness; two are usual before Newton's method takes over
 NEWTON = (1, 4, 11, 23)  # passes after which Newton's method is tried
 MOST_STEPS = 20  # of this method
+MOST_SPRINGS = 16  # linear springs whose 2^16 sets of loaded ones are all tried
+MOST_SETS = 256  # carrying sets that are tried for other springs, the nearest ones first
+BALANCED = 1e-9  # of the largest force: what the sums of a solution may leave
+SETTLED = 1e-7  # of the largest force: how far a force of a solution may be off the one of its springs
+TOUCHES = 1e-10  # of the largest force: a roller on a linear spring with less only touches its rail
+UNLOADED = 1e-60  # N: a contact with less has no axial stiffness
 LARGEST_MULTIPLIER = 1000.0  # a carriage that holds so many times its loads counts as one that never tips
 _INFEASIBLE = 1e-9  # of the wrench: what no force of the rollers balances
 
@@ -147,8 +153,8 @@ class Equilibrium:
     """Forces of n rollers: `radial` >= 0 presses on the rail, `axial` acts on the roller along its axis [N], (n,).
 
     `approach` is that of each roller to its rail [mm], (n,); below 0 the roller has lifted by so much. `start` is the
-    displacement, from which a similar wrench is solved faster. `converged` tells whether the axial stiffness belongs to
-    the radial forces.
+    displacement, from which a similar wrench is solved faster. `converged` tells whether the state fulfils all
+    conditions of an equilibrium, see `fulfils`.
     """
 
     radial: np.ndarray
@@ -179,7 +185,9 @@ def motion_of(way: np.ndarray) -> str:
     return MOTIONS[int(np.argmax(size))]
 
 
-def equilibrium(springs: Springs, wrench: np.ndarray, start: np.ndarray | None = None) -> Equilibrium:
+def equilibrium(
+    springs: Springs, wrench: np.ndarray, start: np.ndarray | None = None, thorough: bool = True
+) -> Equilibrium:
     """Return the forces of the rollers under a wrench.
 
     Parameters
@@ -190,6 +198,13 @@ def equilibrium(springs: Springs, wrench: np.ndarray, start: np.ndarray | None =
         Forces along y and z [N], and moments about x, y and z over `springs.length` [N].
     start : numpy.ndarray, shape (5,), optional
         Displacement of a similar equilibrium.
+    thorough : bool
+        Whether other sets of carrying rollers are tried where removing those that lift leads to no equilibrium.
+
+    Returns
+    -------
+    Equilibrium
+        With `converged` False where no state that fulfils all conditions was found.
 
     Raises
     ------
@@ -197,21 +212,160 @@ def equilibrium(springs: Springs, wrench: np.ndarray, start: np.ndarray | None =
         If no forces of the rollers balance the wrench.
     """
     size = _size(springs, wrench)
-    carries, seen = springs.locating.copy(), set()
-    radial = np.full(carries.shape, size / carries.size)
+    _check_balance(springs, springs.locating, wrench)
+    visited = [springs.locating]
+    radial = np.full(springs.locating.shape, size / springs.locating.size)
+    moves: Moves | None = None
     while True:
-        _check_balance(springs, carries, wrench)
-        found = _settled(springs, carries, wrench, size, radial, start)
-        now = springs.locating & found.loaded
-        if (now == carries).all() or tuple(now) in seen:
+        found = _settled(springs, visited[-1], wrench, size, radial, start)
+        if fulfils(springs, wrench, found):
             return found
-        seen.add(tuple(now))
-        carries, radial = now, np.maximum(found.radial, 1e-6 * size)
+        carries = springs.locating & found.loaded
+        if any((carries == other).all() for other in visited):
+            break
+        try:
+            _check_balance(springs, carries, wrench)
+        except Moves as error:
+            moves = error
+            break
+        visited.append(carries)
+        radial = np.maximum(found.radial, 1e-6 * size)
+    other = _searched(springs, wrench, size, found.start, visited) if thorough else None
+    if other is not None:
+        return other
+    if moves is not None:
+        raise moves
+    return replace(found, converged=False)
+
+
+def fulfils(springs: Springs, wrench: np.ndarray, found: Equilibrium) -> bool:
+    """Return whether a state is an equilibrium of the rollers.
+
+    Notes
+    -----
+    Forces and moments balance the wrench, no roller pulls on its rail, a roller without radial force carries no axial
+    force, and each force is that of its springs at the displacement.
+    """
+    size = _size(springs, wrench)
+    rest = wrench - springs.radial.T @ found.radial - springs.axial.T @ found.axial
+    radial, _ = springs.force(springs.offset + springs.radial @ found.start)
+    carries = springs.locating & found.loaded
+    stiffness = springs.axial_stiffness(np.maximum(found.radial, UNLOADED))
+    axial = np.where(carries, stiffness * (springs.axial @ found.start), 0.0)
+    largest = max(size, float(radial.max()), float(np.abs(axial).max()))
+    return bool(
+        found.converged
+        and (found.radial >= 0).all()
+        and not found.axial[~carries].any()
+        and np.abs(rest).max() <= BALANCED * largest
+        and np.abs(found.radial - radial).max() <= SETTLED * largest
+        and np.abs(found.axial - axial).max() <= SETTLED * largest
+    )
+
+
+def _searched(
+    springs: Springs, wrench: np.ndarray, size: float, place: np.ndarray, visited: list[np.ndarray]
+) -> Equilibrium | None:
+    """Return an equilibrium among the other sets of rollers, None if none is found.
+
+    Parameters
+    ----------
+    springs, wrench, size
+        The problem, and the size of its forces.
+    place : numpy.ndarray, shape (5,)
+        Displacement at which the search begins.
+    visited : list of numpy.ndarray of bool
+        Sets of carrying rollers without an equilibrium, (n,) each.
+    """
+    if not springs.contact.any() and len(springs.radial) <= MOST_SPRINGS:
+        return _enumerated(springs, wrench, size, place)
+    for carries in _other_sets(springs, visited):
+        if not _can_balance(springs, carries, wrench):
+            continue
+        found = _from_start(springs, carries, wrench, size, _stiff_place(springs, carries, wrench, size))
+        if fulfils(springs, wrench, found):
+            return found
+    return None
+
+
+def _enumerated(springs: Springs, wrench: np.ndarray, size: float, place: np.ndarray) -> Equilibrium | None:
+    """Return the equilibrium of linear springs, of all sets of loaded rollers that with most of them."""
+    n = len(springs.radial)
+    sets = ((np.arange(2**n)[:, None] >> np.arange(n)) & 1).astype(bool)
+    stiffness = 1.0 / springs.radial_compliance
+    of_axial = np.where(springs.locating, 1.0 / springs.axial_compliance, 0.0)
+    shares = [
+        np.einsum("ni,nj->nij", rows, rows) * own[:, None, None]
+        for rows, own in ((springs.radial, stiffness), (springs.axial, of_axial))
+    ]
+    curve = np.tensordot(sets, shares[0] + shares[1], 1)
+    approach = springs.offset + springs.radial @ place
+    rest = wrench - (sets * (stiffness * approach)) @ springs.radial
+    rest -= (sets * (of_axial * (springs.axial @ place))) @ springs.axial
+    damping = 1e-14 * np.trace(curve[-1])  # where a set leaves the carriage free, it moves as little as possible
+    step = np.linalg.solve(curve + damping * np.eye(5), rest[:, :, None])[:, :, 0]
+    forces = stiffness * (approach + step @ springs.radial.T)
+    good = (np.where(sets, forces, -forces) >= -TOUCHES * size).all(axis=1)
+    for i in np.flatnonzero(good)[np.argsort(-sets[good].sum(axis=1), kind="stable")]:
+        found = _state(springs, sets[i] & springs.locating, wrench, size, place + step[i], True)
+        if fulfils(springs, wrench, found):
+            return found
+    return None
+
+
+def _other_sets(springs: Springs, visited: list[np.ndarray]) -> list[np.ndarray]:
+    """Return at most `MOST_SETS` sets of carrying rollers, those first that differ least from the visited ones."""
+    places = np.flatnonzero(springs.locating)
+    sets = []
+    for removed in range(len(places) + 1):
+        for lifted in itertools.combinations(places, removed):
+            carries = springs.locating.copy()
+            carries[list(lifted)] = False
+            sets.append(carries)
+            if len(sets) == 16 * MOST_SETS:
+                break
+    known = np.array(visited)
+    changes = [int((known ^ carries).sum(axis=1).min()) for carries in sets]
+    return [sets[i] for i in np.argsort(changes, kind="stable")[:MOST_SETS]]
+
+
+def _stiff_place(springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float) -> np.ndarray:
+    """Return the displacement (5,) if some rollers carry axial load with the stiffness under an equal radial load."""
+    stiffness = np.where(carries, springs.axial_stiffness(np.full(carries.shape, size / carries.size)), 0.0)
+    return _minimum(springs, stiffness, wrench, np.zeros(5), size)
+
+
+def _from_start(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, place: np.ndarray
+) -> Equilibrium:
+    """Return the state that Powell's hybrid method reaches from a displacement.
+
+    A contact has no axial stiffness without load, so that a locating roller with contacts may always count as carrying.
+    """
+    carries = carries | (springs.locating & (springs.contact > 0))
+    at = _coupled_forces(springs, carries, wrench, UNLOADED)
+    scale = max(float(np.abs(place).max()), 1e-12)
+    zero = root(
+        lambda own: at(scale * own)[0] / size,
+        place / scale,
+        jac=lambda own: at(scale * own)[1] * (scale / size),
+        options={"xtol": 1e-14},
+    )
+    return _state(springs, carries, wrench, size, scale * zero.x, True)
 
 
 def _size(springs: Springs, wrench: np.ndarray) -> float:
     """Return the size of the forces [N], to which tolerances refer."""
     return max(float(np.abs(wrench).max()), float(springs.force(springs.offset)[0].max()), 1e-9)
+
+
+def _can_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) -> bool:
+    """Return whether forces of rollers that only press can balance a wrench."""
+    try:
+        _check_balance(springs, carries, wrench)
+    except Moves:
+        return False
+    return True
 
 
 def _check_balance(springs: Springs, carries: np.ndarray, wrench: np.ndarray) -> None:
@@ -251,6 +405,39 @@ def _settled(
     return Equilibrium(*_balanced(springs, carries, wrench, radial, axial), approach, place, converged)
 
 
+def _state(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, size: float, place: np.ndarray, converged: bool
+) -> Equilibrium:
+    """Return the forces at a displacement, of which a roller that only touches its rail has none."""
+    approach = springs.offset + springs.radial @ place
+    radial, _ = springs.force(approach)
+    radial = np.where((radial < TOUCHES * size) & (springs.contact == 0), 0.0, radial)
+    own = carries & (radial > 0)
+    stiffness = springs.axial_stiffness(np.maximum(radial, UNLOADED))
+    axial = np.where(own, stiffness * (springs.axial @ place), 0.0)
+    return Equilibrium(*_balanced(springs, own, wrench, radial, axial), approach, place, converged)
+
+
+def _coupled_forces(
+    springs: Springs, carries: np.ndarray, wrench: np.ndarray, least: float
+) -> Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]:
+    """Return the function that gives what the forces at a displacement (5,) leave of the wrench, and its derivative.
+
+    The axial stiffness is that under the radial forces, of which those below `least` [N] count as `least`.
+    """
+
+    def at(place: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        force, radial_stiffness = springs.force(springs.offset + springs.radial @ place)
+        pressed, slide = np.maximum(force, least), springs.axial @ place
+        stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
+        slope = np.where(carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0)
+        rest = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
+        curve = (springs.radial.T * radial_stiffness) @ springs.radial + (springs.axial.T * stiffness) @ springs.axial
+        return rest, curve + (springs.axial.T * (slope * slide)) @ springs.radial
+
+    return at
+
+
 def _coupled(
     springs: Springs, carries: np.ndarray, wrench: np.ndarray, place: np.ndarray, size: float
 ) -> np.ndarray | None:
@@ -258,18 +445,9 @@ def _coupled(
 
     None if the method does not come closer from `place`.
     """
-    least = 1e-6 * size
-
-    def at(place: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
-        force, radial_stiffness = springs.force(springs.offset + springs.radial @ place)
-        pressed, slide = np.maximum(force, least), springs.axial @ place
-        stiffness = np.where(carries, springs.axial_stiffness(pressed), 0.0)
-        slope = np.where(carries & (force > least), springs.axial_slope(pressed) * radial_stiffness, 0.0)
-        rest = springs.radial.T @ force + springs.axial.T @ (stiffness * slide) - wrench
-        curve = (springs.radial.T * radial_stiffness) @ springs.radial + (springs.axial.T * stiffness) @ springs.axial
-        return float(np.abs(rest).max()), rest, curve + (springs.axial.T * (slope * slide)) @ springs.radial
-
-    norm, rest, curve = at(place)
+    at = _coupled_forces(springs, carries, wrench, 1e-6 * size)
+    rest, curve = at(place)
+    norm = float(np.abs(rest).max())
     for _ in range(MOST_STEPS):
         if norm <= 1e-11 * size:
             return place
@@ -278,12 +456,14 @@ def _coupled(
         except np.linalg.LinAlgError:
             return None
         for share in (1.0, 0.5, 0.25, 0.125):
-            new = at(place + share * step)
-            if new[0] < (1 - 0.1 * share) * norm:
+            rest, curve = at(place + share * step)
+            new = float(np.abs(rest).max())
+            if new < (1 - 0.1 * share) * norm:
                 break
         else:
             return place if norm <= 1e-9 * size else None  # rounding ends the decrease
-        place, (norm, rest, curve) = place + share * step, new
+        place = place + share * step
+        norm = new
     return None
 
 
@@ -354,16 +534,18 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     tuple of float
         Multipliers [1]; inf if it does not happen up to `LARGEST_MULTIPLIER`. Rollers count that carry load at the
         multiplier 1 or by their preload; one that has lifted at 1 gives a multiplier below 1. Loads for which no
-        equilibrium with all of these rollers is found count as lifting one. The first is NaN if the equilibrium at 1
-        did not converge.
+        equilibrium with all of these rollers is found count as lifting one. Both are NaN without an equilibrium at 1.
     """
     given = equilibrium(springs, fixed + varying)
+    if not given.converged:
+        return np.nan, np.nan
     watched = given.loaded | (springs.offset > 0)
+    searched = not _holds(springs, fixed + varying, thorough=False)
 
     def lowest(multiplier: float) -> float:
         """Return the smallest approach of the rollers that carry load; below 0 where they do not carry all loads."""
         try:
-            found = equilibrium(springs, fixed + multiplier * varying, given.start)
+            found = equilibrium(springs, fixed + multiplier * varying, given.start, searched)
         except Moves:
             return -springs.length
         smallest = float(found.approach[watched].min())
@@ -372,8 +554,6 @@ def multipliers(springs: Springs, fixed: np.ndarray, varying: np.ndarray) -> tup
     tipping = _tipping(springs, fixed, varying, lambda multiplier: _holds(springs, fixed + multiplier * varying))
     if not watched.any() or not np.any(varying):
         return np.inf, tipping
-    if not given.converged:
-        return np.nan, tipping
     if given.approach[watched].min() <= 0:
         return (float(brentq(lowest, 0.0, 1.0, xtol=1e-9)) if lowest(0.0) > 0 else 0.0), tipping
     last = min(tipping * (1 - 1e-9), LARGEST_MULTIPLIER)
@@ -413,6 +593,8 @@ def to_one_contact(
             found = equilibrium(springs, fixed + multiplier * varying)
         except Moves:
             return -1.0
+        if not found.converged:
+            return -1.0
         own = known & found.loaded
         left = found.radial[own] * tangent[own] - np.abs(found.axial[own])
         return float(left.min(initial=np.inf)) if own.any() else -1.0
@@ -426,12 +608,12 @@ def to_one_contact(
     return lift_off
 
 
-def _holds(springs: Springs, wrench: np.ndarray) -> bool:
+def _holds(springs: Springs, wrench: np.ndarray, thorough: bool = True) -> bool:
+    """Return whether the rollers have an equilibrium under a wrench."""
     try:
-        equilibrium(springs, wrench)
+        return equilibrium(springs, wrench, thorough=thorough).converged
     except Moves:
         return False
-    return True
 
 
 def _tipping(springs: Springs, fixed: np.ndarray, varying: np.ndarray, holds: Callable[[float], bool]) -> float:

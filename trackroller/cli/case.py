@@ -399,5 +399,5 @@ def plot_target(target: str, settings: list[str] | None, out: Path | None, resul
 
 
 def names_study(path: Path) -> bool:
-    """Return True for a study file, which has factors, a base, a name or a design; any other file is a case file."""
-    return bool({"factors", "base", "name", "design"} & set(read_mapping(path, "study or case file")))
+    """Return True for a study file, which has factors, a base, a name or a method; any other file is a case file."""
+    return bool({"factors", "base", "name", "design", "method"} & set(read_mapping(path, "study or case file")))

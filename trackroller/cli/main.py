@@ -136,9 +136,10 @@ def report(
 def best(
     study: AnyStudy,
     results: Results = Path("results"),
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="the comparison as a page (.html or .pdf)")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="the report as a page (.html or .pdf)")] = None,
+    as_json: Annotated[bool, typer.Option("--json", help="print the record of the answer as JSON")] = False,
 ) -> None:
-    """Say which designs of a study that was run are best, and compare up to five of them."""
+    """Print the answer to a study that was run: headline, table and warnings."""
 
 
 @command("trackroller.cli.study", "print_explorer")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import sys
 from collections.abc import Iterable, Mapping
@@ -14,7 +15,6 @@ from trackroller.cli.case import case_of, free_for_page, names_study, tell_doubt
 from trackroller.cli.usage import print_doubts, print_line
 from trackroller.errors import InputError
 from trackroller.parameters.example import drive_question, not_given_text, used_of
-from trackroller.report.tables.table import cell
 from trackroller.report.terminal import print_table, print_text
 from trackroller.roller.case import to_table
 from trackroller.roller.differences import Difference
@@ -116,22 +116,25 @@ def print_explorer(study: str, results: Path, out: Path | None) -> None:
     print(solved.explore(target or place_of_pages(solved, folder) / EXPLORER))
 
 
-def print_best(study: str, results: Path, out: Path | None) -> None:
-    """Print which designs of a study are best, in words and in a table; write both as a page to `out`."""
-    from trackroller.report.pages.best import best_of, write_best  # heavy: SALib
+def print_best(study: str, results: Path, out: Path | None, as_json: bool = False) -> None:
+    """Print the answer to a study: headline, table and warnings, or its record as JSON; write its page to `out`."""
+    from trackroller.report.build import report_text  # heavy: SALib
+    from trackroller.report.headlines import shown_answer
+    from trackroller.report.html import write_page
+    from trackroller.report.printed import print_answer
     from trackroller.results.stored_study import open_study
 
     target = out if out is None else writable_page(out)
     found = find_folder(study, results)
     folder = Path(study) if found is None and Path(study).is_dir() else find_study(study, results)[1].root
     solved = open_study(folder)
-    said, table = best_of(solved)
-    for text in said:
-        print_text(text)
-    if table is not None:
-        print_table(table.heads, [[cell(v) for v in row] for row in table.rows], title=table.title)
+    answer = shown_answer(solved)
+    if as_json:
+        print(json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False))
+    else:
+        print_answer(answer)
     if target is not None:
-        print(write_best(solved, target))
+        print(write_page(target, report_text(solved)))
 
 
 def print_status(study: str, results: Path, figures: bool) -> int:

@@ -125,8 +125,7 @@ class SolvedRollers:
 class Verdict:
     """What one limit says: how far it is used, and the hours until it is reached.
 
-    Both have the shape (n, body), and are None where the limit has none. What a study answers over all limits is a
-    `trackroller.results.verdict.Verdict`.
+    Both have the shape (n, body), and are None where the limit has none.
 
     `utilisation` is the load over the load at which the limit is reached [1]. NaN stands for a value that is not known.
     `at_once`, (n, body), marks bodies that break at once, so that the limit is reached without a life. `life_low` and

@@ -38,7 +38,7 @@ from trackroller.parameters.validity import VALIDITY
 from trackroller.roller.aliases import ALIASES, overridden
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.geometry import rolling_radius
-from trackroller.roller.settings import checked_case
+from trackroller.roller.settings import BESIDE, checked_case
 from trackroller.roller.solver import solve
 from trackroller.yaml_file import read_mapping
 
@@ -296,7 +296,7 @@ def _cases(rows: TestTable, base: Mapping[str, Any] | None) -> tuple[list[Case],
                     if file and file not in read:
                         read[file] = dict(read_mapping(find_beside(file, "base"), "case file"))
                     values = overridden(read.get(file, {}) | dict(base or {}), own)
-                    case, one, _ = checked_case({k: v for k, v in values.items() if k not in ("duty", "sheet")})
+                    case, one, _ = checked_case({k: v for k, v in values.items() if k not in BESIDE})
                     _check_empty(rows, row, case)
             except InputError as error:
                 place = error.field if error.field in rows.rows[row] else "base" if file else "case"

@@ -13,6 +13,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -37,6 +38,10 @@ YES = ("1", "1.0", "true", "yes", "y", "failed", "failure", "fracture", "broken"
 NO = ("0", "0.0", "false", "no", "n", "run-out", "runout", "run out", "survived", "suspended", "nein", "none")
 FEWEST_CYCLES = 1_000.0  # below it, a number of cycles that is not whole may be a travel
 TRAVEL = "If it is a travel in km, fit rollers with `trackroller fit bench`."
+NO_LIMIT = (
+    "No fatigue limit makes the tests likelier than the line alone, on which run-outs are long lives: the line was "
+    "fitted without a limit."
+)
 DEFAULT_KNEE = 2e6  # cycles at which a line without run-outs states its strength
 
 
@@ -70,7 +75,8 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
     slope, scatter_in_cycles : float, optional
         Slope k and scatter T_N that are held [1]; by default both are fitted.
     knee : bool, optional
-        Whether a fatigue limit with its own scatter is fitted; by default if failures and run-outs meet.
+        Whether a fatigue limit with its own scatter is fitted; by default if failures and run-outs meet, and a limit
+        makes the tests likelier than the line alone.
     like : str, optional
         A material whose other values, such as E and R_m, the fitted one takes.
     prior : mapping, optional
@@ -121,6 +127,9 @@ def fit_sn(  # noqa: PLR0913 - one argument for each choice of a fit
         "stress ratio": "not given" if stress_ratio is None else f"{ratio:g}",
     }
     notes = _notes(load_type, ratio, meet, observed)
+    if knee is None and meet and not line.limit_matters:
+        line = replace(line, knee=False)
+        notes.append(NO_LIMIT)
     own = Group("fatigue", line, priors, at=_stated_at(line))
     return Fit("sn", name or "fitted material", (own,), tests, like, given, notes)
 

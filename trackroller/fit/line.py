@@ -24,8 +24,8 @@ Pascual, F. G., Meeker, W. Q. (1999). Estimating fatigue curves with the random 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import NamedTuple
 
@@ -53,6 +53,10 @@ AT_ONCE = 2_000_000  # elements of an array of points and tests, which bounds th
 Solved = Callable[[float, np.ndarray], np.ndarray]
 Profile = Callable[[float, np.ndarray], tuple[float, np.ndarray]]
 NEAR = 0.02  # in ln S, how far below a stress a fatigue limit is tried first
+SAME_MAXIMUM = 1e-6  # difference of ln L within which two maxima count as one
+MOST_LIMITS, LIMIT_SCATTERS = 40, (0.01, 0.04, 0.15, 0.5)  # at which the likelihood is looked at for starts
+MOST_STARTS = 6  # limits from which Newton's method starts
+MOST_FURTHER = 2  # starts for a value of a profile that is less likely than an interval allows
 STEPS = np.arange(-2.0, 6.1, 0.5).tolist()  # of ln N, at which finite lives are tried below a fatigue limit
 
 
@@ -224,13 +228,41 @@ class Line:
     @cached_property
     def estimate(self) -> np.ndarray:
         """Return the values of the largest likelihood, (p,)."""
-        found = [least(lambda points: -self.log_likelihood(points), start, self.limits) for start in self._starts()]
-        return min(found, key=lambda one: one[1])[0]
+        return self.maxima[0]
+
+    @cached_property
+    def maxima(self) -> list[np.ndarray]:
+        """Return the places (p,) of the maxima of the likelihood that were found, the highest first.
+
+        With a fatigue limit the likelihood may have several: one with the limit between two stresses and one without a
+        limit, on which run-outs are long lives. Newton's method starts from limits on both sides of each stress.
+        """
+
+        def loss(points: np.ndarray) -> np.ndarray:
+            return -self.log_likelihood(points)
+
+        found = sorted((least(loss, start, self.limits) for start in self._starts()), key=_value)
+        if self.knee and self.tests.failed.any():
+            found += [least(loss, start, self.limits) for start in self._starts_by_limit()]
+        lowest = min(map(_value, found))
+        # of places that are equally likely the first one stays, so that further starts change no last digit
+        found.sort(key=lambda one: max(_value(one) - lowest, SAME_MAXIMUM))
+        different = found[:1]
+        for one in found[1:]:
+            if all(abs(_value(one) - _value(other)) > SAME_MAXIMUM for other in different):
+                different.append(one)
+        return [place for place, _ in different]
 
     @cached_property
     def largest(self) -> float:
         """Return the largest ln L."""
         return float(self.log_likelihood(self.estimate))
+
+    @property
+    def limit_matters(self) -> bool:
+        """Return whether a fatigue limit makes the tests likelier than the line alone does."""
+        straight = replace(self, knee=False)
+        return self.knee and self.largest > straight.largest + SAME_MAXIMUM
 
     @property
     def at_bound(self) -> tuple[str, ...]:
@@ -246,19 +278,57 @@ class Line:
 
     def _starts(self) -> list[np.ndarray]:
         """Return places to start from: the regression of the failures, with steeper slopes beside it."""
+        lowest, failed = self.tests.stress.min(), self.tests.failed
+        limit = lowest - 0.05 if failed.all() else float(np.median(self.tests.stress[~failed]))
+        return [self._point(own._replace(log_limit=limit)) for own in self._lines_of_failures((5.0, 12.0))]
+
+    def _lines_of_failures(self, slopes: Sequence[float]) -> list[Values]:
+        """Return lines through the middle of the failures: that of the regression, and those of given slopes."""
         x, y, failed = self.tests.stress - self.reference, self.tests.middle, self.tests.failed
         own = failed if failed.any() else np.ones_like(failed)
-        spread = float(((x[own] - x[own].mean()) ** 2).sum())
-        fitted = -float((x[own] * (y[own] - y[own].mean())).sum()) / spread if spread > 1e-12 else 8.0
-        lowest, found = self.tests.stress.min(), []
-        for slope in [self.slope] if self.slope is not None else [0.0] if not self.sloped else [fitted, 5.0, 12.0]:
-            slope = float(np.clip(slope, *BOUNDS["slope"])) if self.sloped else 0.0
-            level = float((y[own] + slope * x[own]).mean())
-            rest = float(np.std(y[own] + slope * x[own]))
-            limit = float(np.median(self.tests.stress[~failed])) if (~failed).any() else lowest - 0.05
-            start = Values(level, slope, math.log(max(rest, 0.1)), limit, math.log(0.05))
-            found.append(np.array([start[place] for place in self._places]))
+        x, y = x[own], y[own]
+        spread = float(((x - x.mean()) ** 2).sum())
+        fitted = -float((x * (y - y.mean())).sum()) / spread if spread > 1e-12 else 8.0
+        tried = [fitted, *slopes] if self.slope is None else [self.slope]
+        found = []
+        for slope in tried if self.sloped else [0.0]:
+            held = float(np.clip(slope, *BOUNDS["slope"])) if self.sloped else 0.0
+            along = y + held * x
+            scatter = max(float(np.std(along)), 0.1)
+            found.append(Values(float(along.mean()), held, math.log(scatter), 0.0, math.log(0.05)))
         return found
+
+    def _starts_by_limit(self) -> list[np.ndarray]:
+        """Return the likeliest values with some fatigue limits, and those without a limit."""
+        every = self._points_by_limit
+        likely = self.log_likelihood(every)
+        best = every[np.arange(len(every)), likely.argmax(axis=1)]
+        order = np.argsort(-likely.max(axis=1), kind="stable")[:MOST_STARTS]
+        without_limit = best[:1]
+        return [*best[order], *without_limit]
+
+    @cached_property
+    def _points_by_limit(self) -> np.ndarray:
+        """Return values (limits, lines, p) with fatigue limits below all tests, at their stresses and between them."""
+        levels = np.unique(self.tests.stress)
+        limits = np.concatenate([[self.bounds["log_limit"][0]], levels, 0.5 * (levels[1:] + levels[:-1])])
+        if len(limits) > MOST_LIMITS:  # stresses that scatter have no levels
+            limits = np.append(limits[0], np.quantile(self.tests.stress, np.linspace(0.0, 1.0, MOST_LIMITS - 1)))
+        lines = self._lines_of_failures((5.0, 12.0, 25.0))
+        lines.append(replace(self, knee=False).best)  # on it a run-out is a long life
+        found = [
+            [
+                self._point(own._replace(log_limit=limit, log_limit_scatter=math.log(scatter)))
+                for own in lines
+                for scatter in LIMIT_SCATTERS
+            ]
+            for limit in limits.tolist()
+        ]
+        return np.clip(np.array(found), *self.limits.T)
+
+    def _point(self, values: Values) -> np.ndarray:
+        """Return the free ones of values, (p,)."""
+        return np.array([values[place] for place in self._places])
 
     def cut_off(self, confidence: float) -> float:
         """Return how far ln L may lie below its maximum within an interval, t^2(n - p)/2.
@@ -318,21 +388,34 @@ class Line:
             """Return the levels that give the life `value`, with the other values as they are."""
             return value - self._life_at_level_0(others, log_stress, probability)
 
-        best = float(self.log_life(self.best, log_stress, probability))
+        def life(point: np.ndarray) -> float:
+            return float(self.log_life(self.values(point), log_stress, probability))
+
         if not (self.knee and self.tests.failed.any()):
-            return self._ends(best, 0, level, confidence)
-        goal = self.largest - self.cut_off(confidence)
-        if not math.isfinite(best):  # the interval reaches down to the finite lives that are likely enough
-            straight = float(self.best.level - self.best.slope * (log_stress - self.reference))
-            start = self.estimate.copy()
-            start[self.free.index("log_limit")] = log_stress - math.exp(start[-1]) * float(ndtri(probability)) - NEAR
-            profile = self._profile(0, level)
-            likely, step = max((profile(straight + step, start[1:])[0], step) for step in STEPS)
-            if likely < goal:
-                return Interval(math.inf, math.inf)
-            return Interval(self._ends(straight + step, 0, level, confidence, start).low, math.inf)
-        low, high = self._ends(best, 0, level, confidence)
-        return Interval(low, math.inf if self._endless(log_stress, probability) >= goal else high)
+            return self._ends([(life(self.estimate), self.estimate)], 0, level, confidence)
+        likely = self._likely(confidence)
+        begins = [(life(point), point) for point in likely if math.isfinite(life(point))]
+        if not math.isfinite(life(self.estimate)):
+            begins = [*self._finite_lives(log_stress, probability, confidence, level), *begins]
+        if not begins:
+            return Interval(math.inf, math.inf)
+        low, high = self._ends(begins, 0, level, confidence)
+        endless = any(math.isinf(life(point)) for point in likely)
+        if not endless:
+            endless = self._endless(log_stress, probability) >= self._goal(confidence)
+        return Interval(low, math.inf if endless else high)
+
+    def _finite_lives(
+        self, log_stress: float, probability: float, confidence: float, level: Solved
+    ) -> list[tuple[float, np.ndarray]]:
+        """Return a finite life that is likely enough, with its place, where the likeliest life is endless."""
+        straight = float(self.best.level - self.best.slope * (log_stress - self.reference))
+        start = self.estimate.copy()
+        start[self.free.index("log_limit")] = log_stress - math.exp(start[-1]) * float(ndtri(probability)) - NEAR
+        goal = self._goal(confidence)
+        profile = self._profile(0, level, goal)
+        likely, step = max((profile(straight + step, start[1:])[0], step) for step in STEPS)
+        return [(straight + step, start)] if likely >= goal else []
 
     def _endless(self, log_stress: float, probability: float) -> float:
         """Return the largest ln L of lines whose fatigue limit at a failure probability is a stress."""
@@ -343,7 +426,17 @@ class Line:
             inside = (limit >= self.limits[place, 0]) & (limit <= self.limits[place, 1])
             return np.where(inside, -self.log_likelihood(np.insert(rest, place, limit, axis=-1)), LARGE)
 
-        return -least(loss, np.delete(self.estimate, place), np.delete(self.limits, place, axis=0))[1]
+        limits = np.delete(self.limits, place, axis=0)
+        return max(-least(loss, np.delete(start, place), limits)[1] for start in self.maxima)
+
+    def _goal(self, confidence: float) -> float:
+        """Return the least ln L within an interval."""
+        return self.largest - self.cut_off(confidence)
+
+    def _likely(self, confidence: float) -> list[np.ndarray]:
+        """Return the maxima of the likelihood that lie within an interval, the highest first."""
+        goal = self._goal(confidence)
+        return [point for point in self.maxima if float(self.log_likelihood(point)) >= goal]
 
     def interval_of_strength(self, log_cycles: float, probability: float, confidence: float = 0.9) -> Interval:
         """Return the interval of ln S at which a share of specimens has failed after so many cycles.
@@ -362,37 +455,56 @@ class Line:
             """Return the levels that give `log_cycles` under the stress `value`, with the other values as they are."""
             return log_cycles - self._life_at_level_0(others, value, probability)
 
-        best = self.best
-        deviate = math.exp(float(best.log_scatter)) * float(ndtri(probability))
-        middle = self.reference + (float(best.level) + deviate - log_cycles) / float(best.slope)
-        return self._ends(middle, 0, level, confidence)
+        def strength(point: np.ndarray) -> float:
+            """Return ln S at which the line itself, without its limit, has the cycles."""
+            own = self.values(point)
+            deviate = math.exp(float(own.log_scatter)) * float(ndtri(probability))
+            return self.reference + (float(own.level) + deviate - log_cycles) / float(own.slope)
+
+        return self._ends([(strength(point), point) for point in self._likely(confidence)], 0, level, confidence)
 
     def interval(self, name: str, confidence: float = 0.9) -> Interval:
         """Return the profile interval of one of the free values, by its name."""
         place = self.free.index(name)
         low, high = self.bounds[name]
-        found = self._ends(float(self.estimate[place]), place, _itself, confidence)
+        begins = [(float(point[place]), point) for point in self._likely(confidence)]
+        found = self._ends(begins, place, _itself, confidence)
         open_low, open_high = found.low <= low, found.high >= high
         return Interval(low if open_low else found.low, high if open_high else found.high)
 
     def _ends(
-        self, best: float, place: int, solved: Solved, confidence: float, start: np.ndarray | None = None
+        self, begins: Sequence[tuple[float, np.ndarray]], place: int, solved: Solved, confidence: float
     ) -> Interval:
-        """Return where the profile of a value falls to the cut-off on both sides of its estimate.
+        """Return where the profile of a value falls to the cut-off on both sides of its likely values.
 
-        `solved` returns the free value at `place` from the value in question and the other free values.
+        `begins` holds likely values with the points (p,) that have them, that of the estimate first: between two maxima
+        of the likelihood the profile may lie below the cut-off, and the interval holds both. `solved` returns the free
+        value at `place` from the value in question and the other free values.
         """
         if not self.tests.failed.any():
             return self._without_failures(place, solved, confidence)
-        goal = self.largest - self.cut_off(confidence)
+        goal = self._goal(confidence)
         bounds = self.limits[place] if place else (-math.inf, math.inf)
-        profile = self._profile(place, solved)
-        others = np.delete(self.estimate if start is None else start, place)
-        return Interval(*(_end(profile, best, others, goal, side, bounds) for side in (-1.0, 1.0)))
+        profile = self._profile(place, solved, goal)
+        low, high = math.inf, -math.inf
+        for value, point in begins:
+            others = np.delete(point, place)
+            if value < low:
+                low = _end(profile, value, others, goal, -1.0, bounds)
+            if value > high:
+                high = _end(profile, value, others, goal, 1.0, bounds)
+        return Interval(low, high)
 
-    def _profile(self, place: int, solved: Solved) -> Profile:
-        """Return the function of a value and a start that gives the largest ln L with that value, and its place."""
+    def _profile(self, place: int, solved: Solved, goal: float) -> Profile:
+        """Return the function of a value and a start that gives the largest ln L with that value, and its place.
+
+        Where ln L stays below `goal`, Newton's method starts from other likely values as well.
+        """
         limits = np.delete(self.limits, place, axis=0)
+        further = np.empty((0, len(limits)))
+        if self.knee:
+            points = [np.array(self.maxima), self._points_by_limit.reshape(-1, len(self.free))]
+            further = np.clip(np.delete(np.concatenate(points), place, axis=1), *limits.T)
 
         def profile(value: float, start: np.ndarray) -> tuple[float, np.ndarray]:
             def loss(rest: np.ndarray) -> np.ndarray:
@@ -402,8 +514,11 @@ class Line:
 
             if not len(start):
                 return -float(loss(start)), start
-            place_of_least, value_there = least(loss, start, limits)
-            return -value_there, place_of_least
+            found = least(loss, start, limits)
+            if -found[1] < goal and len(further):
+                for other in further[np.argsort(loss(further), kind="stable")[:MOST_FURTHER]]:
+                    found = min(found, least(loss, other, limits), key=_value)
+            return -found[1], found[0]
 
         return profile
 
@@ -461,6 +576,11 @@ def expanded(loss: Callable[[np.ndarray], np.ndarray], point: np.ndarray) -> tup
     mixed = (crossed[:m] + crossed[m : 2 * m] - crossed[2 * m : 3 * m] - crossed[3 * m :]) / (4.0 * STEP**2)
     curvature[first, second] = curvature[second, first] = mixed
     return float(values[0]), (up - down) / (2.0 * STEP), curvature
+
+
+def _value(found: tuple[np.ndarray, float]) -> float:
+    """Return the value of what `least` found."""
+    return found[1]
 
 
 def _itself(value: float, others: np.ndarray) -> np.ndarray:

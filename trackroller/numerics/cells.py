@@ -169,7 +169,19 @@ def plain_column(cells: Sequence[str], signs: Collection[str]) -> Sequence[str]:
     """
     if _are_plain(cells, signs):
         return cells
+    with_points = _with_points(cells) if set(signs) == {","} else ()
+    if with_points:
+        return with_points
     return [_plain_or_refused(cell, signs) for cell in cells]
+
+
+def _with_points(cells: Sequence[str]) -> Sequence[str]:
+    """Return numbers with decimal commas as numbers with points; () if some cells are not that plain."""
+    text = "\n".join(cells)
+    if "." in text or re.search(r",(?!\d)", text):
+        return ()
+    with_points = text.replace(",", ".").split("\n")
+    return with_points if len(with_points) == len(cells) and _are_plain(with_points, ".") else ()
 
 
 def _are_plain(cells: Sequence[str], signs: Collection[str]) -> bool:

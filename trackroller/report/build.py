@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import logging
-import tempfile
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,7 +11,8 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.files import interrupts_wait_for_files
-from trackroller.report.pages.study import contents, page_text, write_report
+from trackroller.report.pages.study import report_text as report_text  # public: reports without a folder
+from trackroller.report.pages.study import write_report
 from trackroller.results.results import Results
 from trackroller.results.stored_study import open_as_reported, open_study
 from trackroller.study.store.crate import write_crate
@@ -60,7 +60,7 @@ def build_report(folder: StudyFolder, tell: Callable[[str], None] = log.info) ->
         tell("draw the figures")
         draw_figures(results, place / "figures")
         tell("write the report")
-        report = write_report(results, place / "figures", place / "report.html")
+        report = write_report(results, place / "report.html")
         if folder.plan_file.exists() and not results.unfinished:  # results solved in Python have no plan, and no crate
             write_crate(folder.root)
             for path in files_below(folder.root / UNFINISHED):
@@ -80,15 +80,6 @@ def draw_solved(folder: StudyFolder, out_dir: Path | None = None) -> tuple[Path,
         results = open_as_reported(folder.root)
         out = out_dir or place_of_pages(results, folder) / "figures"
         return out, draw_figures(results, out)
-
-
-def report_text(results: Results) -> str:
-    """Return the report of a study as HTML, with its analysis and figures; no file is left behind."""
-    from trackroller.report.figures.study import draw_all  # heavy: matplotlib and seaborn
-
-    with tempfile.TemporaryDirectory() as place:
-        draw_all(results, Path(place))
-        return page_text(results, contents(results), Path(place))
 
 
 def write_analysis(results: Results, out: Path) -> None:

@@ -23,6 +23,8 @@ _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 BEYOND = "beyond the S-N data"
 NO_FAILURE = "no failure"
+LEAST_YEARS = 1.0  # of a life that is said in years
+MOST_YEARS = 1000
 LEAST_CHANCE = 1e-4  # a probability nearer to 0 or 1 is written as a bound
 GUIDE_UNKNOWN = (
     "the roller stands for the pair, because the guide's hours are unknown: give `guide_overrollings_per_hour`"
@@ -107,9 +109,19 @@ def lives_in_years(function: Callable[..., Any]) -> Callable[..., Any]:
 
 
 def hour_unit(hours: float) -> str:
-    """Return the unit behind a life: 'h', or with its years if the duty of the roller is known: 'h (4.2 years)'."""
+    """Return the unit behind a life: 'h', or with its years if the duty of the roller is known: 'h (4.2 years)'.
+
+    A life below a year is said in hours alone, and more than 1,000 years are no number that a person says.
+    """
     duty = _duty.get()
-    return f"h ({_year_words(rounded(years(hours, duty), 2))})" if duty and math.isfinite(hours) else "h"
+    if not duty or not math.isfinite(hours):
+        return "h"
+    lasts = years(hours, duty)
+    if lasts < LEAST_YEARS:
+        return "h"
+    if lasts > MOST_YEARS:
+        return f"h (over {count(MOST_YEARS)} years)"
+    return f"h ({_year_words(rounded(lasts, 2))})"
 
 
 def _year_words(*ends: str) -> str:
@@ -135,9 +147,26 @@ def between(low: float, high: float, beyond: bool = False) -> str:
         return lasting(low, "h", beyond)
     if math.isinf(high):
         return f"{lasting(low, 'h')} or more ({BEYOND})"
+    return f"{rounded(low)} to {rounded(high)} {range_unit(low, high)}" + (f" ({BEYOND})" if beyond else "")
+
+
+def years_of(low: float, high: float | None = None) -> str:
+    """Return a life in hours, or a range of lives, in years: '4.2 years'; '' without a duty or below a year."""
+    unit = hour_unit(low) if high is None or high == low else range_unit(low, high)
+    return unit.removeprefix("h").strip(" ()")
+
+
+def range_unit(low: float, high: float) -> str:
+    """Return the unit behind a range of lives: 'h', or with its years where an end lasts at least one."""
     duty = _duty.get()
-    in_years = f" ({_year_words(*(rounded(years(end, duty), 2) for end in (low, high)))})" if duty else ""
-    return f"{rounded(low)} to {rounded(high)} h{in_years}" + (f" ({BEYOND})" if beyond else "")
+    if not duty or not (math.isfinite(low) and math.isfinite(high)):
+        return "h"
+    first, last = (years(end, duty) for end in (low, high))
+    if last < LEAST_YEARS or last > MOST_YEARS:
+        return "h"
+    if first < LEAST_YEARS:
+        return f"h (up to {_year_words(rounded(last, 2))})"
+    return f"h ({_year_words(rounded(first, 2), rounded(last, 2))})"
 
 
 class Life(float):
@@ -243,6 +272,11 @@ def capital(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
+def lowered(text: str) -> str:
+    """Write the first letter small, unless the word is a symbol or a name such as POM."""
+    return text[:1].lower() + text[1:] if text[1:2].islower() else text
+
+
 def shortened(words: Sequence[str], most: int = 4) -> str:
     """Join words; of more than `most` words the last stand as 'and three more', 'and 12 more'."""
     if len(words) <= most:
@@ -259,6 +293,12 @@ def unit_text(units: str) -> str:
 def row_unit(units: str) -> str:
     """Write a CF unit behind a number in a row; a pure number has none."""
     return unit_text(units).replace("–", "")
+
+
+def year_words() -> str:
+    """Return the hours of a year on the duty: '4,000 h are 1 year'; '' without a duty."""
+    duty = _duty.get()
+    return f"{grouped(1 / years(1.0, duty), 3)} h are 1 year" if duty else ""
 
 
 def head_unit(units: str) -> str:
@@ -359,3 +399,49 @@ def chance(value: float, low: float = math.nan, high: float = math.nan, words: s
         return "–"
     text, *ends = (_bounded(round(v * whole), whole) for v in (value, low, high) if math.isfinite(v))
     return f"{text} ({words}{' to '.join(ends)})" if ends else text
+
+
+COARSE = 0.1  # error from which two figures are written
+MOST_FIGURES = 6  # that tell a number from the one beside it
+
+
+def carried(value: float, error: float = math.nan, beside: Sequence[float] = ()) -> str:
+    """Write a result with the figures that its error carries: three, or two from an error of 10 % on.
+
+    Parameters
+    ----------
+    value : any float
+    error : its told relative error [1]; NaN if none is told
+    beside : numbers that it is compared with; more figures are written where it would read like one of them
+
+    Examples
+    --------
+    >>> carried(211634.0, 0.48), carried(211634.0, 0.02), carried(419.96, 0.002, [420.0])
+    ('210,000', '212,000', '419.96')
+    """
+    figures = 2 if error >= COARSE else 3
+    others = [grouped(other, MOST_FIGURES) for other in beside if math.isfinite(other) and other != value]
+    while figures < MOST_FIGURES and grouped(value, figures) in others:
+        figures += 1
+    return grouped(value, figures)
+
+
+def grouped(value: float, figures: int = 0) -> str:
+    """Write a number as `number` does, but thousands with a comma from 1,000 on, as those beside it in a column.
+
+    Examples
+    --------
+    >>> grouped(8970.0, 3), grouped(212000.0, 3), grouped(-1999.96, 4)
+    ('8,970', '212,000', '−2,000')
+    """
+    text = number(value, figures)
+    whole = text.replace("−", "-")
+    if len(whole.lstrip("-")) == 4 and whole.lstrip("-").isdigit():
+        return f"{int(whole):,}".replace("-", "−")
+    return text
+
+
+def carried_range(low: float, high: float, error: float = math.nan, beside: Sequence[float] = ()) -> str:
+    """Write a range as `carried` does; one number where both ends read alike."""
+    ends = (carried(low, error, beside), carried(high, error, beside))
+    return " to ".join(dict.fromkeys(ends))

@@ -1,4 +1,4 @@
-"""Tables and sentences on a terminal, in a file or in a pipe."""
+"""Tables and texts on a terminal, in a file or in a pipe."""
 
 from __future__ import annotations
 

@@ -7,7 +7,7 @@ import json
 import math
 import re
 import zipfile
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -21,9 +21,11 @@ from trackroller.parameters import REGIME_LABELS
 from trackroller.parameters.of_carriage import parameter_of
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report import html
+from trackroller.report.headlines import headline_of
 from trackroller.report.numbers import long_name, plain, unit_text
 from trackroller.report.pages.sheet import collect
 from trackroller.report.tables.table import Table, cell
+from trackroller.results.answer import Answer
 from trackroller.results.results import Results
 from trackroller.roller import record
 from trackroller.roller.aliases import RADII
@@ -31,7 +33,7 @@ from trackroller.roller.dataset import FLAGS
 from trackroller.roller.duty import duty_of, years
 from trackroller.roller.output_names import PARTS
 from trackroller.study.outputs import flat, parts_in
-from trackroller.study.store.seal import put
+from trackroller.study.store.seal import put, put_text
 
 
 def export(tables: Sequence[Table], folder: Path) -> list[Path]:
@@ -55,6 +57,82 @@ def export(tables: Sequence[Table], folder: Path) -> list[Path]:
     book = folder / "tables.xlsx"
     put(book, lambda beside: _save(beside, tables))
     return [*paths, book]
+
+
+def write_answer(answer: Answer, folder: Path) -> list[Path]:
+    """Write the record of an answer as a workbook, its rows as CSV, and all of it as JSON.
+
+    The workbook has the sheets `headline`, `rows` (numbers with all digits, texts as texts), `columns` with their
+    definitions, `effects`, `ends` and `warnings`.
+
+    Parameters
+    ----------
+    answer : the record
+    folder : place of `answer.xlsx`, `answer.csv` and `answer.json`, made when missing
+
+    Returns
+    -------
+    The paths written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    rows = _rows_sheet(answer)
+    book, table, record_file = (folder / f"answer.{ending}" for ending in ("xlsx", "csv", "json"))
+    put(book, lambda beside: _save(beside, [_headline_sheet(answer), rows, *_further_sheets(answer)]))
+    with table.open("w", newline="", encoding="utf-8") as file:
+        csv.writer(file).writerows([_inert(value) for value in row] for row in [rows.heads, *rows.rows])
+    put_text(record_file, json.dumps(answer.to_dict(), ensure_ascii=False, allow_nan=False, indent=1) + "\n")
+    return [book, table, record_file]
+
+
+def _headline_sheet(answer: Answer) -> Table:
+    """Return the headline and its fields, one field a row; a field of a field has its name behind a dot."""
+    fields = [("headline", headline_of(answer).text), ("question", answer.question), ("kind", answer.kind)]
+    fields += [(f"output.{name}", text) for name, text in zip(("name", "words", "units"), answer.output, strict=True)]
+    fields += list(_fields("", answer.headline))
+    for place, one in enumerate(answer.required, 1):
+        fields += list(_fields(f"required.{place}", vars(one)))
+    fields += list(_fields("facts", answer.facts))
+    return Table("headline", "Headline", ["field", "value"], [list(field) for field in fields])
+
+
+def _fields(name: str, value: Any) -> Iterator[tuple[str, Any]]:
+    """Yield each plain value of a record with the names that lead to it."""
+    if isinstance(value, Mapping):
+        for key, one in value.items():
+            yield from _fields(f"{name}.{key}".lstrip("."), one)
+    elif isinstance(value, (list, tuple)):
+        for place, one in enumerate(value, 1):
+            yield from _fields(f"{name}.{place}", one)
+    elif value is not None:
+        yield name, value if isinstance(value, (str, int, float)) else str(value)
+
+
+def _rows_sheet(answer: Answer) -> Table:
+    """Return the rows of an answer: every column that a reader is shown, and both ends of a range."""
+    names = [name for column in answer.columns for name in (column.name, column.until) if name]
+    kept = [name for name in dict.fromkeys(names) if name in answer.table]
+    columns = [answer.table[name].astype(object).tolist() for name in kept]
+    return Table("rows", "Rows", kept, [list(row) for row in zip(*columns, strict=True)])
+
+
+def _further_sheets(answer: Answer) -> list[Table]:
+    """Return definitions of the columns, effects, ends and warnings."""
+    heads = ["column", "title", "unit", "kind", "until", "definition"]
+    told = [[one.name, one.title, one.units, one.kind, one.until, one.meaning] for one in answer.columns]
+    sheets = [Table("columns", "Columns", heads, told)]
+    effects = [
+        [curve.factor, level, *(float(end[place]) for end in (curve.middle, curve.low, curve.high)), curve.units]
+        for curve in answer.curves
+        for place, level in enumerate(curve.levels)
+    ]
+    sheets.append(Table("effects", "Effects", ["factor", "level", "middle", "low", "high", "unit of level"], effects))
+    if not answer.ends.empty:
+        ends = [list(row) for row in answer.ends.itertuples(index=False)]
+        sheets.append(Table("ends", "Ends", list(map(str, answer.ends.columns)), ends))
+    warnings = [[one.code, one.count, one.of, one.what, one.where] for one in answer.warnings]
+    unchecked = [["not_checked", "", "", body, limit] for body, of in answer.not_checked.items() for limit in of]
+    sheets.append(Table("warnings", "Warnings", ["code", "count", "of", "what", "where"], [*warnings, *unchecked]))
+    return sheets
 
 
 MOST_ROWS = 1_048_575  # of a sheet below its head, by the format XLSX

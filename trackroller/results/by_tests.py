@@ -315,7 +315,7 @@ def bands(results: Results, deviations: Mapping[str, np.ndarray]) -> xr.Dataset:
         over the cases that roll. Their attributes `tests` and `materials` say how many tests the bands rest on, and of
         which materials.
     """
-    own, wanted = required(results), results.config.analysis.target
+    own, wanted = required(results), results.config.requirement
     words = {"tests": str(sum(fit.rows for fit in own.fits.values())), "materials": listing(list(own.fits))}
     columns = _columns(results, list(wanted))
     found = []

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -91,7 +90,7 @@ def goal_without_lives(results: Results) -> tuple[str, str, str] | None:
     """Return what compares designs without lives: a stress, else whether they meet the target; None without both."""
     if STRESS[0] in results.table:
         return STRESS
-    return UNRANKED if results.config.analysis.target else None
+    return UNRANKED if results.config.requirement else None
 
 
 @dataclass(frozen=True)
@@ -231,7 +230,7 @@ class Candidates:
 
     @cached_property
     def table(self) -> pd.DataFrame:
-        """Return one row a design, in the order of the verdict of the study: the best first.
+        """Return one row a design, the best first: by the share of conditions that it holds, then by its life.
 
         Columns: the choices; the numbers of cases `cases`, `rolls` and `valid`; `worst`, `median` and `best` of the
         goal over the valid cases, `worst_case` (its row), and which of the three lie beyond the S-N data; the number
@@ -239,14 +238,6 @@ class Candidates:
         where a case slips or lifts off; with random conditions `b10`, the life that nine of ten cases reach if cases
         that are not valid count as 0, with its 95 % interval; `rank`, equal for ties.
         """
-        found = self.results.verdict
-        if found is None or (found.goal, self.choices) != (self.goal, found.choices):
-            return self.by_life  # of other choices, or by another life
-        return _in_order(self._listed[0], found)
-
-    @cached_property
-    def by_life(self) -> pd.DataFrame:
-        """Return the rows of `table` in the order of the lives alone, without target and ranges."""
         return _ranked(*self._listed)
 
     @cached_property
@@ -273,6 +264,9 @@ class Candidates:
             table[name] = np.where(case < 0, np.nan, margin[case])
         sign = 1.0 if self.rising else -1.0
         key = sign * table["worst"]
+        if self.goal == FIRST_LIMIT:
+            case = self._least(results.sure_life, self.usable)
+            key = pd.Series(np.where(case < 0, np.nan, results.sure_life[case]), table.index)
         held = table["valid"] / table["cases"]
         if self.drawn and self.rising:
             table = table.assign(**self._quantile())
@@ -288,10 +282,10 @@ class Candidates:
     def targets_met(self) -> tuple[np.ndarray, np.ndarray] | None:
         """Return how many cases of each design meet every target of the study, and of how many, shape (designs,) each.
 
-        Rows of a table that only some designs were tried under count, too. None without the key `analysis.target`.
+        Rows of a table that only some designs were tried under count, too. None without the key `requirement`.
         """
         results, own = self.results, self.design >= 0
-        if not (targets := results.config.analysis.target):
+        if not (targets := results.config.requirement):
             return None
         rows = own & results.held & ~np.isnan(results.column(self.goal[0]))
         rows &= np.all([*map(results.meets, targets)], axis=0)
@@ -364,24 +358,6 @@ def _ranked(table: pd.DataFrame, held: pd.Series, key: pd.Series, middle: pd.Ser
     same = np.isclose(shares[1:], shares[:-1], TIED, 0) & np.isclose(keys[1:], keys[:-1], TIED, 0, equal_nan=True)
     rank = np.maximum.accumulate(np.concatenate([[1], np.where(same, 1, np.arange(2, len(order) + 1))]))
     return table.iloc[order].assign(rank=rank)
-
-
-def _in_order(table: pd.DataFrame, found: Any) -> pd.DataFrame:
-    """Sort designs as the verdict of the study does, those without a valid case last; designs with equal lives tie.
-
-    `found` is a `Verdict`, whose file imports this one.
-    """
-    listed = sorted(found.candidates, key=lambda one: not table.at[one.number, "valid"])  # they have no number
-    # of lives of 0 and without end, what the candidate reaches elsewhere decides
-    beside = [one.holds if one.low in (0.0, np.inf) else 0.0 for one in listed]
-    alike = [(one.status, one.low, one.met, more) for one, more in zip(listed, beside, strict=True)]
-    rank = [1 + next(i for i, other in enumerate(alike) if other == own) for own in alike]
-    table = table.loc[[one.number for one in listed]].assign(rank=rank)
-    if found.sampled and "b10" in table:  # conditions that no candidate meets do not count, here as there
-        ends = np.array([[one.low, *one.interval] for one in listed])
-        table = table.assign(b10=ends[:, 0], b10_low=ends[:, 1], b10_high=ends[:, 2])
-        table["b10_beyond"] = [one.beyond for one in listed]
-    return table
 
 
 def hardest_first(candidates: Candidates) -> np.ndarray:

@@ -66,6 +66,8 @@ class Growing:
         widths = seen["half_width"].values()
         if seen["empty"]:
             return f"no case gives a valid {' or '.join(seen['empty'])}, so nothing is left to decide"
+        if self._is_decided():
+            return "every share is clear of the share that the requirement wants"
         if all(width is not None and width <= until.half_width for width in widths):
             return f"the intervals asked for are narrower than ± {until.half_width:g}"
         if seen["constant"]:
@@ -82,6 +84,12 @@ class Growing:
             left = f"about {duration(3600 * needed)} of solving"
             return f"{spent} of the {until.hours:g} h are spent, and the next step needs {left}"
         return ""
+
+    def _is_decided(self) -> bool:
+        """Return whether the last look tells of every design point whether it meets every requirement of `until`."""
+        decided = self.looks[-1].get("decided", {})
+        points = len(self.study.drawn.points) if self.study.config.method.points else 0
+        return bool(points) and all(decided.get(name, 0) == points for name in self.until.of)
 
     def record(self, why: str) -> dict[str, str]:
         """Return the attribute of `study.nc` with the looks."""

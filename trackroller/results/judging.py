@@ -13,15 +13,18 @@ from trackroller.methods.b10 import b10
 from trackroller.methods.factor import readable
 from trackroller.methods.optimise import crowding
 from trackroller.parameters import REGIME_LABELS, REGIMES
-from trackroller.results.candidates import Candidates, goal_without_lives
+from trackroller.results.answer import Required
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import Comparison
 from trackroller.results.constraints import Column
-from trackroller.results.intervals import Cases
 from trackroller.results.results import OUTSIDE, Results
 from trackroller.roller.output_names import is_life
+from trackroller.roller.requirement import Requirement
 from trackroller.study.file.search import judged_by
 from trackroller.study.outputs import flat
 
 SAFE_B10 = "B10 of {} over all conditions"  # a condition in which it does not roll, or has no known life, counts as 0
+SHARE_ROUNDING = 1e-9  # of a share of conditions
 OPTIMUM = "optimum"  # attribute of study.nc with what the search found (JSON)
 
 
@@ -35,10 +38,11 @@ class Judged:
     values : goals in their units, shape (n, goals); NaN where no condition gives a value
     costs : the same with smaller as better
     violation : share of the conditions in which the design is not valid [1], shape (n,); 0 where B10 or a probability
-        counts these conditions
+        counts these conditions, and where the requirement allows so many to fail
     reasons : cases by what they break, of all designs together
-    short : how far a design is from the target of the study, see `shortfall`; shape (n,),
-        0 everywhere without a target
+    goals : what each column of `values` is, with `min` or `max`
+    short : how far a design is from the requirement of the study, see `shortfall`; shape (n,),
+        0 everywhere without one
     life : shortest life over the conditions, of a range its low end; shape (n,), 0 everywhere without lives
     """
 
@@ -49,10 +53,11 @@ class Judged:
     short: np.ndarray
     life: np.ndarray
     reasons: Mapping[str, int] = field(default_factory=dict)
+    goals: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def missed(self) -> np.ndarray:
-        """What a design misses, shape (n,): conditions in which it is not valid, and the target; 0 if it misses none.
+        """What a design misses, shape (n,): conditions in which it is not valid, and the requirement; 0 for nothing.
 
         A design that misses less is better, whatever its goals.
         """
@@ -60,12 +65,15 @@ class Judged:
 
     def take(self, rows: np.ndarray) -> Judged:
         """Return some of the designs."""
-        return replace(self, **{name: getattr(self, name)[rows] for name in _BY_DESIGN})
+        own: dict[str, Any] = {name: getattr(self, name)[rows] for name in _BY_DESIGN}
+        return replace(self, **own)
 
     def __add__(self, other: Judged) -> Judged:
         """Return the designs of both."""
         counts = {k: self.reasons.get(k, 0) + other.reasons.get(k, 0) for k in {**self.reasons, **other.reasons}}
-        both = {name: np.concatenate((getattr(self, name), getattr(other, name))) for name in _BY_DESIGN}
+        both: dict[str, Any] = {
+            name: np.concatenate((getattr(self, name), getattr(other, name))) for name in _BY_DESIGN
+        }
         return replace(self, **both, reasons=counts)
 
 
@@ -94,19 +102,30 @@ def judge(results: Results, genes: np.ndarray | None = None) -> Judged:
         places = [list(design.factors).index(name) for name in design.meta["outer"]]
         genes = design.unit[:: design.meta["inner_samples"], places]
     costs = table * np.where(np.array(list(goals.values())) == "max", -1.0, 1.0)
-    violation = np.isnan(table).any(axis=1) if counted else 1 - known.mean(axis=1)
-    short = shortfall(results, any(judged_by(goal)[0] == "b10" for goal in goals))
-    return Judged(
-        genes, table, costs, violation.astype(float), short, _shortest(results), _reasons(results, known.ravel())
-    )
+    if counted:
+        violation = np.isnan(table).any(axis=1).astype(float)
+    else:
+        violation = _beyond_spare(results, 1.0 - known.mean(axis=1))
+    reasons = _reasons(results, known.ravel())
+    return Judged(genes, table, costs, violation, shortfall(results), _shortest(results), reasons, goals)
+
+
+def _beyond_spare(results: Results, lost: np.ndarray) -> np.ndarray:
+    """Return shares of conditions in which designs are not valid; 0 where the requirement allows so many to fail."""
+    wanted = _to_meet(results).values()
+    if not wanted or not all(own.in_shares for own in wanted):
+        return lost
+    spare = 1.0 - max(own.probability for own in wanted)
+    return np.where(lost <= spare + SHARE_ROUNDING, 0.0, lost)
 
 
 def _shortest(results: Results) -> np.ndarray:
     """Return the shortest life of each design over its conditions, of a range its low end, shape (designs,)."""
     shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    if results.life is None:
+    life = life_of_search(results)
+    if life is None:
         return np.zeros(shape[0])
-    return np.asarray(Cases(Candidates.grouped(results, results.life)).ends[0].reshape(shape).min(axis=1))
+    return np.asarray(life.low.reshape(shape).min(axis=1))
 
 
 def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
@@ -128,41 +147,103 @@ def _values(results: Results) -> tuple[np.ndarray, np.ndarray]:
 
 
 def required(results: Results) -> bool:
-    """Return whether a search has a target that its designs have to meet, instead of a goal that is its probability."""
+    """Return whether a search has a requirement that its designs have to meet."""
+    return bool(_to_meet(results))
+
+
+def _to_meet(results: Results) -> dict[str, Requirement]:
+    """Return what the designs of a search have to meet.
+
+    An output whose probability is a goal has to meet its requirement in as many conditions as possible, unless the
+    requirement says in how many.
+    """
     chances = {judged_by(goal)[1] for goal in goals_of_search(results) if judged_by(goal)[0] == "probability"}
-    return bool(set(results.config.analysis.target) - chances)
+    wanted = results.config.requirement
+    return {name: own for name, own in wanted.items() if own.in_shares or name not in chances}
 
 
-def shortfall(results: Results, nine_of_ten: bool = False, exact: bool = False) -> np.ndarray:
-    """Return how far each design of a search is from the target of the study, shape (designs,).
+def judges_of(results: Results) -> list[tuple[Required, CaseRanges]]:
+    """Return each requirement that the designs of a search have to meet, with the output that judges it."""
+    own = Comparison.of(results)
+    wanted = _to_meet(results)
+    return [] if own is None else [pair for pair in own.judges if pair[0].output in wanted]
+
+
+def life_of_search(results: Results) -> CaseRanges | None:
+    """Return the life that orders designs with the same goals, with its range; None in a study without lives."""
+    return None if results.life is None else CaseRanges(results, results.life, True)
+
+
+@dataclass(frozen=True)
+class Shares:
+    """The share of the conditions in which each design of a search meets one requirement.
+
+    Attributes
+    ----------
+    required : the requirement
+    sure, may : shares of the conditions that surely meet it, and that may meet it [1], shape (designs,)
+    wanted : share that is enough [1]
+    """
+
+    required: Required
+    sure: np.ndarray
+    may: np.ndarray
+    wanted: float
+
+    def enough(self, shares: np.ndarray) -> np.ndarray:
+        """Return which shares are enough."""
+        return np.asarray(shares >= self.wanted - SHARE_ROUNDING)
+
+
+def shares_of(results: Results, exact: bool = False) -> list[Shares]:
+    """Return the share of the conditions in which each design meets each requirement of a search.
+
+    All conditions have to meet a requirement without a probability; nine of ten where a goal is a B10.
+    """
+    design = results.design
+    shape = design.meta["design_points"], design.meta["inner_samples"]
+    enough = 1.0
+    if any(judged_by(goal)[0] == "b10" for goal in goals_of_search(results)):
+        enough = min(1.0, float(np.floor(0.9 * shape[1] + 1.0)) / shape[1])
+    found = []
+    for one, own in judges_of(results):
+        sure, may = (hits.reshape(shape).mean(axis=1) for hits in own.meets(one, exact))
+        wanted = enough if np.isnan(one.probability) else one.probability
+        found.append(Shares(one, sure, may, wanted))
+    return found
+
+
+def shortfall(results: Results, exact: bool = False) -> np.ndarray:
+    """Return how far each design of a search is from the requirement of the study, shape (designs,).
 
     Parameters
     ----------
     results : the solved search
-    nine_of_ten : whether nine of ten conditions have to meet the target, as for a goal that is a B10, instead of all
     exact : whether the errors of the solutions do not count
 
     Returns
     -------
-    0 where the design meets the target; 1 where a range or an error leaves that open, 2 where it misses the target,
-    plus a part below 1 by the share of the conditions that may miss it, then by the life. 0 for all without a target,
-    and where the probability of the target is a goal itself.
+    0 where the design meets every requirement; 1 where a range or an error leaves that open, 2 where it misses one,
+    plus a part below 1 by the share of the conditions that lacks, then by the life. 0 for all without a requirement.
     """
-    goal = results.life or goal_without_lives(results)
-    shape = results.design.meta["design_points"], results.design.meta["inner_samples"]
-    if not required(results) or goal is None:
-        return np.zeros(shape[0])
-    cases = Cases(Candidates.grouped(results, goal))
-    least, *hits = cases.on_target(exact=exact)
-    sure, may = (own.astype(float).reshape(shape) for own in hits)
+    count = results.design.meta["design_points"]
+    shares = shares_of(results, exact)
+    if not shares:
+        return np.zeros(count)
+    met = np.all([own.enough(own.sure) for own in shares], axis=0)
+    may = np.all([own.enough(own.may) for own in shares], axis=0)
+    lack = np.max([np.clip(own.wanted - own.sure, 0.0, 1.0) for own in shares], axis=0)
+    missing = 0.9 * lack + 0.09 * _life_gap(results) * (0.5 / results.design.meta["inner_samples"])
+    return np.asarray(np.where(met, 0.0, np.where(may, 1.0, 2.0) + missing))
 
-    def of_design(values: np.ndarray) -> np.ndarray:
-        return np.array([b10(own)[0] if nine_of_ten else own.min() for own in values])
 
-    lives = of_design(cases.ends[0].reshape(shape))
-    gap = 0.0 if np.isnan(least) else 1.0 - np.clip(lives / least, 0.0, 1.0)
-    missing = 0.9 * (1.0 - sure.mean(axis=1)) + 0.09 * gap * (0.5 / shape[1])
-    return np.asarray(np.where(of_design(sure) > 0, 0.0, np.where(of_design(may) > 0, 1.0, 2.0) + missing))
+def _life_gap(results: Results) -> np.ndarray:
+    """Return how much the shortest life of each design lacks of the required one, 0 to 1, shape (designs,)."""
+    gap = np.zeros(results.design.meta["design_points"])
+    for one, own in judges_of(results):
+        if is_life(own.output[0]) and one.least > 0:
+            gap = np.maximum(gap, 1.0 - np.clip(_shortest(results) / one.least, 0.0, 1.0))
+    return gap
 
 
 def _met(results: Results, output: str) -> np.ndarray:
@@ -205,6 +286,12 @@ def recommended(best: Judged) -> int:
     """
     shares = _normalised(best.costs)
     return int(np.lexsort((-best.life, shares[:, 0], np.round((shares**2).sum(axis=1), 9), best.missed))[0])
+
+
+def best_in(best: Judged, goal: int) -> int:
+    """Return the design of a front that is best in one goal; of equal ones the other goals decide, then the life."""
+    others = np.delete(best.costs, goal, axis=1).T
+    return int(np.lexsort((-best.life, *others, best.costs[:, goal], best.missed))[0])
 
 
 def _normalised(costs: np.ndarray) -> np.ndarray:

@@ -40,11 +40,19 @@ def look(results: Results) -> dict[str, Any]:
     dict
         `cases`, and by output `half_width` (None: no interval yet) and `at`, the factor or design point with the widest
         interval; `constant` names outputs that do not vary, so that they have no index, and `empty` those without a
-        valid case. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
+        valid case. `decided` counts the design points whose share is clear of the share that a requirement wants: their
+        interval counts as 0. `unsure` numbers the design points with a wider interval than wanted (inner_outer).
     """
     design, until = results.design, results.config.until
     assert until is not None
-    seen: dict[str, Any] = {"cases": design.size, "half_width": {}, "at": {}, "constant": [], "empty": []}
+    seen: dict[str, Any] = {
+        "cases": design.size,
+        "half_width": {},
+        "at": {},
+        "constant": [],
+        "empty": [],
+        "decided": {},
+    }
     names = _names(results)
     unsure = np.zeros(len(names), dtype=bool)
     inside = results.inside.any() or results.config.analysis.keep != ("rolling",)
@@ -56,6 +64,10 @@ def look(results: Results) -> dict[str, Any]:
         elif not design.method.points and constant(values):
             seen["constant"].append(name)
         widths = np.where(np.isnan(widths), np.inf, widths).reshape(-1, len(names)).max(axis=0)
+        if design.method.points:
+            decided = _decided(results, name, widths)
+            seen["decided"][name] = int(decided.sum())
+            widths = np.where(decided, 0.0, widths)
         widest, unsure = int(widths.argmax()), unsure | (widths > until.half_width)
         seen["half_width"][name] = float(widths[widest]) if np.isfinite(widths[widest]) else None
         seen["at"][name] = names[widest]
@@ -90,8 +102,34 @@ def _of_points(results: Results, name: str) -> tuple[np.ndarray, np.ndarray]:
             scatter = np.zeros(design.size) if scatter is None else scatter
             halves = [log_b10(values[r], scatter[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points]
             return values, np.where([np.isnan(values[rows]).all() for rows in points], 0.0, halves)
-        hits = hits_of(column, results.config.analysis.target[output], scatter)
-    return values, np.array([share(hits[r], np.arange(r.stop - r.start) % copies, copies)[1] for r in points])
+        hits = hits_of(column, results.config.requirement[output], scatter)
+    return values, _shares(results, hits)[1]
+
+
+def _shares(results: Results, hits: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the share of hits at each design point and the half width of its interval, shape (points,) each."""
+    copies, points = int(results.design.meta["replicates"]), results.design.points
+    found = [share(hits[rows], np.arange(rows.stop - rows.start) % copies, copies) for rows in points]
+    shares, widths = np.array(found, dtype=float).T
+    return shares, widths
+
+
+def _decided(results: Results, name: str, widths: np.ndarray) -> np.ndarray:
+    """Return the design points whose share is clear of the share that a requirement wants, shape (points,) bool.
+
+    More cases would not change whether they meet it.
+    """
+    kind, output = statistic(name)
+    own = results.config.requirement.get(output)
+    if kind != "probability" or own is None or not own.in_shares:
+        return np.zeros(len(widths), dtype=bool)
+    design = results.design
+    column = outputs(results.data, design.factors, [output], unlimited=True, scale="natural", allowed=results.allowed)[
+        0
+    ]
+    scatter = material_deviations(results).get(scattering_body(output))
+    shares = _shares(results, hits_of(column, own, scatter))[0]
+    return np.asarray(np.abs(shares - own.probability) > widths)
 
 
 def _names(results: Results) -> list[str]:

@@ -25,7 +25,7 @@ from trackroller.files import sha256
 from trackroller.methods.factor import Factor
 from trackroller.methods.optimise import first_generation, genes_of, next_generation, nondominated_ranks, survivors
 from trackroller.parameters import PARAMETERS
-from trackroller.results.judging import OPTIMUM, Judged, goals_of_search, judge, recommended, spread
+from trackroller.results.judging import OPTIMUM, Judged, best_in, judge, recommended, spread
 from trackroller.results.stored_study import solved_results
 from trackroller.study.file.load import parse_study
 from trackroller.study.file.study import Study
@@ -42,6 +42,8 @@ DECIDED = 2  # designs of the best fronts that the study's model decides among, 
 TOLERANCE = 0.05  # mm; a choice without the unit mm is changed by 1 % of its range
 POLISH_STEPS = (0.04, 0.02, 0.01, 0.005)  # shares of the range of a real choice
 REPEATED = 3  # times that each of these steps is taken
+CORNER_REPEATED = 8  # times that each step is taken on the way to a corner
+MOST_CATEGORIES = 12  # of a choice without an order whose levels are all tried at a corner
 
 
 @dataclass
@@ -165,11 +167,12 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     """Polish the recommended design, solve the optima at reference, and gather the designs."""
     study, choices = search.study, _choices(search.study)
     usable = decided.violation.min() < 1  # a design that is never valid is no optimum
-    designs = _polished(search, decided, choices) if usable else decided
+    designs, reached = _with_corners(search, decided, choices) if usable else (decided, {})
     front = np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0)
     best = designs.take(front)
     chosen = recommended(best)
-    shown = np.union1d(spread(best.costs, REPORTED), [chosen]) if usable else np.empty(0, int)
+    corners = [best_in(best, goal) for goal in range(best.costs.shape[1])]
+    shown = np.union1d(spread(best.costs, REPORTED), [chosen, *corners]) if usable else np.empty(0, int)
     exact = {"accuracy": "reference"} | ({"contact_model": ELEMENTS} if study.config.contact_model == TABLE else {})
     checked = search.judged(_with(study, **exact), best.genes[shown]) if usable else best.take(shown)
     around = _neighbours(choices, best.genes[chosen]) if usable else []
@@ -193,9 +196,14 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
         for i, (name, step, _) in enumerate(around)
     ]
     result = facts | {
-        "goals": goals_of_search(solved_results(search.ledger(final))),
+        "goals": dict(designs.goals),
         "front": len(front),
         "recommended": int(front[chosen]),
+        "polished": reached.get("", False),
+        "corners": [
+            {"goal": name, "design": int(front[row]), "solved": reached.get(name, False)}
+            for name, row in zip(designs.goals, corners, strict=True)
+        ],
         "optima": optima,
         "neighbours": neighbours,
     }
@@ -204,28 +212,94 @@ def _reported(search: _Search, decided: Judged, facts: dict[str, Any], tell: Tel
     return ledger
 
 
-def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> Judged:
-    """Add neighbours of the recommended design, in falling steps from the best one found so far.
+def _with_corners(search: _Search, decided: Judged, choices: Mapping[str, Factor]) -> tuple[Judged, dict[str, bool]]:
+    """Add designs about the recommended one, then about the best one in each of several goals.
 
-    A step is taken again from the design that it has found, some times at most.
+    Returns
+    -------
+    All designs, and whether no step improves the design any more: by goal, and `""` for the recommended one.
     """
-    for step in (step for step in POLISH_STEPS for _ in range(REPEATED)):
-        front = decided.take(np.flatnonzero(nondominated_ranks(decided.costs, decided.missed) == 0))
-        middle = front.genes[recommended(front)]
+    reached = {}
+    decided, reached[""] = _polished(search, decided, choices, None)
+    goals = list(decided.goals)
+    if len(goals) == 1:
+        return decided, reached | {goals[0]: reached[""]}
+    for number, goal in enumerate(goals):
+        if _is_spent(search, decided):
+            reached[goal] = False
+        else:
+            decided, reached[goal] = _polished(search, decided, choices, number)
+    return decided, reached
+
+
+def _is_spent(search: _Search, decided: Judged) -> bool:
+    """Return whether the hours of the budget are spent."""
+    hours = search.study.config.budget.hours
+    return hours is not None and search.ledger(search.of(search.study, decided.genes)).hours >= hours
+
+
+def _polished(search: _Search, decided: Judged, choices: Mapping[str, Factor], goal: int | None) -> tuple[Judged, bool]:
+    """Add designs about the best one in a goal, or about the recommended one, from the best one found so far.
+
+    The ends of each range come first, then steps that fall. A step is taken again from the design that it has found,
+    some times at most.
+
+    Returns
+    -------
+    All designs, and whether neither an end nor the smallest step improves the last one.
+    """
+    repeated = REPEATED if goal is None else CORNER_REPEATED
+    rounds = [None, *POLISH_STEPS, None]
+    for step in (step for step in rounds for _ in range(repeated)):
+        middle = _leader(decided, goal)
+        beside = _ends(choices, middle) if step is None else _steps(choices, middle, step)
         known = {row.tobytes() for row in decided.genes}
-        tried = []
-        for j, factor in enumerate(choices.values()):
-            if not factor.ordered:
-                continue
-            for side in (-1, 1):
-                genes = middle.copy()
-                top = len(factor.levels) - 1 if factor.discrete else 1.0
-                genes[j] = np.clip(genes[j] + side * (1 if factor.discrete else step), 0, top)
-                if genes.tobytes() not in known:
-                    tried.append(genes)
+        tried = [genes for genes in beside if genes.tobytes() not in known]
         if tried:
             decided += search.judged(search.study, np.array(tried))
-    return decided
+    middle = _leader(decided, goal)
+    around = [*_ends(choices, middle), *_steps(choices, middle, POLISH_STEPS[-1])]
+    known = {row.tobytes() for row in decided.genes}
+    return decided, all(genes.tobytes() in known for genes in around)
+
+
+def _leader(designs: Judged, goal: int | None) -> np.ndarray:
+    """Return the genes of the best design in a goal, or of the recommended one."""
+    front = designs.take(np.flatnonzero(nondominated_ranks(designs.costs, designs.missed) == 0))
+    return np.asarray(front.genes[recommended(front) if goal is None else best_in(front, goal)])
+
+
+def _top(factor: Factor) -> float:
+    """Return the largest value of the gene of a choice."""
+    return len(factor.levels) - 1 if factor.discrete else 1.0
+
+
+def _ends(choices: Mapping[str, Factor], middle: np.ndarray) -> list[np.ndarray]:
+    """Return the designs that one choice takes to an end of its range, or to another category."""
+    found = []
+    for j, factor in enumerate(choices.values()):
+        places = [0.0, _top(factor)]
+        if not factor.ordered:
+            places = list(np.arange(len(factor.levels), dtype=float)) if len(factor.levels) <= MOST_CATEGORIES else []
+        found += [_moved(middle, j, place) for place in places]
+    return found
+
+
+def _steps(choices: Mapping[str, Factor], middle: np.ndarray, step: float) -> list[np.ndarray]:
+    """Return the designs a step beside one in each ordered choice; a listed choice moves to its next level."""
+    found = []
+    for j, factor in enumerate(choices.values()):
+        size = 1.0 if factor.discrete else step
+        if factor.ordered:
+            found += [_moved(middle, j, float(np.clip(middle[j] + way, 0, _top(factor)))) for way in (-size, size)]
+    return found
+
+
+def _moved(genes: np.ndarray, place: int, value: float) -> np.ndarray:
+    """Return the genes of a design with another value of one of them."""
+    other = genes.copy()
+    other[place] = value
+    return other
 
 
 def _neighbours(choices: Mapping[str, Factor], genes: np.ndarray) -> list[tuple[str, str, np.ndarray]]:

@@ -22,6 +22,7 @@ from trackroller.results import groups
 from trackroller.results.columns import base_values, case_columns, codes, factor_names
 from trackroller.results.constraints import Column, meeting, quantity_of
 from trackroller.results.lives import BESIDE, FIRST_LIMIT, LIVES, OF_PAIR, body_lives, past_data
+from trackroller.results.own_outputs import with_own_outputs
 from trackroller.roller.duty import years
 from trackroller.roller.output_names import body_of, declared, is_life
 from trackroller.study.design.entries import OPTION_FACTORS
@@ -32,10 +33,9 @@ from trackroller.study.file.study import Study
 from trackroller.study.outputs import Output, case_dims, flat, of_fatigue, of_first_limit
 
 if TYPE_CHECKING:
+    from trackroller.results.answer import Answer
     from trackroller.results.by_tests import ByTests
     from trackroller.results.candidates import Candidates
-    from trackroller.results.findings import Finding
-    from trackroller.results.verdict import Verdict
 
 log = logging.getLogger("trackroller")
 SAME_ENDS = 1e-6  # relative difference of the two ends of a life below which it is one number
@@ -78,6 +78,11 @@ class Results:
     data: xr.Dataset
     known_indices: xr.Dataset | None = field(default=None, repr=False)
     materials_file: Path | None = field(default=None, repr=False)
+
+    def __post_init__(self) -> None:
+        """Add the study's own outputs to the data."""
+        if self.config.own:
+            object.__setattr__(self, "data", with_own_outputs(self.study, self.data))
 
     @property
     def config(self) -> StudyFile:
@@ -187,17 +192,17 @@ class Results:
         return {}
 
     @cached_property
-    def verdict(self) -> Verdict | None:
-        """Return which candidate to build, or why the study cannot say so.
+    def answer(self) -> Answer | None:
+        """Return the answer to the study as one record of numbers and names.
 
         Returns
         -------
-        Verdict or None
-            See `trackroller.results.verdict.Verdict`; None for a search, and without lives, stresses and targets.
+        Answer or None
+            See `trackroller.results.answer.Answer`; None for a search that did not come to its end.
         """
-        from trackroller.results.verdict import verdict_of
+        from trackroller.results.questions import answer_of
 
-        return verdict_of(self)
+        return answer_of(self)
 
     @cached_property
     def by_tests(self) -> ByTests | None:
@@ -211,20 +216,6 @@ class Results:
         from trackroller.results.by_tests import by_tests_of
 
         return by_tests_of(self)
-
-    @cached_property
-    def findings(self) -> dict[str, list[Finding]]:
-        """Return what the study shows beside its verdict, as data.
-
-        Returns
-        -------
-        dict
-            `why` one design lasts longer than another, the most important finding first, and where rolling `ends`;
-            lists of `trackroller.results.findings.Finding`.
-        """
-        from trackroller.results.findings import ends, why
-
-        return {"why": why(self), "ends": ends(self)}
 
     def best(self, count: int = 5) -> pd.DataFrame:
         """Return the best designs over all their conditions, the best one first.
@@ -298,7 +289,8 @@ class Results:
         Results by contact and body have the suffixes `_1`, `_2`, `_roller`, `_guide`; a body counts at its worse
         contact.
         """
-        return pd.DataFrame(case_columns(self.data, self.dims))
+        own = {name: flat(self.data, name, self.dims) for name in self.config.own}
+        return pd.DataFrame(case_columns(self.data, self.dims) | own)
 
     @cached_property
     def factors(self) -> tuple[str, ...]:
@@ -582,9 +574,9 @@ class Results:
 
         A life that is a range has to meet it with its low end.
         """
-        ends, judged = self.config.analysis.target[target], self.judged_targets
+        judged = self.judged_targets
         values = judged[target] if target in judged else self.quantity(target)[0].astype(float)
-        return np.asarray((values >= ends.get("min", -np.inf)) & (values <= ends.get("max", np.inf)))
+        return self.config.requirement[target].meets(values)
 
     @cached_property
     def judged_targets(self) -> dict[str, np.ndarray]:
@@ -596,7 +588,7 @@ class Results:
         """
         if self.life != FIRST_LIMIT:
             return {}
-        named = [n for n, ends in self.config.analysis.target.items() if n in OF_PAIR and set(ends) == {"min"}]
+        named = [n for n, ends in self.config.requirement.items() if n in OF_PAIR and ends.only_least]
         return dict.fromkeys(named, self.sure_life)
 
     @cached_property

@@ -54,7 +54,7 @@ def robustness(
         `b10_low` and `b10_high`, the life that 90 % of the rolling cases reach, and `b10_safe`, where every case in
         full slip, in lift-off or failed counts as life 0. A body above its tensile strength has the life 0 in both;
         `beyond_data`, the shortest life beyond the S-N data, NaN without one. `probability` (regime, point)
-        with intervals. `analysis.target` adds the variables of `trackroller.results.targets.targets`.
+        with intervals. The key `requirement` adds the variables of `trackroller.results.targets.targets`.
 
     Raises
     ------

@@ -83,7 +83,9 @@ def analyse(results: Results) -> xr.Dataset:
     own = material_deviations(results)
     judged = results.judged_targets
     scatter = {n: np.where(results.ended_by_fatigue(), own.get("roller", 0.0), 0.0) for n in judged}
-    aims = targets(ds, design, given.target, own | scatter, results.held, judged) if given.target else xr.Dataset()
+    aims, wanted = xr.Dataset(), results.config.requirement
+    if wanted:
+        aims = targets(ds, design, wanted, own | scatter, results.held, judged)
     if given.material_scatter == "fitted":
         aims = aims.merge(bands(results, own), join="left", combine_attrs="override")
     if design.method.points:

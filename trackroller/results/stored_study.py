@@ -21,7 +21,13 @@ from trackroller.roller.record import NOT_GIVEN
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import CASE_FIELDS
 from trackroller.study.design.stored import restored, solved_part
-from trackroller.study.file.load import checked_keys, former_defaults, with_present_names, without_former
+from trackroller.study.file.load import (
+    checked_keys,
+    former_defaults,
+    with_present_keys,
+    with_present_names,
+    without_former,
+)
 from trackroller.study.file.study import Study
 from trackroller.study.outputs import case_dims
 from trackroller.study.store import chunks
@@ -183,7 +189,10 @@ def _study(data: xr.Dataset) -> Study:
     if not isinstance(text, str):
         raise InputError("study", sorted(map(str, data.attrs)), "results with their study file as attribute", _REMEDY)
     written = parse_mapping(text, "stored study file")
-    stored, names = with_present_names(without_former(written)), json.loads(data.attrs.get(NOT_GIVEN, "[]"))
+    stored, names = (
+        with_present_names(with_present_keys(without_former(written))),
+        json.loads(data.attrs.get(NOT_GIVEN, "[]")),
+    )
     study = Study(checked_keys(stored), not_given=tuple(names or former_defaults(written)))
     if changed := _changed(stored, study.as_dict()):
         allowed, wrong = "a study file that is read as it was written", f"has another {changed} in this version"

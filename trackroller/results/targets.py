@@ -1,4 +1,4 @@
-"""Probability that a design meets the key `analysis.target`, at each design point and at each level of a factor."""
+"""Probability that a design meets the key `requirement`, at each design point and at each level of a factor."""
 
 from __future__ import annotations
 
@@ -18,6 +18,7 @@ from trackroller.methods.probability import probabilities
 from trackroller.results.groups import MOST_LEVELS
 from trackroller.results.lives import FIRST_LIMIT
 from trackroller.roller.output_names import body_of, is_life
+from trackroller.roller.requirement import Requirement
 from trackroller.study.design.levels import in_words
 from trackroller.study.outputs import Output, outputs
 
@@ -47,7 +48,7 @@ class Level(NamedTuple):
 def targets(
     ds: xr.Dataset,
     design: Design,
-    wanted: Mapping[str, Mapping[str, float]],
+    wanted: Mapping[str, Requirement],
     deviations: Mapping[str, np.ndarray],
     allowed: np.ndarray | None = None,
     judged: Mapping[str, np.ndarray] = MappingProxyType({}),
@@ -58,7 +59,7 @@ def targets(
     ----------
     ds : gathered study
     design : its design
-    wanted : output -> `min`, `max` or both, in the unit of the output
+    wanted : what is required by output
     deviations : body, or target -> standard deviation of log10 life of its material [1], shape (n,), see
         `material_deviations`
     allowed : cases that count, such as the valid ones, shape (n,)
@@ -106,19 +107,23 @@ def scattering_body(output: str) -> str:
     return (body_of(output) or "roller") if is_life(output) else ""
 
 
-def hits_of(column: Output, limits: Mapping[str, float], deviation: np.ndarray | None) -> np.ndarray:
+def hits_of(column: Output, limits: Requirement, deviation: np.ndarray | None) -> np.ndarray:
     """Return the probability that each case meets a target, shape (n,): 0 or 1 where the material has no scatter."""
-    values, low, high = column.values, limits.get("min", -np.inf), limits.get("max", np.inf)
-    with np.errstate(invalid="ignore"):
-        met = ((values >= low) & (values <= high)).astype(float)
+    values = column.values
+    met = limits.meets(values).astype(float)
     if deviation is None or not (deviation > 0).any():
         return met
+    above_least = _share_above(values, limits.least, deviation)
+    above_most = _share_above(values, limits.most, deviation)
+    return np.where(np.isnan(values), 0.0, np.where(deviation > 0, above_least - above_most, met))
+
+
+def _share_above(lives: np.ndarray, limit: float, deviation: np.ndarray) -> np.ndarray:
+    """Return the share of the lives of a material above a limit, by the median life and the scatter, shape (n,)."""
+    if np.isinf(limit):
+        return np.full(len(lives), 1.0 if limit < 0 else 0.0)
     with np.errstate(divide="ignore", invalid="ignore"):
-        beyond = [
-            stats.norm.cdf(np.log10(values / limits[end]) / np.maximum(deviation, 1e-9)) if end in limits else default
-            for end, default in (("min", 1.0), ("max", 0.0))
-        ]
-    return np.where(np.isnan(values), 0.0, np.where(deviation > 0, beyond[0] - beyond[1], met))
+        return np.asarray(stats.norm.cdf(np.log10(lives / limit) / np.maximum(deviation, 1e-9)))
 
 
 def _all(hits: np.ndarray, names: list[str]) -> np.ndarray:
@@ -222,18 +227,24 @@ def _levels(factor: Factor, values: np.ndarray) -> Iterator[Level]:
         yield Level(factor.name, float(own.min()), float(own.max()), "", index == k)
 
 
+def _finite(limits: list[float]) -> np.ndarray:
+    """Return limits with NaN in place of an infinite one, which asks for nothing."""
+    numbers = np.array(limits, dtype=float)
+    return np.where(np.isinf(numbers), np.nan, numbers)
+
+
 def _coordinates(
-    names: list[str], columns: list[Output], wanted: Mapping[str, Mapping[str, float]], levels: list[Level]
+    names: list[str], columns: list[Output], wanted: Mapping[str, Requirement], levels: list[Level]
 ) -> dict[str, Any]:
     words = [c.long_name for c in columns] + ["all targets"] * (len(names) - len(columns))
     units = [c.units for c in columns] + ["1"] * (len(names) - len(columns))
-    limits = [wanted.get(name, {}) for name in names]
+    limits = [wanted.get(name, Requirement()) for name in names]
     return {
         "target": np.array(names, dtype=str),
         "target_name": ("target", np.array(words, dtype=str)),
         "target_units": ("target", np.array(units, dtype=str)),
-        "target_min": ("target", np.array([limit.get("min", np.nan) for limit in limits], dtype=float)),
-        "target_max": ("target", np.array([limit.get("max", np.nan) for limit in limits], dtype=float)),
+        "target_min": ("target", _finite([limit.least for limit in limits])),
+        "target_max": ("target", _finite([limit.most for limit in limits])),
         **{
             f"level_{key}": ("target_level", np.array([getattr(level, key) for level in levels], dtype=kind))
             for key, kind in (("factor", str), ("low", float), ("high", float), ("text", str))

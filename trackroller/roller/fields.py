@@ -19,6 +19,7 @@ from trackroller.parameters.example import EXAMPLE
 from trackroller.roller.point_files import read_points
 
 FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
+NAME, LONGEST_NAME = "name", 40  # key of a mapping by which tables and headlines call it, and its length
 _OF_LIMITS = {own.name: own for limit in LIMITS.values() for own in limit.mappings}
 
 
@@ -61,10 +62,22 @@ def mapping_text(name: str, value: Any) -> str:
     if name == "friction_law":
         mapping = friction_laws.canonical(value, name)
     elif name in _OF_LIMITS:
-        mapping = _OF_LIMITS[name].canonical(value)
+        mapping = _with_name(name, value)
     else:
         mapping = profiles.canonical(value, name, read_points)
     return json.dumps(mapping, sort_keys=True) if mapping else ""
+
+
+def _with_name(field: str, value: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the checked mapping of a limit, with the name by which tables call it where one is given."""
+    mapping = _OF_LIMITS[field].canonical({key: own for key, own in value.items() if key != NAME})
+    own = value.get(NAME)
+    if own is None:
+        return mapping
+    if not isinstance(own, str) or not own.strip() or len(own) > LONGEST_NAME:
+        allowed = f"a text of at most {LONGEST_NAME} signs"
+        raise InputError(f"{field}.{NAME}", own, allowed, "For example name: NSK-6000.")
+    return mapping | {NAME: own.strip()}
 
 
 def number(name: str, value: Any) -> float:

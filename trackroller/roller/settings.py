@@ -6,19 +6,22 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
-from trackroller.errors import Collector, InputError, check_names
+from trackroller.errors import Collector, InputError, check_names, unknown_name
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
 from trackroller.roller.aliases import ALIASES, RADII, renamed
 from trackroller.roller.case import FIELDS, Case
 from trackroller.roller.duty import checked_duty
 from trackroller.roller.fields import other_than_default
+from trackroller.roller.log_answers import checked_log
+from trackroller.roller.output_names import PARTS
+from trackroller.roller.requirement import checked_requirement, written
 
 if TYPE_CHECKING:
     import xarray as xr
 
 SHEET_FIELDS = ("project", "part", "revision", "date", "author", "checker")  # texts at the head of a sheet
-BESIDE = ("duty", "sheet")  # entries that change no result, and that a result keeps as attributes
+BESIDE = ("duty", "sheet", "requirement", "log")  # entries that change no result, and that a result keeps as attributes
 LONGEST = 200  # signs of a text at the head of a sheet
 
 
@@ -50,7 +53,7 @@ def checked_sheet(value: Any) -> dict[str, str]:
 
 
 def with_beside(ds: xr.Dataset, beside: Mapping[str, Any]) -> xr.Dataset:
-    """Return the result of one case with its duty and the head of its sheet as attributes; see `checked_case`."""
+    """Return the result of one case with the entries `BESIDE` as attributes; see `checked_case`."""
     return ds.assign_attrs({name: json.dumps(value) for name, value in beside.items()})
 
 
@@ -73,12 +76,30 @@ def parts_for_spectrum(given: Mapping[str, Any]) -> tuple[dict[str, Any], dict[s
     Returns
     -------
     tuple of dict
-        The fields that describe the roller, without its loads, options, duty and sheet; and the options that a
+        The fields that describe the roller, without its loads, options and entries `BESIDE`; and the options that a
         spectrum file takes.
     """
-    fields = {key: value for key, value in given.items() if key not in (*OPTIONS, "duty", "sheet")}
+    fields = {key: value for key, value in given.items() if key not in (*OPTIONS, *BESIDE)}
     options = {key: given[key] for key, option in OPTIONS.items() if key in given and "spectrum" in option.files}
     return {key: value for key, value in renamed(fields).items() if key not in LOADS}, options
+
+
+def _checked_beside(key: str, value: Any, duty: Mapping[str, float] | None) -> Any:
+    """Return the checked value of an entry of `BESIDE`, as JSON holds it."""
+    if key == "duty":
+        return checked_duty(value)
+    if key == "sheet":
+        return checked_sheet(value)
+    if key == "log":
+        return checked_log(value)
+    required = checked_requirement(value, duty)
+    for name, own in required.items():
+        if name not in PARTS:
+            raise unknown_name("requirement", name, PARTS)
+        if own.in_shares:
+            allowed = "min and max: one roller has one condition"
+            raise InputError(f"requirement.{name}.probability", own.probability, allowed, "Write it in a study.")
+    return written(required)
 
 
 def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[str, Any]]:
@@ -87,7 +108,7 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     Parameters
     ----------
     values : mapping
-        Fields of a case, options, `duty` and `sheet` by name.
+        Fields of a case, options, and the entries `BESIDE` by name.
 
     Raises
     ------
@@ -101,12 +122,12 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
     (70.0, {'contact_model': 'sliding'}, {'sheet': {'part': '7'}})
     """
     left = dict(values)
-    wrong, beside = Collector(), {}
+    wrong = Collector()
+    beside: dict[str, Any] = {}
     options = {key: left.pop(key) for key in OPTIONS if key in left}
-    for key, checked in zip(BESIDE, (checked_duty, checked_sheet), strict=True):
-        if key in left:
-            with wrong.part():
-                beside[key] = checked(left.pop(key))
+    for key in (name for name in BESIDE if name in left):
+        with wrong.part():
+            beside[key] = _checked_beside(key, left.pop(key), beside.get("duty"))
     with wrong.part():
         check_names("case field", left, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *BESIDE))
     for key in options:

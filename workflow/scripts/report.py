@@ -9,4 +9,5 @@ from trackroller.study.store.seal import check_sealed
 
 log_to(snakemake.log[0], "write the report")
 results = open_study(snakemake.input.study, snakemake.input.sensitivity)
-write_report(results, check_sealed(Path(snakemake.input.figures)), Path(snakemake.output[0]))
+check_sealed(Path(snakemake.input.figures))
+write_report(results, Path(snakemake.output[0]))

@@ -18,10 +18,7 @@ from trackroller.methods.delta import delta
 from trackroller.methods.given_data import given_data
 from trackroller.parameters import expressions
 from trackroller.report.figures.sn_diagram import sn_diagram
-from trackroller.report.pages.study import contents
 from trackroller.report.tables.inputs import as_material
-from trackroller.results.findings import OF_ANALYSIS
-from trackroller.results.pareto import study_pareto
 from trackroller.results.robustness import material_deviations
 from trackroller.results.sensitivity import analyse
 from trackroller.study.file.goals import Analysis
@@ -153,44 +150,6 @@ def test_conditions_compare_join_and_treat_what_is_not_a_number_as_not_met():
         np.testing.assert_array_equal(expressions.condition(text, values), np.array(meets, dtype=bool), err_msg=text)
 
 
-def test_pareto_and_constraints_of_the_study_file_reach_table_and_report(tmp_path):
-    """Three goals, a regime and a limit, from the stored study alone; the table follows the first goal."""
-    ds = solved(
-        LHS
-        | {
-            "pareto": {"roller_life_hours": "max", "friction_power": "min", "axial_force": "max"},
-            "constraints": ["regime != full_slip", "friction_power < 15", "roller_material == 'PA6'"],
-        },
-        lambda x, v: x > 0.9,
-        roller_life_hours=lambda x, v: 100 * v,
-        friction_power=lambda x, v: 10 * v,
-    )
-    front = study_pareto(results_of(ds))
-    kept = ds.isel(case=front["row"].values)
-    assert float(kept["axial_force"].max()) <= 0.9 and float(kept["friction_power"].max()) < 15
-    assert set(kept["roller_material"].values) == {"PA6"}
-    told = next(t for t in contents(results_of(ds))["tables"]["decide"] if t.name == "pareto")
-    assert told.heads[1] == "Life of the roller [h] ↑" and told.rows
-    lives = [float(ds["roller_life_hours"][row[0]]) for row in told.rows]
-    assert lives == sorted(lives, reverse=True)
-
-
-def test_analysis_keys_decide_outputs_and_scale(tmp_path):
-    ds = solved(
-        LHS | {"analysis": {"outputs": ["friction_power"], "scale": "log10"}},
-        roller_life_hours=lambda x, v: v,
-        friction_power=lambda x, v: 10 ** (3 * x),
-    )
-    ds.to_netcdf(tmp_path / "study.nc")
-    sens = analyse(results_of(tmp_path / "study.nc"))
-    assert list(sens["output"].values) == ["friction_power"] and sens["scale"].item() == "log10"
-    told = next(t for t in contents(results_of(ds, sens))["tables"]["more"] if t.name.startswith("measures"))
-    assert told.rows[0][0] == "Axial force" and sens.attrs["method"] == "lhs"
-    # an inert factor's delta is within chance
-    column = told.heads.index("Delta")
-    assert any(row[column].startswith("(") for row in told.rows[1:])
-
-
 def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
     """The rolling half alone decides the index; what drives the slip has an output of its own."""
     ds = solved(
@@ -206,34 +165,6 @@ def test_half_of_the_cases_in_full_slip_bias_nothing_and_are_told():
     assert float(sens["first"].sel(output="full_slip", factor="axial_force")) > 0.9
     assert "constant" in sens["note"].sel(output="friction_power").item()
     assert np.isnan(sens["delta"].sel(output="friction_power")).all()
-    assert OF_ANALYSIS["index"](sens, "friction_power") is None
-
-
-def test_constraints_condition_indices_lives_and_sentences_without_a_pareto_set():
-    """Above 12 W the life depends on the velocity alone; below 12 W the axial force decides."""
-    ds = solved(
-        LIVES | {"constraints": ["friction_power < 12", "regime != full_slip"]},
-        lambda x, v: x > 0.9,
-        roller_life_hours=lambda x, v: np.where(v < 1.2, 10 ** (x + 0.01 * v), 10 ** (8 + v)),
-        friction_power=lambda x, v: 10 * v,
-    )
-    free = ds.copy()
-    free.attrs = {**ds.attrs, "study": parse_study(LIVES).merged()}
-    kept = (ds["velocity"].values < 1.2) & (ds["axial_force"].values <= 0.9)
-    index = {}
-    for name, one in (("limited", ds), ("free", free)):
-        sens = analyse(results_of(one))
-        index[name] = float(sens["first"].sel(output="roller_life_hours", factor="axial_force"))
-        if name == "limited":
-            assert f"{kept.sum()} of 400 rows used" in sens["note"].values[0]
-            assert f"{360 - kept.sum()} outside the constraints" in sens["note"].values[0]
-    assert index["limited"] > 0.9 > 0.3 > index["free"]
-    results = results_of(ds)
-    np.testing.assert_array_equal(results.valid, kept)
-    told = dict(contents(results_of(ds))["summary"])
-    assert f"{kept.sum()} of the 360 meet `friction_power < 12`" in told["Where it ends"][0].text
-    lives = ds["roller_life_hours"].values[kept]
-    assert all(one.low <= lives.max() < 1e3 for one in results.verdict.candidates) and told["Verdict"]
 
 
 def test_zero_and_infinite_lives_are_left_out_and_counted():
@@ -326,38 +257,6 @@ def test_scatter_of_each_material_widens_its_own_cases():
     half = np.where(np.arange(400) % 2, 0.5, 0.0)
     t = b10(lives, half)[0]  # mean of the two distributions: Phi((lg t - 3) / 0.5) / 2 = 0.1
     assert np.log10(t) == pytest.approx(3 - 0.5 * 0.8416, abs=2e-3)
-
-
-def test_inner_outer_study_with_material_scatter_reaches_the_report(tmp_path):
-    data = {
-        "name": "n",
-        "design": "inner_outer",
-        "samples": 200,
-        "outputs": ["forces", "life"],
-        "factors": {
-            "contact_angle": {"values": [30, 36]},
-            "axial_force": {"normal": [0.0, 1.0]},
-            "velocity": {"uniform": [1.0, 2.0]},
-        },
-    }
-    lives = {}
-    for scatter in (False, 9):
-        ds = solved(
-            data | {"analysis": {"material_scatter": scatter}},
-            lambda x, v: v > 1.95,
-            roller_life_hours=lambda x, v: 10 ** (3 + 0.1 * x),
-        )
-        ds.to_netcdf(tmp_path / "study.nc")
-        sens = analyse(results_of(tmp_path / "study.nc"))
-        lives[scatter] = float(sens["b10"].sel(output="roller_life_hours")[0])
-        tables = contents(results_of(ds, sens))["tables"]
-        place = "decide" if scatter else "more"  # the verdict leaves the scatter of the material out
-        told = [t for t in tables[place] if t.name.startswith(("b10", "percentiles"))]
-        assert len(told[0].rows) == 2 and told[0].heads[4].startswith("Full slip") and "5" in told[0].rows[0][4]
-        assert not {"Mean", "5 %", "50 %"} & set(told[0].heads)  # the table of percentiles stands apart
-    spread = np.hypot(0.1, np.log10(9) / 2.5631)
-    assert np.log10(lives[9]) == pytest.approx(3 - 1.2816 * spread, abs=0.03)
-    assert lives[9] < lives[False] and "T_N = 9" in told[0].note
 
 
 def test_correlated_columns_of_a_table_are_told(tmp_path):

@@ -8,7 +8,6 @@ from command_line import trackroller
 
 import trackroller as tr
 from trackroller.parameters.example import EXAMPLE, drive_question, not_given, not_given_text
-from trackroller.report.words.in_short import in_short
 from trackroller.roller.record import not_given_of
 from trackroller.study.store.identity import Cases
 
@@ -105,14 +104,3 @@ def test_plan_and_run_list_what_is_not_given_and_ask_about_the_drive(study, tmp_
 def test_nothing_is_listed_where_everything_is_given():
     assert not_given_text(not_given(EXAMPLE)) == "" == drive_question(not_given(EXAMPLE), EXAMPLE)
     assert "-30 N is used" in drive_question(not_given(["friction_coefficient"]), ["friction_coefficient"])
-
-
-def test_the_report_says_that_a_silent_drive_makes_rollers_skid():
-    factors = {"friction_coefficient": {"values": [0.04, 0.3]}, "radial_force": {"values": [-90, -180]}}
-    named = {"name": "hall", "factors": factors, "contact_model": "sliding", "outputs": ["forces"]}
-    for base, said in (({}, True), ({"motor_force": -30}, False), ({"motor_force": 0}, False)):
-        results = tr.run(named | {"base": base}, progress=False)
-        texts = [s.text for s in dict(in_short(results, [])).get("Where it ends", [])]
-        silent = "The study gives no motor force: −30 N of the paper's example drive the roller"
-        assert any(text.startswith(silent) for text in texts) == said
-        assert any(text.startswith("Full slip") for text in texts) == (base != {"motor_force": 0})

@@ -5,12 +5,12 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
+from trackroller.parameters import FIRST_TO_FAIL
 from trackroller.report.explorer.rows import Column
 from trackroller.report.numbers import GUIDE_UNKNOWN, Life, capital, count, part_of, with_unit
-from trackroller.report.tables.table import cell, factor_cell, heading
-from trackroller.report.words.designs import alone, first_words
-from trackroller.report.words.pareto import goal_heading
+from trackroller.report.tables.table import cell, factor_cell, goal_heading, heading
 from trackroller.results.candidates import Candidates, hardest_first
 from trackroller.results.results import Results
 from trackroller.study.file.goals import statistic
@@ -122,3 +122,17 @@ def _conditions(candidates: Candidates, place: np.ndarray, number: np.ndarray, w
         rows.append([*(cell(factor_cell(n, first[n])) for n in candidates.conditions), *cells])
     heads = [*map(heading, candidates.conditions), "Valid designs", worst, "Best design"]
     return {"factors": candidates.conditions, "heads": heads, "rows": rows, "of": int(place.max()) + 1, "note": ""}
+
+
+def alone(candidates: Candidates) -> bool:
+    """Return whether the roller stands for the pair in every case, because the guide's hours are unknown."""
+    return candidates.rising and not candidates.results.knows("guide_life_hours")
+
+
+def first_words(row: pd.Series) -> str:
+    """Say which body fails first, and in how many cases if it is not always the same."""
+    counts = {word: int(row[f"first_{word}"]) for word in FIRST_TO_FAIL}
+    known = {word: cases for word, cases in counts.items() if cases}
+    if len(known) == 1:
+        return next(iter(known))
+    return ", ".join(f"{word} in {count(cases)}" for word, cases in known.items())

@@ -1,105 +1,23 @@
-"""Figures of designs: their life over their conditions, and the Pareto front."""
+"""The figure of the Pareto front of a study."""
 
 from __future__ import annotations
 
-import textwrap
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from trackroller.report.figures import style
+from trackroller.report.figures.levels import coloured
 from trackroller.report.figures.panels import Entries, legend
-from trackroller.report.numbers import as_given, capital, count, head_unit, listing, long_name
-from trackroller.report.words.designs import body_words, design_words, ends_words
-from trackroller.report.words.levels import coloured
-from trackroller.report.words.pareto import goal_heading
-from trackroller.results.candidates import UNRANKED, Candidates
+from trackroller.report.numbers import listing, long_name
+from trackroller.report.tables.table import goal_heading
 from trackroller.results.pareto import goals_of
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
-from trackroller.results.verdict import Verdict
 from trackroller.roller.output_names import is_life
 from trackroller.study.design.levels import OF_MATERIALS
 from trackroller.study.file.goals import statistic
-
-MOST = 10  # candidates drawn
-WIDEST = 44  # letters of a line of a name beside the axis
-
-
-def candidates_side_by_side(results: Results) -> style.Drawn:
-    """Draw the life of each candidate, or its stress, over its conditions and over what nobody has measured.
-
-    It answers: which candidate keeps its life at its worst condition, how sure is that, what ends it there, and does it
-    reach the target? None for fewer than two candidates.
-    """
-    found = results.verdict
-    ranked = None if found is None else found.ranked
-    if ranked is None or len(ranked.candidates) < 2 or ranked.goal == UNRANKED:
-        return None
-    rising, unit = ranked.goal_rises, ranked.goal[2]
-    listed = [one for one in ranked.candidates if np.isfinite(one.low) and one.low > 0 and one.judged][:MOST]
-    if len(listed) < 2:
-        return None
-    candidates = Candidates.grouped(results, ranked.goal)
-    names = [capital(design_words(candidates, one.choices)) for one in listed]
-    figure, (axes,) = style.panels(f"{capital(ranked.goal[1])} of each candidate", 26 + 6.4 * len(listed))
-    place = np.arange(len(listed))[::-1]
-    ends = np.array([[one.low, one.high, one.median, one.best] for one in listed])
-    spread, sure = _spread_words(ranked)
-    _bars(axes, place, ends, spread, sure)
-    required = ranked.required
-    if np.isfinite(required):
-        axes.axvline(required, color=style.PAIR[1], linewidth=1.1, label=f"target {as_given(required, unit)}")
-    known = ends[np.isfinite(ends) & (ends > 0)]
-    low, high = (float(end(np.append(known, required) if np.isfinite(required) else known)) for end in (np.min, np.max))
-    if rising and high > 20 * low:
-        axes.set_xscale("log")
-        axes.set_xlim(low / 1.5, high * 1.5)
-        style.log_ticks(axes.xaxis, *axes.get_xlim())
-    style.name_rows(axes, place, [textwrap.fill(name, WIDEST) for name in names])
-    for at, one in zip(place, listed, strict=True):
-        text = f"{ends_words(one)}, {body_words(candidates, one)}" if rising and one.ends else ""
-        axes.text(1.01, at, text, transform=axes.get_yaxis_transform(), va="center", fontsize=7)
-    axes.set(ylim=(-0.6, len(listed) - 0.4), xlabel=f"{ranked.goal[1]} [{head_unit(unit)}]")
-    figure.legend(loc="outside lower center", ncols=4, columnspacing=1.0, handletextpad=0.4)
-    return figure, style.FigureInfo("designs", _caption(ranked, len(listed)))
-
-
-def _spread_words(found: Verdict) -> tuple[str, str]:
-    """Name the thin line from the worst to the best condition, and the thick one over the range of placeholders."""
-    if found.sampled:
-        return "sampled conditions", "range at nine of ten sampled conditions"
-    return "worst to best condition", "range at the worst condition"
-
-
-def _bars(axes: Any, place: np.ndarray, ends: np.ndarray, spread: str, sure: str) -> None:
-    """Draw a thin line over the conditions, a thick one over the range at the worst one, and marks."""
-    low, high, median, best = ends.T
-    colour = style.PAIR[0]
-    lasts = np.isfinite(best) & (best > 0)
-    axes.hlines(place[lasts], low[lasts], best[lasts], color="0.7", linewidth=1.6, zorder=1, label=spread)
-    ranged = np.isfinite(high) & (np.abs(high - low) > 1e-9 * np.abs(low))
-    if ranged.any():
-        axes.hlines(
-            place[ranged], low[ranged], high[ranged], color=colour, linewidth=5, alpha=0.55, zorder=2, label=sure
-        )
-    shown = np.isfinite(median) & (median > 0)
-    axes.plot(median[shown], place[shown], color="0.1", marker="|", markersize=8, linestyle="none", label="median")
-    axes.plot(low, place, color=colour, marker="o", markersize=4.5, linestyle="none", zorder=3, label="what is sure")
-
-
-def _caption(found: Verdict, shown: int) -> str:
-    """Say what is drawn."""
-    parts = []
-    if shown < len(found.candidates):
-        parts.append(f"{shown} of {count(len(found.candidates))} candidates.")
-    if found.goal_rises:
-        parts.append("Beside each candidate stands what ends it.")
-    if found.out_of_reach is not None:
-        parts.append("Conditions that no candidate meets are left out.")
-    return " ".join(parts) or f"{capital(found.goal[1])} of all candidates."
-
 
 OTHER = "0.65"  # grey of the designs without a level of their own
 _WAYS = {"max": "up", "min": "down"}

@@ -9,9 +9,9 @@ import pandas as pd
 
 from trackroller.parameters import BODIES
 from trackroller.report.figures import style
+from trackroller.report.figures.levels import coloured, held_words
 from trackroller.report.figures.panels import Entries, legend, running
 from trackroller.report.numbers import factor_label, level_text, listing, symbol, with_unit
-from trackroller.report.words.levels import coloured, held_words
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results
 from trackroller.study.design.levels import OF_MATERIALS

@@ -15,8 +15,8 @@ from matplotlib.patches import Patch, Rectangle
 
 from trackroller.parameters import REGIME_LABELS
 from trackroller.report.figures import style
+from trackroller.report.figures.levels import held_words
 from trackroller.report.numbers import capital, factor_label, level_text, long_name, rounded, with_unit
-from trackroller.report.words.levels import held_words
 from trackroller.results.groups import BINS, classes
 from trackroller.results.ranking import ranked_factors
 from trackroller.results.results import Results

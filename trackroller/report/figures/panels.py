@@ -14,7 +14,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.ticker import MaxNLocator
 
-from trackroller.report.words.levels import group_texts
+from trackroller.report.figures.levels import group_texts
 from trackroller.results.groups import Groups
 
 CLASSES, FEWEST = 8, 5  # most classes of a sample along an axis, and fewest rows of a class

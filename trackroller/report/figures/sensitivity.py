@@ -17,16 +17,12 @@ from matplotlib.figure import Figure
 
 from trackroller.report.figures import style
 from trackroller.report.numbers import capital, count, with_unit
-from trackroller.report.words import indices
-from trackroller.report.words.samples import quantity_words
-from trackroller.results.findings import WORTH
-from trackroller.results.looks import looks_of
-from trackroller.results.ranking import SIGNED, SIZED, decisive, headline, order
-from trackroller.results.results import Results
+from trackroller.report.tables import indices
+from trackroller.results.ranking import SIZED, headline, order
 from trackroller.study.outputs import USUAL
 
 Look = dict[str, Any]
-MAX_BARS = 12
+WORTH = 0.02  # of the variance: smaller interactions alone are no figure
 
 
 def main_outputs(sens: xr.Dataset) -> list[str]:
@@ -39,40 +35,6 @@ def main_outputs(sens: xr.Dataset) -> list[str]:
 def title(sens: xr.Dataset, output: str) -> str:
     """Name an output with a capital first letter."""
     return capital(indices.of_output(sens, output))
-
-
-def tornado(sens: xr.Dataset, output: str) -> style.Drawn:
-    """Draw bars of the headline index with 95 % intervals, the largest on top; first-order beside total Sobol indices.
-
-    It answers: which factor decides, and how sure is that?
-    """
-    index = headline(sens)
-    ranks = order(sens, output)[:MAX_BARS]
-    if not decisive(sens, output):
-        return None
-    figure, (axes,) = style.panels(f"{title(sens, output)}: what decides it", 22 + 6.0 * len(ranks))
-    place = np.arange(len(ranks))[::-1].astype(float)
-    drawn = ("ST", "S1") if index == "ST" else (index,)
-    for i, name in enumerate(drawn):
-        own = {r.factor: r for r in order(sens, output, name)}
-        value, low, high = np.array([own[r.factor][2:] if r.factor in own else [np.nan] * 3 for r in ranks]).T
-        if name not in SIGNED:  # a share of variance is not drawn below 0
-            value, low, high = (np.maximum(v, 0.0) for v in (value, low, high))
-        at = place + (0.19 - 0.38 * i) * (len(drawn) > 1)
-        look: Look = {"height": 0.38 if len(drawn) > 1 else 0.62, "hatch": "////" * i, "linewidth": 0.6}
-        axes.barh(at, value, color=style.palette(2)[i], edgecolor="0.15", label=indices.INDEX_WORDS[name], **look)
-        whisker: Look = {"fmt": "none", "ecolor": "0.1", "capsize": 1.8, "linewidth": 0.9}
-        axes.errorbar(value, at, xerr=np.abs([value - low, high - value]), **whisker)
-    if len(drawn) > 1:
-        axes.legend(loc="lower right")
-    style.name_rows(axes, place, [capital(r.name) for r in ranks])
-    axes.axvline(0, color="0.2", linewidth=0.7)
-    axes.set_xlabel(_axis(sens, output, index))
-    caption = (
-        f"{capital(indices.INDEX_WORDS[index])} of each factor on {indices.of_output(sens, output)}; whiskers: 95 % "
-        f"intervals. {sens.attrs.get('treatment', '')}."
-    )
-    return figure, style.FigureInfo(f"tornado-{output}", caption)
 
 
 def _axis(sens: xr.Dataset, output: str, index: str) -> str:
@@ -161,26 +123,3 @@ def interactions(sens: xr.Dataset, output: str) -> style.Drawn:
     caption = "Off the diagonal: the interaction of two factors; on the diagonal: each factor alone."
     caption += " Approximate: from a polynomial fitted to the sample." if fitted else ""
     return figure, style.FigureInfo(f"interactions-{output}", caption)
-
-
-def intervals(results: Results) -> style.Drawn:
-    """Draw the half width of the widest interval of each output of `until` against the number of cases.
-
-    It answers: was growing worth its cases? None for a study with fewer than two looks.
-    """
-    growth = looks_of(results)
-    if growth is None or len(growth["looks"]) < 2:
-        return None
-    cases = [one["cases"] for one in growth["looks"]]
-    names = list(growth["looks"][0]["half_width"])
-    figure, (axes,) = style.panels("Intervals as the sample grew", 58)
-    for i, (name, colour) in enumerate(zip(names, style.palette(len(names)), strict=True)):
-        width = np.array([one["half_width"][name] for one in growth["looks"]], dtype=float)
-        look = {"marker": style.MARKERS[i % len(style.MARKERS)], "linestyle": style.LINES[i % len(style.LINES)]}
-        axes.plot(cases, width, color=colour, label=capital(quantity_words(name, results.design.method)), **look)
-    axes.axhline(growth["half_width"], color="0.3", linewidth=0.8, linestyle=":", label="wanted")
-    _doubled(axes, cases, "cases")
-    axes.set(ylim=(0.0, None), ylabel="half width of the\nwidest interval [–]")
-    figure.legend(loc="outside lower center", ncols=2)
-    caption = f"95 % intervals from {growth['replicates']} independent replicates at each doubling of the sample."
-    return figure, style.FigureInfo("intervals-against-cases", caption)

@@ -7,9 +7,7 @@ from functools import partial
 from pathlib import Path
 
 from trackroller.report.figures import sensitivity, style
-from trackroller.report.figures.comparison import model_errors
-from trackroller.report.figures.designs import candidates_side_by_side, pareto_front
-from trackroller.report.figures.factors import by_factor
+from trackroller.report.figures.designs import pareto_front
 from trackroller.report.figures.loads import forces_against_axial, stress_against_fit
 from trackroller.report.figures.maps import life_map, regime_map
 from trackroller.report.figures.sn_diagram import sn_diagram
@@ -18,10 +16,7 @@ from trackroller.results.pareto import given_pareto
 from trackroller.results.ranking import robust_design
 from trackroller.results.results import Results
 
-OF_CASES = (
-    *(model_errors, candidates_side_by_side, by_factor, life_map, stress_against_fit),
-    *(sn_diagram, forces_against_axial, regime_map),
-)
+OF_CASES = (life_map, stress_against_fit, sn_diagram, forces_against_axial, regime_map)
 
 
 @lives_in_years
@@ -53,10 +48,9 @@ def _jobs(results: Results) -> Iterator[Callable[[], style.Drawn]]:
     def of_analysis(draw: Callable[..., style.Drawn], most: int) -> list[Callable[[], style.Drawn]]:
         return [partial(draw, sens, name) for name in outputs[:most]]
 
-    yield from of_analysis(sensitivity.tornado, 1)
     yield from (partial(draw, results) for draw in OF_CASES)
-    if (front := given_pareto(results)) is not None:
+    front = given_pareto(results)
+    if front is not None:
         yield partial(pareto_front, front, results)
-    yield partial(sensitivity.intervals, results)
     yield from of_analysis(sensitivity.morris_plane, 2)
     yield from of_analysis(sensitivity.interactions, 1)

@@ -25,8 +25,8 @@ from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullFormat
 
 from trackroller.files import write_text, write_whole
 from trackroller.materials import builtin_database
+from trackroller.report.figures.levels import material_of_level, short_levels
 from trackroller.report.numbers import number
-from trackroller.report.words.levels import material_of_level, short_levels
 
 log = logging.getLogger("trackroller")
 COLUMN_MM = 85.0  # a column of a two-column page

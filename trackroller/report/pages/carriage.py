@@ -21,6 +21,7 @@ from trackroller.roller.record import doubts_of
 
 LARGE = "–"  # of a margin that is not reached
 UNKNOWN = "not known"
+BEYOND = "beyond one contact"  # where the model has ended before
 
 
 def load_table(ds: xr.Dataset) -> Table:
@@ -65,21 +66,35 @@ def roller_table(ds: xr.Dataset) -> Table | None:
 
 def margin_table(ds: xr.Dataset) -> Table:
     """List drive force and margins of each load case."""
-    names = [f"{part}_to_{end}" for part in ("payload", "loads") for end in ("one_contact", "lift_off", "tipping")]
     ends = ("one contact", "lift-off", "tipping")
     heads = ["Load case", "Share [%]", "Drive [N]"]
     heads += [f"{part} to {end}" for part in ("Payload", "All loads") for end in ends]
     rows = []
     for i, case in enumerate(ds["load_case"].values):
-        values = [float(ds[name][i]) for name in names]
-        shown = [UNKNOWN if math.isnan(value) else cell(value) if math.isfinite(value) else LARGE for value in values]
+        shown = [text for part in ("payload", "loads") for text in _margin_cells(ds.isel(load_case=i), part)]
         unsettled = "" if bool(ds["converged"][i]) else " (not settled)"
         rows.append(
             [f"{case}{unsettled}", cell(100 * float(ds["share"][i])), cell(float(ds["drive_force"][i])), *shown]
         )
     note = "A margin is a multiplier of the payload, or of all loads, with the same preload. One contact: the "
-    note += "axial force lifts the other contact of a roller; friction may do so earlier. A dash: not up to 1000."
+    note += "axial force lifts the other contact of a roller; friction may do so earlier, and the model ends there: "
+    note += "later margins are not stated. A dash: not up to 1000."
     return Table("carriage_margins", "Load cases and margins", heads, rows, note)
+
+
+def _margin_cells(ds: xr.Dataset, part: str) -> list[str]:
+    """Return the margins of a part of the loads in one load case; later ones than one contact are not stated."""
+    one_contact, *later = (float(ds[f"{part}_to_{end}"]) for end in ("one_contact", "lift_off", "tipping"))
+    if one_contact < later[0]:
+        return [_margin_cell(one_contact), BEYOND, BEYOND]
+    return [_margin_cell(value) for value in (one_contact, *later)]
+
+
+def _margin_cell(value: float) -> str:
+    """Return the text of a margin."""
+    if math.isnan(value):
+        return UNKNOWN
+    return cell(value) if math.isfinite(value) else LARGE
 
 
 def tables(ds: xr.Dataset) -> list[Table]:

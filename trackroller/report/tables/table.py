@@ -7,9 +7,20 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+import xarray as xr
 
 from trackroller.parameters.of_carriage import parameter_of
-from trackroller.report.numbers import Life, capital, count, lasting, level_text, long_name, rounded, unit_text
+from trackroller.report.numbers import (
+    Life,
+    capital,
+    count,
+    lasting,
+    level_text,
+    long_name,
+    rounded,
+    unit_text,
+    with_unit,
+)
 from trackroller.study.design.levels import NAMED
 
 
@@ -57,3 +68,11 @@ def factor_cell(name: str, value: Any) -> Any:
     if isinstance(value, str) or name in NAMED or not np.isfinite(value):
         return level_text(name, value)
     return float(value)
+
+
+def goal_heading(front: xr.Dataset, name: str) -> str:
+    """Return the words and the unit of a goal or a factor of a Pareto set, as the head of a column."""
+    attrs = front[name].attrs
+    units = str(attrs.get("units", "")) or getattr(parameter_of(name), "unit", "")
+    text = capital(str(attrs.get("long_name") or long_name(name)))
+    return with_unit(text, units) if units and units not in ("1", "-") else text

@@ -1,81 +1,23 @@
-"""What limits a result: validity flags in words, known errors of the contact models, and the resolution of stresses."""
+"""What limits a result: validity flags in words, and known errors of the contact models."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import numpy as np
 import xarray as xr
 
-from trackroller.parameters import BODIES, CONTACT_MODELS, REGIMES
+from trackroller.parameters import BODIES, REGIMES
 from trackroller.parameters.validity import VALIDITY
-from trackroller.report.numbers import capital, level_text, number, percent
-from trackroller.report.words.sentence import Sentence, say
-from trackroller.results.lives import FIRST_LIMIT
+from trackroller.report.numbers import capital, percent
 from trackroller.roller.dataset import validity_bit
-from trackroller.roller.record import friction_records
 
 if TYPE_CHECKING:
-    from trackroller.results.results import Results
+    pass
 
 SLIDING_ERROR = "38 % of mu F_N in friction forces against kalker (median of 492 rollers)"
 SLIDING_WEAR = "41 % in friction energy and wear (median of 92 designs)"
 KNOWN_ERROR = 0.05  # a larger median error of the model is stated
-FRICTION_OUTPUTS = ("friction_power", "friction_energy_per_distance", "friction_energy_balance")
-
-
-def friction_guess(results: Results) -> Sentence | None:
-    """Name the friction coefficients from the database that are placeholders."""
-    records = [record for record in friction_records(results.data.attrs) if record["placeholder"]]
-    guesses = [(number(r["value"]), level_text("material_pair", r["material_pair"])) for r in records]
-    return say("accuracy", "friction_guess", guesses=guesses) if guesses else None
-
-
-def friction_error(results: Results) -> Sentence | None:
-    """Say how far friction energy is from the work put in, where the median difference exceeds 5 %."""
-    residual = results.column("energy_residual")[results.of_one_model(results.rolling)]
-    residual = residual[np.isfinite(residual)]
-    if not residual.size or np.median(residual) <= KNOWN_ERROR:
-        return None
-    values = {"median": float(np.median(residual)), "largest": float(residual.max()), "of": residual.size}
-    return say("accuracy", "friction_error", **values, worn=_worn(results))
-
-
-def _slid(results: Results) -> np.ndarray:
-    """Mark the rolling cases that were solved by full sliding, shape (n,)."""
-    return np.asarray(results.rolling & (results.column("contact_model_used") == CONTACT_MODELS.index("sliding")))
-
-
-def _worn(results: Results) -> bool:
-    """Return whether a result rests on the wear that full sliding computes."""
-    found = results.verdict
-    checked = found is not None and found.goal == FIRST_LIMIT and "wear" not in found.not_checked
-    return bool((_slid(results) & (checked | np.isfinite(results.column("run_in_distance")))).any())
-
-
-def full_sliding(results: Results) -> Sentence | None:
-    """State the known errors of full sliding, in forces and in wear, if cases were solved by it.
-
-    Return None where `friction_error` states the error that was measured in this study.
-    """
-    if friction_error(results) is not None:
-        return None
-    # a study of several models, or one with the friction work, measures the errors of the forces itself
-    measured = "contact_model" in results.factors or np.isfinite(results.column("energy_residual")).any()
-    known = [SLIDING_ERROR] * bool(_slid(results).any() and not measured) + [SLIDING_WEAR] * _worn(results)
-    return say("accuracy", "full_sliding", known=known) if known else None
-
-
-def accuracy(results: Results) -> list[Sentence]:
-    """Say how well the peaks are resolved, and where the stress of the contact model is singular."""
-    said = []
-    errors = {body: results.column(f"error_estimate_{body}")[results.valid] for body in BODIES}
-    for body, error in [(body, own[np.isfinite(own)]) for body, own in errors.items() if np.isfinite(own).any()][:1]:
-        said.append(say("accuracy", "resolved", body=body, largest=float(error.max())))
-    if cases := int((results.flagged("split_pole") & results.rolling).sum()):
-        said.append(say("accuracy", "singular", count=cases))
-    return said
 
 
 _ROLLING = REGIMES.index("rolling")

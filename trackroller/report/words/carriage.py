@@ -10,8 +10,8 @@ import xarray as xr
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.validity import VALIDITY
 from trackroller.report.numbers import lasting
-from trackroller.report.words.designs import SAME
 from trackroller.report.words.sentence import Sentence, say
+from trackroller.results.results import SAME_ENDS as SAME
 from trackroller.roller.dataset import validity_bit
 
 MARGINS = (("payload", "The payload"), ("loads", "All loads"))
@@ -24,7 +24,8 @@ def worst_place(ds: xr.Dataset) -> tuple[str, str]:
     if worst:
         damage = ds["damage_per_km"].sel(roller=worst).values
         return str(worst), str(ds["load_case"].values[int(np.argmax(damage))])
-    i, j = np.unravel_index(int(np.argmin(ds["radial_force"].values)), ds["radial_force"].shape)
+    pressed = np.nan_to_num(ds["radial_force"].values, nan=0.0)
+    i, j = np.unravel_index(int(np.argmin(pressed)), pressed.shape)
     return str(ds["roller"].values[j]), str(ds["load_case"].values[i])
 
 
@@ -82,7 +83,7 @@ def _lifted(ds: xr.Dataset) -> Iterator[Sentence]:
     for roller in ds["roller"].values:
         lifted = (ds["radial_force"].sel(roller=roller) == 0).values
         gap = -float(ds["approach"].sel(roller=roller).max())
-        if lifted.all():
+        if lifted[ds["converged"].values].all() and lifted.any():
             play = str(roller) in ds.attrs.get("with_play", "").split(", ")
             yield say("carriage", "carriage_unloaded", roller=str(roller), gap=max(gap, 0.0), play=play)
         elif lifted.any():
@@ -108,11 +109,12 @@ def _margins(ds: xr.Dataset) -> Iterator[Sentence]:
         if f"{name}_to_lift_off" not in ds:  # the forces alone
             continue
         contact = ds[f"{name}_to_one_contact"].values
-        if np.isfinite(contact).any() and not np.array_equal(contact, ds[f"{name}_to_lift_off"].values, equal_nan=True):
-            i = int(np.nanargmin(contact))
+        before = contact < ds[f"{name}_to_lift_off"].values
+        if before.any():
+            i = int(np.nanargmin(np.where(before, contact, np.nan)))
             case = str(ds["load_case"].values[i])
             yield say("carriage", "carriage_contact", what=what, multiplier=float(contact[i]), case=case)
-        first = ds[f"{name}_to_lift_off"].values
+        first = np.where(before, np.nan, ds[f"{name}_to_lift_off"].values)  # beyond one contact the model has ended
         if np.isfinite(first).any():
             i = int(np.nanargmin(first))
             tipping = float(ds[f"{name}_to_tipping"].values[i])
@@ -124,6 +126,8 @@ def _catalogue(ds: xr.Dataset) -> Iterator[Sentence]:
     if "load_factor" not in ds:
         return
     factor, life = ds["load_factor"].values, ds["catalogue_life_km"].values
+    if np.isnan(factor).all() or np.isnan(life).all():
+        return
     i, j = np.unravel_index(int(np.nanargmax(factor)), factor.shape)
     names, k = ds["roller"].values, int(np.nanargmin(life))
     more = {"shortest": str(names[k]), "km": float(life[k]), "case": str(ds["load_case"].values[i])}

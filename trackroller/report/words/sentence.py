@@ -2,7 +2,6 @@
 
 A `Sentence` holds its text, and what it claims as plain values. The words stand in
 `templates/sentences/`, one file a subject and one block a kind; the claims are the variables of the block.
-`tests/report/test_truth.py` recomputes the claims from the raw rows.
 """
 
 from __future__ import annotations

@@ -148,6 +148,9 @@ def _statics(whole: Carriage, fields: Mapping[str, float], stiff: Mapping[str, A
         ds = forces_of(own)
     except InputError as error:
         return f"{error.field} {error.value}: {error.wrong}" if error.wrong else str(error)
+    unsettled = ds["load_case"].values[~ds["converged"].values]
+    if unsettled.size:
+        return f"case {', '.join(unsettled)}: no forces of the rollers fulfil all conditions of an equilibrium"
     i, j = np.nonzero(ds["radial_force"].values < 0)
     speeds = ds["speed"].values
     forces = {name: _rounded(ds[name].values[i, j]) for name in LOADS}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import re
 from collections.abc import Collection, Mapping
@@ -18,6 +19,7 @@ from trackroller.roller.aliases import ALIASES, RADII
 from trackroller.roller.dataset import FLAGS, VARIABLES
 from trackroller.roller.fields import mapping_text
 from trackroller.roller.output_names import PARTS
+from trackroller.study.design.levels import short
 
 CASE_FIELDS = (*PARAMETERS, *MATERIAL_FIELDS, *MAPPING_FIELDS)
 GEOMETRY = ("axis_distance", "guide_profile_radius", "roller_profile_radius", "guide_curve_radius", "contact_angle")
@@ -202,6 +204,8 @@ def factor(key: Any, spec: Any, factors: Mapping[Any, Any], on_carriage: bool = 
     if isinstance(spec, Mapping):
         spec = {kind: _entries(key, kind, value, f"{where}.{kind}", parameter) for kind, value in spec.items()}
     checked = parse(key, spec)
+    if checked.text and not own:
+        refuse_results(checked.text, f"{where}.expression", factors)
     if not own and parameter is None and checked.kind != "values":
         raise InputError(where, checked.kind, "names as {values: [...]}")
     if parameter is not None:
@@ -228,12 +232,32 @@ def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputEr
         allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
         return InputError("factors", name, allowed, f"Write {own}.", "is not known")
     error = unknown_name("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
-    unknown = sorted(_in_expressions(factors) - {*FACTOR_NAMES, *map(str, factors)})
+    used = _in_expressions(factors)
+    unknown = sorted(used - {*FACTOR_NAMES, *map(str, factors)})
+    if results := [one for one in unknown if one in PARTS or one in VARIABLES]:
+        return _of_result("factors", name, results[0])
     if not unknown:
         return error
     allowed = "parameters, and names that an expression of another factor uses"
     remedy = f"The expressions use {listing(unknown)}, which is no factor: give both the same name."
     return InputError("factors", name, allowed, remedy, "is not known")
+
+
+def _of_result(where: str, value: str, result: str) -> InputError:
+    """Return the error for a factor whose expression uses a result."""
+    wrong = f"uses the result {result}, but a factor is computed before the solution"
+    remedy = "Write the expression under own: as an output of the study's own."
+    return InputError(where, value, "expressions of parameters and factors", remedy, wrong)
+
+
+def refuse_results(text: str, where: str, factors: Mapping[Any, Any]) -> None:
+    """Refuse an expression of a factor that uses results, which are known after the solution only.
+
+    A factor that has the name of a result is refused for this name.
+    """
+    for one in sorted(expressions.names(text, where) - {*map(str, factors)}):
+        if one in PARTS or (one in VARIABLES and one not in FACTOR_NAMES):
+            raise _of_result(where, text, one)
 
 
 def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter | None) -> Any:
@@ -243,7 +267,11 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
     if kind == "values":
         if parameter is not None:
             return [_number(parameter, entry, where) for entry in value]
-        return value if key not in FACTOR_NAMES else [field_value(key, entry, where) for entry in value]
+        if key not in FACTOR_NAMES:
+            return value
+        levels = [field_value(key, entry, where) for entry in value]
+        _refuse_equal_names(key, levels, where)
+        return levels
     unit = None if parameter is None else parameter.unit
     spread = 1 if kind in ("normal", "truncnormal") else None
     plain = 1 if kind in ("lognormal", "weibull") else None  # a number without unit beside the median or scale
@@ -254,6 +282,17 @@ def _entries(key: str, kind: Any, value: Any, where: str, parameter: Parameter |
         # a mistyped number of levels would fill the memory
         raise InputError(where, numbers[2], f"at most {MAX_LEVELS} levels of a factor")
     return numbers
+
+
+def _refuse_equal_names(key: str, levels: list[Any], where: str) -> None:
+    """Refuse two levels of a factor that are mappings with the same name."""
+    if key not in MAPPING_FIELDS:
+        return
+    given = [text for text in dict.fromkeys(levels) if text and "name" in json.loads(text)]
+    names = [short(key, text) for text in given]
+    for name in names:
+        if names.count(name) > 1:
+            raise InputError(f"{where}.name", name, "a name of its own for each level", "Rename one of them.")
 
 
 def _to_float(value: Any, unit: str | None, where: str, difference: bool) -> Any:

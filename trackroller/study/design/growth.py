@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from trackroller.study.file.study import Study
 
-SAME = ("factors", "rank_correlations", "design", "seed", "inner", "samples")  # keys that a grown sample shares
+SAME = ("factors", "rank_correlations", "method", "seed", "inner", "samples")  # keys that a grown sample shares
 
 
 def doubled(study: Study, unsure: Collection[int] | None = None) -> Study:

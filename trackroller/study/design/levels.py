@@ -16,6 +16,7 @@ from trackroller.parameters import MAPPING_FIELDS, MECHANICAL_MAPPINGS
 
 OF_MATERIALS = ("material_pair", "roller_material", "guide_material")
 NAMED = ("motor_force", "guide_curve_radius", *OF_MATERIALS)  # factors whose levels have names
+LONGEST = 40  # signs of a text that states a whole mapping
 MOST_ARCS = 3  # of a profile whose arcs are named one by one
 EDGES = {"inner": "in", "outer": "out", "chamfer": "rounded"}
 
@@ -38,10 +39,22 @@ def short(name: str, value: Any) -> str:
             return _law(mapping)
         if name in MECHANICAL_MAPPINGS:
             return _profile(mapping)
+        if mapping.get("name"):
+            return str(mapping["name"])
         text = entries(mapping)
+        if len(text) > LONGEST:
+            return f"{_first_entries(mapping)}, {_mark(text)}"
     except (ValueError, KeyError, TypeError, AttributeError, IndexError):
         text = str(value)
-    return text if len(text) <= 40 else f"{text[:34]}… {_mark(text)}"
+    return text if len(text) <= LONGEST else f"{text[:34]}… {_mark(text)}"
+
+
+def _first_entries(mapping: Mapping[str, Any]) -> str:
+    """Return the first word and the first number of a mapping, such as 'ball, dynamic rating 600'."""
+    words = [str(value) for value in mapping.values() if isinstance(value, str)]
+    numbers = {key: value for key, value in mapping.items() if isinstance(value, (int, float))}
+    first = sorted(numbers, key=lambda key: (key[:1].isupper(), key))[:1]
+    return ", ".join([*words[:1], *(entries({key: numbers[key]}) for key in first)])
 
 
 def entries(mapping: Mapping[str, Any]) -> str:
@@ -82,6 +95,8 @@ def _law(law: Mapping[str, Any]) -> str:
 
 def _profile(profile: Mapping[str, Any]) -> str:
     form = next((key for key in ("arc", "parabola", "arcs", "points", "file") if key in profile), "")
+    if form in ("arc", "parabola", "arcs") and "name" in profile:
+        return str(profile["name"])
     if not form:
         words = "circle"
     elif form in ("arc", "parabola"):

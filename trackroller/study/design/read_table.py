@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from trackroller.errors import Collector, InputError, contained, listing, nearest, unknown_name
+from trackroller.files import read_bytes
 from trackroller.methods.factor import column
 from trackroller.numerics.cells import Refused, Stored, is_number, split_head
 from trackroller.numerics.numbers import read_number
@@ -38,7 +39,7 @@ def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:
     InputError : no such file, a line of another length, or a cell that is empty, not clear or of another kind
     """
     wrong = Collector()
-    found = read_table(Path(path), "table", "case", wrong, math.inf, used)
+    found = read_cases(Path(path), wrong, used)
     with wrong.part():
         _check_names(found, used, path)
     columns = {}
@@ -63,7 +64,12 @@ def genes(path: Any) -> np.ndarray:
 
 def table_lines(path: Path) -> list[int]:
     """Return the number of the line of each case of a table."""
-    return list(read_table(path, "table", "case", Collector(), math.inf).lines)
+    return list(read_cases(path, Collector()).lines)
+
+
+def read_cases(path: Path, wrong: Collector, used: Collection[str] = ()) -> UserTable:
+    """Return the table of the cases of a study, whatever its size; see `read_table`."""
+    return read_table(path, "table", "case", wrong, used, content=read_bytes(path, "table", math.inf))
 
 
 def _check_names(found: UserTable, used: Collection[str], path: Any) -> None:

@@ -21,14 +21,14 @@ from trackroller.roller.geometry import geometry_problem, geometry_problems
 from trackroller.roller.options import check_accuracy, check_pairs, check_spin_model
 from trackroller.study.design.build import MAX_CASES
 from trackroller.study.design.entries import GEOMETRY, OPTION_FACTORS, check_own_name
-from trackroller.study.design.read_table import table_lines
+from trackroller.study.design.read_table import read_cases, table_lines
 from trackroller.study.design.roles import check_roles
 from trackroller.study.file.correlations import check_design
 from trackroller.study.file.goals import check, check_scatter
 from trackroller.study.file.search import check_search
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import check_first_look, check_until
-from trackroller.study.file.user_table import column_names, read_table
+from trackroller.study.file.user_table import column_names
 
 if TYPE_CHECKING:
     from trackroller.materials import Material, MaterialDatabase
@@ -223,7 +223,7 @@ def check_cells(study: Study) -> None:
     with wrong.part():
         _ = study.drawn  # names and numbers
     if set(known) & set(column_names(study.table_path, "table")):
-        table = read_table(study.table_path, "table", "case", Collector(), math.inf)
+        table = read_cases(study.table_path, Collector())
         for name in (name for name in table.names if name in known):
             cells = {line: row[table.names.index(name)] for line, row in table.lines.items()}
             for cell, line in {cell: line for line, cell in reversed(cells.items())}.items():  # its first line

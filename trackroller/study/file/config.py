@@ -7,7 +7,17 @@ from functools import partial
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, create_model, field_validator
+from pydantic import (
+    AfterValidator,
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    PlainSerializer,
+    WithJsonSchema,
+    create_model,
+    field_validator,
+)
 
 from trackroller.carriage.file import written_out
 from trackroller.errors import InputError, collected
@@ -15,15 +25,17 @@ from trackroller.methods import METHODS, Method
 from trackroller.methods.method import study_keys
 from trackroller.parameters import OPTIONS
 from trackroller.roller.duty import checked_duty
+from trackroller.roller.requirement import Requirement, checked_requirement, written
 from trackroller.roller.stop import parse_condition
 from trackroller.study.design.entries import base_value, choice, factor
 from trackroller.study.design.roles import check_words
 from trackroller.study.file.correlations import check_entries
-from trackroller.study.file.goals import Analysis, comparisons, directions
+from trackroller.study.file.goals import Analysis, comparisons, directions, own_expressions
 from trackroller.study.file.search import Budget
 from trackroller.study.file.until import Until
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9._-]{0,63}")
+QUESTIONS = ("decide", "what matters", "how sure", "best", "which model", "how it behaves")
 DEVICE = re.compile(r"(con|prn|aux|nul|com\d|lpt\d)(\..*)?", re.IGNORECASE)
 
 
@@ -48,6 +60,20 @@ Roles = Annotated[dict[str, str], BeforeValidator(check_words)]
 Goals = Annotated[dict[str, str], BeforeValidator(directions)]
 Duty = Annotated[dict[str, float] | None, BeforeValidator(checked_duty)]
 Comparisons = Annotated[tuple[str, ...], AfterValidator(comparisons)]
+_ENDS: dict[str, Any] = {
+    "type": "object",
+    "properties": {
+        "min": {"type": ["number", "string"]},
+        "max": {"type": ["number", "string"]},
+        "probability": {"type": ["number", "string"]},
+    },
+    "additionalProperties": False,
+}
+Requirements = Annotated[
+    dict[str, Requirement],
+    PlainSerializer(written),
+    WithJsonSchema({"type": "object", "additionalProperties": {"anyOf": [_ENDS, {"type": ["number", "string"]}]}}),
+]
 
 
 class _Design(BaseModel):
@@ -62,7 +88,7 @@ class _Design(BaseModel):
         None, description="carriage file whose rollers are solved under its loads; its fields are factors, too"
     )
     factors: dict[str, dict[str, Any]] = Field({}, description="what varies: a list or a distribution for each factor")
-    design: str = Field("grid", description="how the factors are combined")
+    design: str = Field("grid", alias="method", description="how the factors are combined; `design` is its other name")
     samples: int = Field(1024, ge=1, le=10_000_000, description="number of rows, trajectories or base samples")
     seed: int = Field(1, ge=0, le=2**32 - 2, description="the same seed gives the same design")
     table: str | None = Field(
@@ -75,7 +101,7 @@ class _Design(BaseModel):
     @field_validator("design")
     @classmethod
     def _design(cls, value: str) -> str:
-        return choice(value, "design", METHODS)
+        return choice(value, "method", METHODS)
 
 
 _TYPES: dict[str, Any] = {
@@ -115,6 +141,15 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
         default_factory=lambda: Analysis.model_validate({}), description="what is analysed, and how"
     )
     duty: Duty = Field(None, description="hours_per_day and days_per_year of travel: lives in years beside hours")
+    requirement: Requirements = Field(
+        {},
+        description="what is wanted of outputs: min, max, and probability, the share of the conditions that have to "
+        "meet it; `analysis.target` is its other name",
+    )
+    own: Annotated[dict[str, str], BeforeValidator(own_expressions)] = Field(
+        {}, description="outputs of the study's own: name and expression of results and inputs"
+    )
+    question: str | None = Field(None, description="what the study asks; follows from its keys if it is left out")
     roles: Roles = Field({}, description="who sets a factor: choice (the designer) or condition (the use)")
     goals: Annotated[dict[str, str], BeforeValidator(partial(directions, key="goals", least=1))] = Field(
         {}, description="optimise: results or choices, each max or min; worst (default), mean, b10, probability of one"
@@ -156,6 +191,19 @@ class StudyFile(_WithOptions):  # type: ignore[misc, valid-type]
             if isinstance(one, (bool, str, bytes, np.bool_)):
                 raise InputError(info.field_name, value, "a whole number", "Write digits without quotes.")
         return value
+
+    @field_validator("requirement", mode="before")
+    @classmethod
+    def _requirement(cls, value: Any, info: Any) -> Any:
+        if "duty" not in info.data:  # it is wrong itself
+            return {}
+        on_carriage = (info.data.get("carriage") or {}).get("duty")
+        return checked_requirement(value, info.data["duty"] or on_carriage)
+
+    @field_validator("question")
+    @classmethod
+    def _question(cls, value: str | None) -> str | None:
+        return None if value is None else choice(value, "question", QUESTIONS)
 
     @field_validator("carriage", mode="before")
     @classmethod

@@ -4,7 +4,6 @@
       outputs: [roller_life_hours, friction_power, peak_stress_guide_1]
       scale: {friction_power: log10}
       groups: {load: [radial_force, axial_force]}
-      target: {roller_life_hours: {min: 500}}
     pareto: {roller_life_hours: max, friction_power: min, axis_distance: min}
     constraints:
       - regime != full_slip
@@ -15,27 +14,25 @@ These keys are not part of the identity of a case, so changing them solves no ca
 
 from __future__ import annotations
 
-import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, WithJsonSchema, field_validator
+from pydantic import BaseModel, ConfigDict, Field, field_validator
 
 from trackroller.damage import judged
-from trackroller.errors import InputError, collected, listing, raise_all, unknown_name
+from trackroller.errors import Collector, InputError, collected, listing, raise_all, unknown_name
 from trackroller.methods.factor import Factor
-from trackroller.numerics.numbers import number_or_nan
-from trackroller.numerics.units import check_hours, split_quantity, without_units
+from trackroller.numerics.units import without_units
 from trackroller.parameters import MATERIAL_FIELDS, PARAMETERS, REGIMES, expressions
 from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.output_names import PARTS, body_of, is_life, parts_of, unit_of
-from trackroller.study.design.entries import choice
+from trackroller.roller.requirement import DEFAULT, KEY
+from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, choice
 
 SCALES = ("natural", "log10")
 DIRECTIONS = ("max", "min")
-DEFAULT_TARGET = "pair_life_hours"  # of {min: 500} without the name of an output
 FIRST_LIMIT = "pair_life_to_first_limit_hours"
 STATISTICS = ("b10", "b10_safe", "mean", "standard_deviation", "probability")  # of the design points of inner_outer
 STATISTICS_OF = {  # by the key of a study file
@@ -48,40 +45,6 @@ STATISTICS_OF = {  # by the key of a study file
 def without_spaces(value: Any) -> Any:
     """Return a mapping from outputs with their names as they are stored; the type of the field refuses other values."""
     return {str(name).replace(" ", ""): own for name, own in value.items()} if isinstance(value, Mapping) else value
-
-
-def targets(value: Any) -> Any:
-    """Check the key `analysis.target`: outputs, each with `min` or `max` or both; {min: 500} is `DEFAULT_TARGET`'s."""
-    short = isinstance(value, Mapping) and value and set(value) <= {"min", "max"}
-    return collected(without_spaces({DEFAULT_TARGET: value} if short else value), _limits)
-
-
-def _limits(name: str, given: Any) -> dict[str, float]:
-    """Return the numbers of the ends of one target."""
-    where = f"analysis.target.{name}"
-    if not isinstance(given, Mapping) or not given or not set(given) <= {"min", "max"}:
-        raise InputError(where, given, "min, max or both, each a number", "For example {min: 500}.")
-    limits = collected(given, lambda end, number: _limit(name, number, f"{where}.{end}"))
-    if limits.get("min", -math.inf) >= limits.get("max", math.inf):
-        raise InputError(where, dict(given), "min below max")
-    return dict(limits)
-
-
-def _limit(name: str, given: Any, where: str) -> float:
-    """Return the number of a limit in the unit of its output; a life in years is refused."""
-    unit = unit_of(name)
-    if parts := split_quantity(given):
-        check_hours(given, parts[1], unit or "", where)
-    number = number_or_nan(given, unit, where)
-    if not math.isfinite(number):
-        raise InputError(where, given, "a number", f"It may have a unit that can be converted to {unit or 'its own'}.")
-    if is_life(name) and number <= 0:
-        raise InputError(where, given, "a life above 0")
-    return number
-
-
-_ENDS: dict[str, Any] = {"type": "object", "additionalProperties": {"type": "number"}}
-_TARGET: dict[str, Any] = {"type": "object", "additionalProperties": {"anyOf": [_ENDS, {"type": "number"}]}}
 
 
 class Analysis(BaseModel):
@@ -104,10 +67,6 @@ class Analysis(BaseModel):
         False,
         description="inner_outer: the material's own scatter in B10; true: from the database; or T_N; fitted, with any "
         "sample: the scatter and the band of targets by the tests of the material",
-    )
-
-    target: Annotated[dict[str, dict[str, float]], BeforeValidator(targets), WithJsonSchema(_TARGET)] = Field(
-        {}, description="output with min or max: the probability to meet it, by design point and by level of a factor"
     )
 
     @field_validator("scale")
@@ -162,7 +121,7 @@ def to_first_limit(config: Any) -> dict[str, Any]:
         return {}
 
     def first(text: str) -> str:
-        return re.sub(rf"(?<!probability\()\b{DEFAULT_TARGET}\b", FIRST_LIMIT, text)  # a target is counted so already
+        return re.sub(rf"(?<!probability\()\b{DEFAULT}\b", FIRST_LIMIT, text)  # a target is counted so already
 
     named = {key: {first(name): way for name, way in keys[key].items()} for key in ("goals", "pareto")}
     return named | {"constraints": tuple(map(first, config.constraints))}
@@ -186,6 +145,47 @@ def output_names(groups: Iterable[str]) -> list[str]:
     groups = set(groups)
     limits = judged(groups)
     return [p.name for v in VARIABLES.values() if v.group in groups for p in parts_of(v, limits)]
+
+
+def names_of_outputs(config: Any) -> list[str]:
+    """Return the names of the results of a study with one number a case, and of its own outputs."""
+    return [*output_names(config.outputs), *config.own]
+
+
+def own_expressions(value: Any) -> Any:
+    """Check the names and the texts of the key `own`, each by itself."""
+    return collected(value, _own_expression)
+
+
+def _own_expression(name: Any, text: Any) -> str:
+    """Return the expression of an output of the study's own."""
+    where = f"own.{name}"
+    if not isinstance(name, str) or not name.isidentifier() or name in FACTOR_NAMES:
+        allowed = "a name of letters, digits and '_' that is no parameter"
+        raise InputError("own", name, allowed, "Rename it.")
+    check_own_name(name, where)
+    expressions.names(text, where)
+    return str(text)
+
+
+def check_own(config: Any, factors: Mapping[str, Factor]) -> None:
+    """Check that the expressions of the key `own` use results and inputs of the study, and clash with no factor."""
+    results = output_names(config.outputs)
+    known = [*results, *factors, *PARAMETERS, *MATERIAL_FIELDS, "material_pair", "regime"]
+    texts = {*MATERIAL_FIELDS, "material_pair", "regime"}
+    texts |= {name for name, factor in factors.items() if not factor.numeric}
+    dummy: dict[str, Any] = {name: "" if name in texts else np.ones(2) for name in known}
+    wrong = Collector()
+    for name, text in config.own.items():
+        where = f"own.{name}"
+        with wrong.part():
+            if name in factors:
+                raise InputError("own", name, "a name that is no factor", "Rename it.", "stands among the factors too")
+            for one in sorted(expressions.names(text, where) - set(REGIMES)):
+                if one not in known:
+                    raise unknown_result(where, one, known, config.outputs)
+            expressions.evaluate(text, dummy | {regime: regime for regime in REGIMES}, where)
+    wrong.check()
 
 
 def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
@@ -227,11 +227,12 @@ def check_scatter(config: Any, materials: Mapping[str, Iterable[Any]]) -> None:
 
 def check(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check that the names in `analysis`, `pareto` and `constraints` exist; `InputError` gives the nearest one."""
-    known = output_names(config.outputs)
+    check_own(config, factors)
+    known = names_of_outputs(config)
     check_analysed(config)
-    if config.analysis.target and not config.method.weighted:
+    if config.requirement and not config.method.weighted:
         remedy = "Use inner_outer, lhs, sobol or saltelli. A grid or a table gives shares of its designs."
-        raise InputError("analysis.target", config.design, "a design whose rows have known weights", remedy)
+        raise InputError("requirement", config.design, "a design whose rows have known weights", remedy)
     free = [*known, *factors, *PARAMETERS]
     _check_statistics(config, factors, known)
     for name in config.pareto if not config.method.points else ():
@@ -243,11 +244,11 @@ def check(config: Any, factors: Mapping[str, Factor]) -> None:
 
 
 def check_analysed(config: Any) -> None:
-    """Check that the outputs and targets under `analysis` are results of the study; raise all errors together."""
-    known, scale = output_names(config.outputs), config.analysis.scale
+    """Check that the outputs under `analysis` and `requirement` are results of the study; raise all errors together."""
+    known, scale = names_of_outputs(config), config.analysis.scale
     asked = {
         "analysis.outputs": (*(config.analysis.outputs or ()), *(scale if isinstance(scale, dict) else ())),
-        "analysis.target": config.analysis.target,
+        KEY: config.requirement,
     }
     raise_all(
         unknown_result(where, name, known, config.outputs)
@@ -275,9 +276,9 @@ def _check_statistics(config: Any, factors: Mapping[str, Factor], known: list[st
 
 def check_statistic(config: Any, entry: tuple[str, str], kind: str, output: str, known: Iterable[str]) -> None:
     """Check the statistic `kind` of an output, which stands in an entry of `pareto` or `goals`: key and name."""
-    if kind == "probability" and output not in (*config.analysis.target, *REGIMES):
-        remedy = f"Add it to analysis.target, such as {{{DEFAULT_TARGET}: {{min: 500}}}}."
-        raise InputError(*entry, "the probability of a target or of a regime", remedy)
+    if kind == "probability" and output not in (*config.requirement, *REGIMES):
+        remedy = f"Add it to requirement, such as {{{DEFAULT}: {{min: 500}}}}."
+        raise InputError(*entry, "the probability of a requirement or of a regime", remedy)
     if kind != "probability" and output not in known:
         raise unknown_result(entry[0], output, known, config.outputs)
     if kind in ("b10", "b10_safe") and not is_life(output):

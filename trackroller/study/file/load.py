@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ from pydantic import ValidationError
 from trackroller.carriage.fields import check_fields
 from trackroller.contact.friction_laws import at_rest
 from trackroller.damage.own import digests
-from trackroller.errors import Collector, InputError, nearest, unknown_name
+from trackroller.errors import Collector, InputError, nearest, raise_all, unknown_name
 from trackroller.files import files_beside, find_beside, noted_reads, read_text
 from trackroller.materials import load_database
 from trackroller.numerics.plain import mapping_of
@@ -45,10 +46,12 @@ EXAMPLES = {  # of keys that are mappings or lists
     "constraints": "[max_pressure < 1500]",
     "budget": "{designs: 640, hours: 2}",
     "until": "{half_width: 0.03, of: [roller_life_hours], at_most: 20000}",
-    "analysis.target": "{roller_life_hours: {min: 500}}",
+    "requirement": "{roller_life_hours: {min: 500}}",
+    "own": "{heat_per_force: friction_power_2 / normal_force_2}",
 }
 ROOMS = {"analysis": Analysis.model_fields, "until": Until.model_fields, "budget": Budget.model_fields}
-NAMING = ("analysis", "pareto", "goals", "constraints", "until")  # keys that name results
+NAMING = ("analysis", "requirement", "own", "pareto", "goals", "constraints", "until")  # keys that name results
+OTHER_NAMES = {"design": "method", "analysis.target": "requirement"}  # keys that have two names, and today's name
 FORMER = ("measures", "resamples")  # keys of `analysis` that studies of earlier versions hold
 FORMER_KEYS = {  # keys of the study itself that earlier versions held, and what the program does now
     "exchange": "saltelli exchanges the groups of analysis.groups",
@@ -109,6 +112,49 @@ def without_former(data: Mapping[str, Any]) -> Mapping[str, Any]:
     return kept | ({"analysis": own} if given else {})
 
 
+def with_present_keys(data: Mapping[str, Any]) -> dict[str, Any]:
+    """Return a study file with today's name of each key in `OTHER_NAMES`; refuse a key that is given by both names."""
+    out = dict(data)
+    if "design" in out:
+        _refuse_both("design", "method", out)
+        out = {{"design": "method"}.get(key, key): value for key, value in out.items()}
+    given = _mapping(out.get("analysis"))
+    if "target" in given:
+        _refuse_both("analysis.target", "requirement", out)
+        out["requirement"] = given["target"]
+        out["analysis"] = {key: value for key, value in given.items() if key != "target"}
+    return out
+
+
+def _refuse_both(other: str, name: str, data: Mapping[str, Any]) -> None:
+    """Refuse a key that stands beside its other name."""
+    if name in data:
+        wrong = f"stands beside {other}, which is another name of it"
+        raise InputError(name, data[name], "one of the two", f"Remove {other}.", wrong)
+
+
+@contextmanager
+def _as_written(data: Mapping[str, Any]) -> Iterator[None]:
+    """Name in errors the keys of `OTHER_NAMES` as the study file does."""
+    written = {}
+    if "method" in data and "design" not in data:
+        written["design"] = "method"
+    if "design" in data and "method" not in data:
+        written["method"] = "design"
+    if "target" in _mapping(data.get("analysis")) and "requirement" not in data:
+        written["requirement"] = "analysis.target"
+    try:
+        yield
+    except InputError as error:
+        raise_all(_renamed(one, written) for one in error.errors)
+
+
+def _renamed(error: InputError, names: Mapping[str, str]) -> InputError:
+    """Return an error whose key has the name that the study file uses."""
+    head, dot, tail = error.field.partition(".")
+    return error.named(f"{names[head]}{dot}{tail}") if head in names else error
+
+
 def with_present_names(data: Mapping[str, Any], former: set[str] | None = None) -> dict[str, Any]:
     """Return a study file in which results have the names of today; texts that change are added to `former`."""
 
@@ -142,7 +188,7 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
     """Return the keys of a study file, each checked by itself; raise `InputError` if one is wrong."""
     wrong = Collector()
     _check_names_of_results(data, wrong)
-    data = study_with_radii(without_former(data), wrong)
+    data = study_with_radii(with_present_keys(without_former(data)), wrong)
     try:
         config: StudyFile = StudyFile.model_validate(dict(data))
         wrong.check()
@@ -152,9 +198,10 @@ def checked_keys(data: Mapping[str, Any]) -> StudyFile:
         for one in errors:
             if one["type"] != "missing" or not any(nearest(name, map(str, one["loc"][-1:])) for name in unknown):
                 wrong.errors += _translated(one).errors
-        if not {one["loc"][0] for one in errors} & {"outputs", "analysis"}:
+        naming = ("outputs", "analysis", "requirement", "duty", "carriage", "own")
+        if not {one["loc"][0] for one in errors} & {*naming}:
             with wrong.part():
-                analysed = {key: data[key] for key in ("outputs", "analysis") if key in data}
+                analysed = {key: data[key] for key in naming if key in data}
                 check_analysed(StudyFile.model_validate({"name": "without-the-other-keys"} | analysed))
         wrong.check()
         raise
@@ -244,7 +291,7 @@ def parse_study(
     data: Mapping[str, Any], path: Path | None = None, database: Any = None, planned: bool = False
 ) -> Study:
     """Return the study of a mapping with the keys of a study file; raise `InputError` if an entry is wrong."""
-    with noted_reads() as inputs:
+    with _as_written(data), noted_reads() as inputs:
         inputs |= {path: ("limit", digest) for path, digest in digests().items()}
         wrong = Collector()
         with wrong.part():

@@ -11,7 +11,7 @@ from trackroller.methods.factor import DISTRIBUTIONS
 from trackroller.parameters import MAPPING_FIELDS, MATERIAL_FIELDS, PARAMETERS, Option
 from trackroller.parameters.accuracy import QUANTITIES
 from trackroller.study.design.entries import OPTION_FACTORS
-from trackroller.study.file.config import IN_STUDY, NAME, StudyFile
+from trackroller.study.file.config import IN_STUDY, NAME, QUESTIONS, StudyFile
 
 FILE = Path(__file__).resolve().parents[3] / "workflow" / "schemas" / "study.schema.json"
 
@@ -62,7 +62,11 @@ def schema() -> dict[str, Any]:
         for name in (*base, *OPTION_FACTORS)
     }
     properties["factors"] |= {"properties": named, "additionalProperties": _factor()}
-    properties["design"]["enum"] = list(METHODS)
+    properties["method"]["enum"] = list(METHODS)
+    properties["question"]["enum"] = list(QUESTIONS)
+    properties["design"] = {"description": "another name of `method`", "enum": list(METHODS)}
+    target = {"description": "another name of `requirement`"} | properties["requirement"]
+    whole["$defs"]["Analysis"]["properties"]["target"] = target
     for option in IN_STUDY:
         properties[option.name] |= _option(option)
     return {"$schema": "https://json-schema.org/draft/2020-12/schema", **whole}

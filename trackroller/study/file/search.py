@@ -16,7 +16,7 @@ from trackroller.errors import InputError
 from trackroller.methods.factor import Factor
 from trackroller.parameters import PARAMETERS
 from trackroller.study.design.roles import scattered
-from trackroller.study.file.goals import STATISTICS_OF, check_statistic, output_names, statistic
+from trackroller.study.file.goals import STATISTICS_OF, check_statistic, names_of_outputs, statistic
 
 JUDGED_BY = STATISTICS_OF["goals"]  # over the conditions of a design
 
@@ -49,6 +49,9 @@ def judged_by(goal: str) -> tuple[str, str]:
 def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
     """Check the goals of a search, and refuse them in every other design."""
     if not config.method.proposes:
+        if config.question == "best":
+            remedy = "Write method: optimise and goals, or question: decide."
+            raise InputError("question", config.question, "another question: only a search finds the best", remedy)
         if config.goals:
             remedy = "Use design: optimise, or name the goals under pareto."
             raise InputError("goals", config.design, "design: optimise", remedy)
@@ -57,7 +60,7 @@ def check_search(config: Any, factors: Mapping[str, Factor]) -> None:
         raise InputError("pareto", list(config.pareto), "goals, in design optimise", "Rename the key to goals.")
     if len({judged_by(goal) for goal in config.goals}) < len(config.goals):
         raise InputError("goals", list(config.goals), "each result once with a statistic", "Remove one of them.")
-    known = output_names(config.outputs)
+    known = names_of_outputs(config)
     free = [*known, *factors, *PARAMETERS]
     for goal in config.goals:
         _check_goal(config, goal, factors, free, known)

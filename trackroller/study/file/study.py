@@ -119,7 +119,7 @@ class Study:
 
     def as_dict(self) -> dict[str, Any]:
         """Return what the study file says, every default included, as values of YAML."""
-        return dict(self.config.model_dump(mode="json", exclude_none=True))
+        return dict(self.config.model_dump(mode="json", exclude_none=True, by_alias=True))
 
     @cached_property
     def _text(self) -> str:

@@ -13,7 +13,7 @@ from trackroller.errors import InputError, listing
 from trackroller.methods import METHODS, those_with
 from trackroller.parameters import REGIMES
 from trackroller.roller.output_names import is_life
-from trackroller.study.file.goals import output_names, statistic, unknown_result
+from trackroller.study.file.goals import names_of_outputs, statistic, unknown_result
 
 
 class Until(BaseModel):
@@ -28,7 +28,7 @@ class Until(BaseModel):
         "output's range (morris), of log10 B10 or a probability (inner_outer)",
     )
     of: tuple[str, ...] = Field(
-        description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a target"
+        description="outputs; in inner_outer lives, b10(..) of a life or probability(..) of a requirement"
     )
     at_most: int = Field(200_000, ge=1, le=10_000_000, description="largest number of cases")
     hours: float | None = Field(None, gt=0, description="time of solving on one core, all runs together")
@@ -63,26 +63,26 @@ def check_until(config: Any) -> None:
         allowed = f"with until: the {until.replicates} replicates times a power of two, at the first look"
         raise InputError("samples", config.samples, allowed, f"Write samples: {near}, or remove the key.")
     for name in until.of:
-        _check_of(config, name, output_names(config.outputs))
+        _check_of(config, name, names_of_outputs(config))
 
 
 def _check_of(config: Any, name: str, known: list[str]) -> None:
     """Check one entry of `until.of`."""
     points = config.method.points
     kind, output = statistic(name) if points else ("", name)
-    if kind == "probability" and output in (*config.analysis.target, *REGIMES):
+    if kind == "probability" and output in (*config.requirement, *REGIMES):
         return
     if kind == "probability":
-        remedy = f"Add it to analysis.target, such as {{{output}: {{min: 500}}}}."
-        raise InputError("until.of", name, "the probability of a target or of a regime", remedy)
+        remedy = f"Add it to requirement, such as {{{output}: {{min: 500}}}}."
+        raise InputError("until.of", name, "the probability of a requirement or of a regime", remedy)
     if "(" in output and not points:
         allowed = f"with design {config.design}: results, whose indices count"
         raise InputError("until.of", name, allowed, "Statistics such as b10(..) need design: inner_outer.")
     if output not in known:
         raise unknown_result("until.of", output, known, config.outputs)
     if points and (kind not in ("", "b10") or not is_life(output)):
-        allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a target or of a regime"
-        raise InputError("until.of", name, allowed, f"For example probability({output}) with analysis.target.")
+        allowed = "with inner_outer: a life, whose log10 B10 counts, or probability(..) of a requirement or of a regime"
+        raise InputError("until.of", name, allowed, f"For example probability({output}) with requirement.")
 
 
 def check_first_look(study: Any) -> None:

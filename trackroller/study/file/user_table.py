@@ -20,7 +20,7 @@ from pathlib import Path
 from types import MappingProxyType
 
 from trackroller.errors import Collector, InputError, listing, raise_all
-from trackroller.files import MAX_BYTES, read_bytes, text_of
+from trackroller.files import read_bytes, text_of
 from trackroller.numerics.cells import (
     Refused,
     Stored,
@@ -89,13 +89,20 @@ class UserTable:
 
     Numbers of known columns have a decimal point, no thousands signs, and their unit behind them. Cells of further
     columns that hold numbers only are `Stored`; cells of other columns stay as they are. `known` holds the units of the
-    known columns.
+    known columns, `units` those that the file states for its columns, `signs` the decimal signs of its numbers,
+    `separator` what stands between the cells of a CSV file, `places` where the columns stand in a line of the file, and
+    `width` the largest number of cells of a line.
     """
 
     names: list[str]
     head: int
     lines: dict[int, list[str]]
     known: Mapping[str, str] = field(default_factory=lambda: UNITS)
+    units: list[str] = field(default_factory=list)
+    signs: frozenset[str] = frozenset()
+    separator: str = ""
+    places: list[int] = field(default_factory=list)
+    width: int = 0
 
     def column(self, j: int) -> list[str]:
         """Return the cells of a column."""
@@ -111,10 +118,10 @@ def read_table(
     field: str,
     what: str,
     wrong: Collector,
-    most: float = MAX_BYTES,
     used: Collection[str] = (),
     optional: Collection[str] = (),
     further: Mapping[str, str] = MappingProxyType({}),
+    content: bytes | None = None,
 ) -> UserTable:
     """Read a CSV file, or the sheet of a workbook whose name ends in .xlsx or .xlsm.
 
@@ -131,27 +138,30 @@ def read_table(
         What a line describes, such as 'case'.
     wrong : Collector
         Receives the errors of single lines and cells.
-    most : float
-        Largest size of the file [bytes].
     used : collection of str
         Names of further columns that expressions use.
     optional : collection of str
         Names of columns whose cells may be empty.
     further : mapping
         Units of further columns of numbers by their names.
+    content : bytes, optional
+        Content of the file, or its first lines; by default a file of at most `MAX_BYTES` is read.
 
     Raises
     ------
     InputError
         If the file is not readable, has only one line, or has heads that are no names.
     """
-    lines, separator = _lines(path, field, what, most)
+    content = read_bytes(path, field) if content is None else content
+    lines, separator = _lines(content, path, field, what)
     filled = [(number, cells) for number, cells in lines if any(cells)]
     head, heads, lines = _split(filled)
     remarks = {number: " ".join(filter(None, cells)) for number, cells in filled if _is_comment(cells)}
     found = dict(_without_comments(lines, heads, path, field, wrong))
     if not heads or not found:
         raise InputError(field, str(path), f"a table with a line of names and at least one {what}")
+    width = max(len(cells) for _, cells in filled)
+    places = [j for j, cell in enumerate(heads) if not _is_unnamed(cell)]
     _check_head(heads, found, path, head, field)
     _check_lengths(found, len(heads), separator, path, field, wrong)
     if not found:
@@ -159,7 +169,7 @@ def read_table(
     with _in_line(path, head):
         known = {**UNITS, **further}
         names, units = _names(_without_unnamed(heads, found, field), field, used, known)
-    table = UserTable(names, head, found, known)
+    table = UserTable(names, head, found, known, units, separator=separator, places=places, width=width)
     _read_units(table, units, used, path)
     if not found:
         wrong.check()
@@ -175,7 +185,7 @@ def read_table(
 
 def column_names(path: Path, field: str) -> list[str]:
     """Return the names of the columns of a table; [] for an empty one."""
-    lines, _ = _lines(path, field, "case", math.inf, HEAD_ROWS)
+    lines, _ = _lines(read_bytes(path, field, math.inf), path, field, "case", HEAD_ROWS)
     number, heads, _ = _split(_until_names(lines))
     with _in_line(path, number):
         return _names([head for head in heads if head], field, (), UNITS)[0]
@@ -186,9 +196,8 @@ def is_workbook(path: Path) -> bool:
     return path.suffix.lower() in (".xlsx", ".xlsm")
 
 
-def _lines(path: Path, field: str, what: str, most: float, most_rows: int | None = None) -> tuple[Lines, str]:
+def _lines(content: bytes, path: Path, field: str, what: str, most_rows: int | None = None) -> tuple[Lines, str]:
     """Return the lines with their numbers, and the character between the cells of a CSV file."""
-    content = read_bytes(path, field, most)
     remedy = "Save the table as .xlsx or as CSV."
     zipped, old = content.startswith(b"PK\x03\x04"), content.startswith(b"\xd0\xcf\x11\xe0")
     if old or path.suffix.lower() in _OTHER_FORMATS:
@@ -282,9 +291,13 @@ def _check_lengths(
             wrong.errors.append(InputError(field, ", ".join(line), allowed, hint).at(path, number))
 
 
+def _is_unnamed(head: str) -> bool:
+    return not head or re.fullmatch(r"Unnamed: \d+", head) is not None
+
+
 def _without_unnamed(heads: list[str], found: dict[int, list[str]], field: str) -> list[str]:
     """Return the heads without those of columns that are empty; refuse other columns without a name."""
-    unnamed = [j for j, head in enumerate(heads) if not head or re.fullmatch(r"Unnamed: \d+", head)]
+    unnamed = [j for j, head in enumerate(heads) if _is_unnamed(head)]
     if not unnamed:
         return heads
     for j in unnamed:
@@ -415,6 +428,7 @@ def _read_numbers(table: UserTable, numbers: list[int], units: list[str]) -> Non
     """Write the numbers of the table plainly, with their units; cells that are not clear become `Refused`."""
     columns = {j: table.column(j) for j in range(len(table.names))}
     signs = decimal_signs(cell for j in numbers for cell in columns[j])
+    table.signs = signs
     for j, cells in columns.items():
         read = plain_column(cells, signs) if j in numbers else plain_labels(cells, signs)
         if unit := units[j]:

@@ -59,6 +59,7 @@ FILE_FIELDS = (
     "failure_probabilities",
     "duty",
     "limits",
+    "log",
     *OPTIONS,
 )
 

@@ -1,0 +1,715 @@
+"""The headline of an answer: one template a question, at most 40 words, from the record alone.
+
+What does not fit a template stands in the table. A text that the record holds (`where`, `binds`) is said if it has at
+most eight words. Lives are written with their years if `Answer.facts` holds `duty` (hours a day and days a year).
+
+Keys of `Answer.headline`; a key that is missing, None, NaN or empty is left out of the words:
+
+`decide`, by `Answer.kind` (`build`, `a_or_b`, `none`, `measure`, `give`, `solve_finer`, `cannot_tell`)
+
+=================  =====================================================================================================
+`names`            list of dict: name of a column of role `name` -> level of the named candidates; only choices that
+                   differ between them and the rest; the first one is the leader (of `none` empty)
+`low`, `high`      of the leader's required output at its worst condition [unit of `Answer.output`]
+`worst`            levels of that condition in words (stands in the table)
+`ends`, `ends_high`  limit that ends it, in words that follow "then": "fatigue", "wear"
+`body`             `roller`, `guide` or ''
+`error`            told error of the leader's output [1]
+`extrapolated`     whether the leader's life lies beyond its data
+`not_held`         {count, of, where}: conditions that no candidate holds; `where` as "all 12 driven at friction 0.05"
+`why`              of `cannot_tell`: a key of `CAUSES`
+`not_judged`       {count, of, where}: the same for conditions that the model cannot judge
+`elsewhere`        whether the leader holds all other conditions, so that the headline says "elsewhere"
+`exceeded`         {limit, body, use [1], hours}: the worst check of the leader above 100 %
+`second`           {limit, verdict}: second model ("the rating") that turns the leader's verdict; a state of `STATES`
+`measure`          {what, of, on, turn, units, low, high}: placeholder, its body, the other one, where the leader turns
+`give`             {what}: load that was not given, in words: "the motor force"
+`nearest`          {name (as one of `names`), holds, of, meets, low, fails}: `fails` says where it fails, in words
+`up_to`, `from_on`  levels of the single numeric choice between which all conditions meet the requirement
+`share`, `share_low`, `share_high`  share of the drawn conditions that meets it, Wilson's interval [1]
+`wanted`, `n`      share that is wanted [1]; drawn conditions
+=================  =====================================================================================================
+
+`how sure`: `share`, `share_low`, `share_high`, `wanted`, `n` of drawn conditions, or `meets`, `of` of listed loads; and
+`low`, `high`, `ends`, `ends_high`, `body`, `error`, `extrapolated`, `exceeded`, `second`, `not_held` as above.
+
+`what matters`: `factors`, a list of at most two dicts, the largest first: `title`, `units`, `index`, `index_low`,
+`index_high` [1] (NaN without indices), `height` (as a factor), `from`, `to` (levels at the smallest and the largest end
+of the curve), `at_from`, `at_to` [unit of the output]; `asked`: the same of a factor that the study asks for.
+
+`which model`: `changes`: ``, `verdict`, `order` or `verdict and order`; `models`: list of dict `model`, `verdict`,
+`low`, `high`, `error`, `leader` (a dict as one of `names`); `smallest`, `largest` ratio on like rows to the model
+`base`.
+
+`best`, by `Answer.kind` (`one`, `front`, `front_required`; `solve_finer`, `open`, `none` with
+`nearest`): `designs`, a list of dict: `name` (as one of `names`),
+`at` (`corner`, `knee` or ''), `goals` (list of {words, units, value}), `stopped` (search stopped before this end);
+`binds` (requirement, limit or end of a range in words), `accuracy` (of these numbers), `extrapolated`,
+`exceeded`, `second`.
+
+`how it behaves`: `smallest`, `largest` [unit of the output], `at_smallest`, `at_largest` (levels in words),
+`ends` (list of {limit, body, count}), `of` (cases), `lost` (cases without the output), `ends_low`.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from trackroller.errors import listing
+from trackroller.parameters.of_carriage import parameter_of
+from trackroller.report.bounds import bounds_of_output
+from trackroller.report.numbers import (
+    capital,
+    carried,
+    carried_range,
+    grouped,
+    level_text,
+    long_name,
+    lowered,
+    on_duty,
+    percent,
+    plain,
+    unit_text,
+    years_of,
+)
+from trackroller.results.answer import Answer, Caution, Column, Required
+from trackroller.results.how_it_behaves import answer_how_it_behaves
+from trackroller.results.results import Results
+from trackroller.study.design.levels import NAMED
+
+MOST_WORDS = 40
+MOST_NAMES = 3  # candidates, or models, that a headline names
+NAME_WORDS = 10  # of the choices of a candidate; the others stand in the table
+SHORT = 8  # words of a text from the record that a headline repeats
+
+
+@dataclass(frozen=True)
+class Headline:
+    """A headline: the answer itself, and what follows it."""
+
+    lead: str
+    rest: str = ""
+
+    @property
+    def text(self) -> str:
+        """Return the whole headline."""
+        return self.lead + self.rest
+
+
+def headline_of(answer: Answer) -> Headline:
+    """Return the headline of an answer.
+
+    Parameters
+    ----------
+    answer : Answer
+        The record; the keys of its `headline` stand at the top of this module.
+
+    Raises
+    ------
+    KeyError
+        If this room has no template for the question or the kind of the answer.
+    """
+    with on_duty(answer.facts.get("duty")):
+        return TEMPLATES[answer.question](answer)
+
+
+def shown_answer(results: Results) -> Answer:
+    """Return the answer to a study; of a search without one how its designs behave."""
+    return results.answer or answer_how_it_behaves(results)
+
+
+def decide(answer: Answer) -> Headline:
+    """Say which candidate to build, or why the study cannot say so."""
+    head = answer.headline
+    lead = DECISIONS[answer.kind](answer)
+    if head.get("not_held") and head.get("elsewhere") and answer.kind in ELSEWHERE:
+        lost = f"None holds in {_part(head['not_held'], 'conditions')}"
+        lead = f"{lost}; elsewhere {ELSEWHERE[answer.kind](answer)}"
+        return Headline(lead, f": {'; '.join([_value_said(answer), *_other_rules(head)])}.")
+    shares = _known(head, "share") and bool(answer.required)
+    clauses = _shares(answer) if shares and answer.kind != "none" else _lasts(answer)
+    return _joined(lead, [*_up_to(answer), *clauses, *_nearest(answer)])
+
+
+def _build(answer: Answer) -> str:
+    return f"Build {_leader(answer)}"
+
+
+def _leader(answer: Answer) -> str:
+    """Return the name of the leader; one candidate has none."""
+    return _name(answer, _first(answer.headline.get("names"))) or "it"
+
+
+def _a_or_b(answer: Answer) -> str:
+    return capital(_either(answer))
+
+
+def _either(answer: Answer) -> str:
+    """Return the candidates of which none beats the other."""
+    names = list(answer.headline["names"])
+    spoken = _alternatives(answer, names[:MOST_NAMES])
+    left = len(names) - MOST_NAMES
+    if left > 0:
+        spoken += f" or {left} more"
+    return spoken
+
+
+def _none(answer: Answer) -> str:
+    wanted = _wanted(answer.required)
+    lead = f"None {wanted}" if wanted else "None holds every condition"
+    nearest = answer.headline.get("nearest")
+    return f"{lead}; nearest {_name(answer, nearest['name'])}" if nearest else lead
+
+
+def _measure(answer: Answer) -> str:
+    asked = answer.headline.get("measure")
+    if not asked:
+        return f"Open whether {_leader(answer)} meets it"
+    of = f" of {asked['of']}" if asked.get("of") else ""
+    on = f" on {asked['on']}" if asked.get("on") else ""
+    return f"Measure the {plain(asked['what'])}{of}{on}"
+
+
+def _give(answer: Answer) -> str:
+    lead = f"Give {answer.headline['give']['what']}"
+    if answer.headline.get("not_held"):
+        lead += f": without it {_part(answer.headline['not_held'], 'conditions')} are lost"
+    return lead
+
+
+def _solve_finer(answer: Answer) -> str:
+    return f"Solve finer: only the error leaves {_name(answer, _first(answer.headline['names']))} open"
+
+
+def _cannot_tell(answer: Answer) -> str:
+    head = answer.headline
+    if head.get("not_judged"):
+        return f"Cannot tell: the model does not judge {_part(head['not_judged'], 'conditions')}"
+    return f"Cannot tell: {CAUSES[head['why']]}" if head.get("why") in CAUSES else "Cannot tell"
+
+
+CAUSES = {
+    "model": "the model does not judge every condition of a candidate",
+    "conditions": "candidates share no condition",
+    "materials": "a material lacks the life that others have",
+}
+
+
+DECISIONS: dict[str, Callable[[Answer], str]] = {
+    "build": _build,
+    "a_or_b": _a_or_b,
+    "none": _none,
+    "measure": _measure,
+    "give": _give,
+    "solve_finer": _solve_finer,
+    "cannot_tell": _cannot_tell,
+}
+
+
+ELSEWHERE: dict[str, Callable[[Answer], str]] = {"build": _leader, "a_or_b": _either}  # behind "elsewhere"
+
+
+def _lasts(answer: Answer) -> list[str]:
+    """Return what the leader lasts, what ends it, what other rules say of it, and what is required."""
+    head = answer.headline
+    clauses = []
+    tenth = _tenth(answer)
+    if tenth and answer.kind not in SILENT:
+        clauses.append(f"{tenth} in nine of ten drawn conditions{_then(head)}")
+    elif _known(head, "low") and answer.kind not in SILENT:
+        whose = f"{_leader(answer)} " if answer.kind in ("a_or_b", "measure", "give") else ""
+        place = "" if _one_condition(answer) else " at its worst condition"
+        clauses.append(f"{whose}{_value_said(answer)}{place}{_then(head)}")
+    clauses += _turn(head)
+    return [*clauses, *_other_rules(head), *_required(answer)]
+
+
+SILENT = ("none", "cannot_tell")  # kinds without a leader
+
+
+def _one_condition(answer: Answer) -> bool:
+    conditions = answer.facts.get("conditions")
+    return conditions in (1, [1, 1], (1, 1))
+
+
+def _tenth(answer: Answer) -> str:
+    """Return what nine of ten drawn conditions of the leader reach; '' for listed conditions."""
+    if not answer.facts.get("drawn") or "tenth" not in answer.table or answer.table.empty:
+        return ""
+    tenth = float(answer.table["tenth"].iloc[0])
+    if math.isnan(tenth):
+        return ""
+    return _output(answer, tenth, None, _notes(answer.headline))
+
+
+def _shares(answer: Answer) -> list[str]:
+    """Return the share of the drawn conditions that meets the requirement."""
+    head = answer.headline
+    said = f"{_share(head)} of {head['n']:,} drawn conditions {_reach(answer.required)}{_beyond(head)}"
+    wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
+    return [said, *wanted, *_other_rules(head)]
+
+
+def _up_to(answer: Answer) -> list[str]:
+    """Return between which levels of a single choice all conditions meet the requirement."""
+    head = answer.headline
+    column = next((one for one in answer.columns if one.role == "name"), None)
+    if column is None or not (_known(head, "up_to") or _known(head, "from_on")):
+        return []
+    title = lowered(column.title)
+    ends = [_level(column, head[key]) for key in ("from_on", "up_to") if _known(head, key)]
+    if len(ends) == 2:
+        return [f"every condition meets it for {title} {' to '.join(ends)}"]
+    word = "up to" if _known(head, "up_to") else "from"
+    return [f"every condition meets it {word} {title} {ends[0]}"]
+
+
+def _nearest(answer: Answer) -> list[str]:
+    """Return what the nearest candidate holds and meets where none meets the requirement."""
+    near = answer.headline.get("nearest")
+    if answer.kind != "none" or not near:
+        return []
+    clauses = _reached(near) if answer.required else [f"holds {near['holds']} of {near['of']} conditions"]
+    if _known(near, "low") and near["low"] > 0:
+        clauses[0] += f", {_output(answer, near['low'])} at the worst"
+    fails = _short(near.get("fails"))
+    return [*clauses, f"fails at {fails}"] if fails else clauses
+
+
+def _reached(near: Mapping[str, Any]) -> list[str]:
+    """Return in how many conditions the nearest design meets the requirement."""
+    return [f"meets {near['meets']} of {near['of']} conditions"]
+
+
+def _turn(head: Mapping[str, Any]) -> list[str]:
+    """Return where a placeholder turns the answer."""
+    asked = head.get("measure")
+    if not asked or not _known(asked, "turn"):
+        return []
+    units = f" {unit_text(asked['units'])}" if asked.get("units") not in (None, "", "1", "-") else ""
+    return [f"the answer turns at {grouped(asked['turn'], 2)}{units}"]
+
+
+def how_sure(answer: Answer) -> Headline:
+    """Say which share of the conditions, or how many of the listed loads, meet the requirement."""
+    head = answer.headline
+    if _known(head, "share"):
+        lead = f"{_share(head)} of the {head['n']:,} drawn conditions {_reach(answer.required)}"
+        wanted = [f"{percent(head['wanted'])} are wanted"] if _known(head, "wanted") else []
+        clauses = [*wanted, *_worst(answer), *_other_rules(head)]
+        return Headline(lead, f"; {'; '.join(clauses)}." if clauses else ".")
+    named = _name(answer, _first(head.get("names")))
+    lead = capital(f"{named} meets {head['meets']:,} of {head['of']:,} loads".strip())
+    return _joined(lead, [*_worst(answer), *_other_rules(head), *_required(answer)])
+
+
+def _worst(answer: Answer) -> list[str]:
+    head = answer.headline
+    if not _known(head, "low"):
+        return []
+    return [f"{_value_said(answer)} at the worst{_then(head)}"]
+
+
+def what_matters(answer: Answer) -> Headline:
+    """Say the two largest factors, and from what to what the larger one takes the output."""
+    head, words = answer.headline, lowered(answer.output[1])
+    factors = list(head.get("factors", ()))
+    if not factors:
+        return Headline(f"No factor changes the {words}", ".")
+    verb = "decides" if len(factors) == 1 else "decide"
+    lead = capital(f"{listing([lowered(one['title']) for one in factors])} {verb} the {words}")
+    if _known(factors[0], "index") and _in_shares(answer):
+        sizes = f"index {listing([_index(one) for one in factors])}"
+    else:
+        sizes = listing([f"×{grouped(one['height'], 2)}" for one in factors])
+    clauses = [sizes, _effect(answer, factors[0])]
+    if head.get("asked"):
+        clauses.append(f"{lowered(head['asked']['title'])}: {_effect(answer, head['asked'])}")
+    return _joined(lead, [clause for clause in clauses if clause])
+
+
+def _in_shares(answer: Answer) -> bool:
+    """Return whether the index of an answer is a share; an effect is said by the height of its curve."""
+    return any(column.name == "index" and column.kind == "share" for column in answer.columns)
+
+
+def _index(factor: Mapping[str, Any]) -> str:
+    index = percent(min(1.0, max(0.0, factor["index"])))
+    if not _known(factor, "index_low"):
+        return index
+    ends = [f"{100 * min(1.0, max(0.0, factor[key])):.0f}" for key in ("index_low", "index_high")]
+    return f"{index} ({' to '.join(ends)})"
+
+
+def _effect(answer: Answer, factor: Mapping[str, Any]) -> str:
+    if not _known(factor, "at_from"):
+        return ""
+    units = unit_text(factor.get("units", "")).replace("–", "")
+    levels = [_plain_level(factor.get(key)) for key in ("from", "to")]
+    ends = [carried(factor[key]) for key in ("at_from", "at_to")]
+    unit = unit_text(answer.output[2]).replace("–", "")
+    return f"{' → '.join(levels)} {units}".rstrip() + f": {' → '.join(ends)} {unit}".rstrip()
+
+
+def which_model(answer: Answer) -> Headline:
+    """Say whether the requirement or the order changes with the contact model."""
+    head = answer.headline
+    models = list(head.get("models", ()))
+    changes = head.get("changes") or ""
+    lead = {
+        "": "Neither verdict nor order changes with the contact model",
+        "verdict": "The verdict changes with the contact model, the order does not",
+        "order": "The order changes with the contact model, the verdict does not",
+        "verdict and order": "Verdict and order change with the contact model",
+    }[changes]
+    if not answer.required:
+        lead = "The order changes with the contact model" if changes else "The order is the same by each contact model"
+    if changes:
+        return _joined(lead, [_by_models(answer, models)])
+    clauses = []
+    if _known(head, "smallest"):
+        ratio = carried_range(head["smallest"], head["largest"])
+        clauses.append(f"{lowered(answer.output[1])} {ratio} times that of {head['base']}")
+    return _joined(lead, clauses)
+
+
+def _by_models(answer: Answer, models: Sequence[Mapping[str, Any]]) -> str:
+    """Return leader and verdict by each model; a leader of all models is named once."""
+    shown = models[:MOST_NAMES]
+    leaders = [_name(answer, one.get("leader") or {}) for one in shown]
+    if len(set(leaders)) == 1:
+        first = f"{leaders[0]} is " if leaders[0] and answer.required else ""
+        return first + ", ".join(_by_model(answer, one, "") for one in shown)
+    return ", ".join(_by_model(answer, one, leader) for one, leader in zip(shown, leaders, strict=True))
+
+
+def _by_model(answer: Answer, model: Mapping[str, Any], leader: str) -> str:
+    value = carried_range(model["low"], model.get("high", model["low"]), model.get("error", math.nan))
+    state = str(model["verdict"]) if answer.required and model.get("verdict") else ""
+    what = " ".join(text for text in (leader, state) if text)
+    return f"{what} by {model['model']} ({_measured(value, answer.output[2])})".strip()
+
+
+def best(answer: Answer) -> Headline:
+    """Say the best design and what binds it, or the corners and the knee of a front."""
+    head = answer.headline
+    designs = list(head.get("designs", ()))
+    if not designs:
+        return _without_design(answer)
+    if answer.kind == "front":
+        return _front(answer, designs)
+    first = designs[0]
+    goals = listing([_goal(one) for one in first["goals"]])
+    accuracy = f" at {head['accuracy']}" if head.get("accuracy") else ""
+    clauses = [f"{goals}{_beyond(head)}{accuracy}"]
+    binds = _short(head.get("binds"))
+    if binds:
+        clauses.append(f"bound by {binds}")
+    return _joined(f"Build {_name(answer, first['name'])}", [*clauses, *_other_rules(head), *_required(answer)])
+
+
+def _without_design(answer: Answer) -> Headline:
+    """Say how near a search came where no design surely meets the requirement."""
+    near = answer.headline.get("nearest")
+    if answer.kind == "none" or not near:
+        return _joined(_none(answer), _nearest(answer))
+    only = "Solve finer: only the error leaves" if answer.kind == "solve_finer" else "A range leaves"
+    return _joined(f"{only} {_name(answer, near['name'])} open", [*_reached(near), *_required(answer)])
+
+
+def _front(answer: Answer, designs: Sequence[Mapping[str, Any]]) -> Headline:
+    count = {1: "one design", 2: "two designs"}.get(len(designs), "three designs")
+    said = []
+    for design in designs[:3]:
+        knee = " (knee)" if design.get("at") == "knee" else ""
+        goals = ", ".join(_goal(one, units_only=True) for one in design["goals"])
+        said.append(f"{goals}{knee}")
+    stopped = [design for design in designs if design.get("stopped")]
+    tail = {0: "", 1: "; the search stopped before one corner"}.get(
+        len(stopped), "; the search stopped before both corners"
+    )
+    return Headline(f"No requirement, {count}", f": {'; '.join(said)}{tail}.")
+
+
+def _goal(goal: Mapping[str, Any], units_only: bool = False) -> str:
+    """Return a goal with its value; the words of a life are left to its hours."""
+    value = carried(goal["value"])
+    if goal["units"] == "h":
+        years = years_of(goal["value"])
+        return _noted(f"{value} h", [years] if years else [])
+    text = _measured(value, goal["units"])
+    return text if units_only and text != value else f"{lowered(goal['words'])} {text}"
+
+
+def how_it_behaves(answer: Answer) -> Headline:
+    """Say the range of the output and what ends the cases."""
+    head = answer.headline
+    if not _known(head, "smallest"):
+        return Headline("No case has a result that can be shown", ".")
+    one = head["smallest"] == head.get("largest", head["smallest"])
+    value = _value(answer, head["smallest"], head.get("largest"))
+    where = [_short(head.get(key)) for key in ("at_smallest", "at_largest")]
+    clauses = []
+    if all(where) and not one:
+        clauses.append(f"smallest at {where[0]}, largest at {where[1]}")
+    return _joined(f"{capital(answer.output[1])} {value}", [*clauses, *_ends(head)])
+
+
+def _ends(head: Mapping[str, Any]) -> list[str]:
+    ends = list(head.get("ends", ()))
+    if not ends:
+        return []
+    of = int(head.get("of", 0))
+    if len(ends) == 1 and ends[0]["count"] == of:
+        return [f"{_end(ends[0])} ends {'every case' if of > 1 else 'it'}"]
+    said = [f"{_end(one)} ends {one['count']:,}" for one in ends[:3]]
+    return [f"{', '.join(said)} of {of:,} cases"]
+
+
+def _end(end: Mapping[str, Any]) -> str:
+    return f"{end['limit']} of the {end['body']}" if end.get("body") else str(end["limit"])
+
+
+TEMPLATES: dict[str, Callable[[Answer], Headline]] = {
+    "decide": decide,
+    "what matters": what_matters,
+    "how sure": how_sure,
+    "best": best,
+    "which model": which_model,
+    "how it behaves": how_it_behaves,
+}
+WARNING_HEADS = {
+    "not_held": "Not held",
+    "not_judged": "Not judged",
+    "second_model": "Second model",
+    "extrapolated": "Extrapolated",
+    "worn": "Worn",
+    "not_given": "Not given",
+    "at_end": "At an end",
+    "unlike": "Unlike",
+}
+
+
+def warning_line(caution: Caution) -> str:
+    """Return a warning in one line: its head, how many rows of how many, and where."""
+    where = f": {caution.where}" if caution.where else ""
+    return f"{WARNING_HEADS[caution.code]}, {warning_rows(caution)}{where}"
+
+
+def warning_rows(caution: Caution) -> str:
+    """Return how many rows a warning concerns; nothing is counted where it concerns none."""
+    if caution.of < 2 and caution.what != "cases":
+        return "leader"
+    return f"{caution.count:,} of {caution.of:,} {caution.what}"
+
+
+def _joined(lead: str, clauses: Sequence[str]) -> Headline:
+    """Return a headline of its lead and the clauses behind it."""
+    separator = "; " if ":" in lead else ": "
+    return Headline(lead, f"{separator if clauses else ''}{'; '.join(clauses)}.")
+
+
+def _known(head: Mapping[str, Any], key: str) -> bool:
+    """Return whether a key holds a value."""
+    value = head.get(key)
+    if value is None:
+        return False
+    return not (isinstance(value, float) and math.isnan(value))
+
+
+def _first(names: Any) -> Mapping[str, Any]:
+    return names[0] if names else {}
+
+
+def _name(answer: Answer, name: Mapping[str, Any]) -> str:
+    """Return a candidate by its levels: 'steel, groove 6.5 mm'."""
+    columns = {column.name: column for column in answer.columns}
+    texts = [key for key, level in name.items() if isinstance(level, str)]
+    spoken = []
+    for key, level in name.items():
+        column = columns.get(key) or _column_of(key)
+        alone = isinstance(level, str) and len(texts) == 1
+        alone = alone or (key in NAMED and not isinstance(level, str))
+        text = _level(column, level)
+        spoken.append(text if alone else f"{lowered(column.title)} {text}")
+    shown = spoken[:1]
+    for text in spoken[1:]:
+        if len(" ".join([*shown, text]).split()) > NAME_WORDS:
+            break
+        shown.append(text)
+    left = len(spoken) - len(shown)
+    return ", ".join(shown) + (f" and {left} more" if left else "")
+
+
+def _column_of(key: str) -> Column:
+    """Return the column of a choice that the table does not show."""
+    known = parameter_of(key)
+    units = "" if known is None or known.unit == "-" else known.unit
+    return Column(key, long_name(key), units, kind="level", role="name")
+
+
+def _alternatives(answer: Answer, names: Sequence[Mapping[str, Any]]) -> str:
+    """Return candidates that are equally good; the title of a single choice is said once."""
+    columns = {column.name: column for column in answer.columns}
+    keys = {key for name in names for key in name}
+    if len(keys) == 1:
+        key = keys.pop()
+        column = columns.get(key)
+        levels = [name[key] for name in names]
+        if column is not None and key not in NAMED and not any(isinstance(level, str) for level in levels):
+            values = " or ".join(_plain_level(level) for level in levels)
+            return f"{lowered(column.title)} {values} {unit_text(column.units)}".replace(" –", "").replace(" °", "°")
+    return " or ".join(_name(answer, name) for name in names)
+
+
+def _level(column: Column, level: Any) -> str:
+    """Return a level with its unit."""
+    if isinstance(level, bool):
+        return "yes" if level else "no"
+    if column.name in NAMED or isinstance(level, str):
+        return level_text(column.name, level)
+    unit = unit_text(column.units).replace("–", "")
+    return f"{_plain_level(level)} {unit}".strip().replace(" °", "°")
+
+
+def _plain_level(level: Any) -> str:
+    return level if isinstance(level, str) else grouped(float(level))
+
+
+def _value_said(answer: Answer) -> str:
+    """Return the value of the leader, with its years, and whether it is extrapolated."""
+    head = answer.headline
+    return _output(answer, head["low"], head.get("high"), _notes(head))
+
+
+def _notes(head: Mapping[str, Any]) -> list[str]:
+    """Return what stands in brackets behind a value: why nothing lasts, and whether the value is extrapolated."""
+    reason = [str(head["ends"])] if head.get("ends") and not head.get("body") else []
+    return [*reason, "extrapolated"] if head.get("extrapolated") else reason
+
+
+def _output(answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()) -> str:
+    """Return a value of the output of an answer, or a range; hours alone say that it is a life."""
+    value = _value(answer, low, high, notes)
+    return value if answer.output[2] == "h" else f"{lowered(answer.output[1])} {value}"
+
+
+def _value(answer: Answer, low: float, high: float | None = None, notes: Sequence[str] = ()) -> str:
+    """Return a value or a range with its unit, and its years and other notes in brackets."""
+    if high is None or math.isnan(high):
+        high = low
+    bounds = bounds_of_output(answer)
+    if math.isinf(low) and low > 0:
+        return _noted("unlimited", notes)
+    text = carried_range(low, high, answer.headline.get("error", math.nan), bounds)
+    if answer.output[2] != "h":
+        return _noted(_measured(text, answer.output[2]), notes)
+    years = years_of(low, high)
+    return _noted(f"{text} h", [years, *notes] if years else notes)
+
+
+def _measured(text: str, units: str) -> str:
+    """Return a number with its unit; a plain number has none."""
+    unit = unit_text(units).replace("–", "")
+    return f"{text} {unit}".strip().replace(" °", "°")
+
+
+def _noted(text: str, notes: Sequence[str]) -> str:
+    return f"{text} ({', '.join(notes)})" if notes else text
+
+
+def _beyond(head: Mapping[str, Any]) -> str:
+    return " (extrapolated)" if head.get("extrapolated") else ""
+
+
+def _then(head: Mapping[str, Any]) -> str:
+    """Return the limit that ends the leader; two where the ends of its range differ; '' where it does not roll."""
+    if not head.get("ends") or not head.get("body"):
+        return ""
+    limits = dict.fromkeys([head["ends"], head.get("ends_high") or head["ends"]])
+    return f", then {' or '.join(limits)} of the {head['body']}"
+
+
+def _other_rules(head: Mapping[str, Any]) -> list[str]:
+    """Return a second model that turns the verdict, and the check that is exceeded most."""
+    clauses = []
+    second = head.get("second")
+    if second:
+        verb = {"met": "meets", "open": "leaves it open", "missed": "misses", "none": "does not judge"}
+        clauses.append(f"{second['limit']} {verb[second['verdict']]}")
+    exceeded = head.get("exceeded")
+    if exceeded:
+        clauses.append(f"{exceeded['limit']} exceeded ({percent(exceeded['use'])})")
+    return clauses
+
+
+def _required(answer: Answer) -> list[str]:
+    """Return what is required, as one clause."""
+    if answer.kind in SILENT or not answer.required:
+        return []
+    return [f"required {listing([_bound(one, answer.output[0]) for one in answer.required])}"]
+
+
+def _bound(required: Required, output: str) -> str:
+    """Return a requirement with its unit, and with the words of its output where it is another than the table's."""
+    words = "" if required.output == output or required.units == "h" else f"{lowered(required.words)} "
+    if math.isfinite(required.least) and math.isfinite(required.most):
+        return f"{words}{grouped(required.least, 6)} to {_amount(required, required.most)}"
+    if math.isfinite(required.most):
+        return f"{words}at most {_amount(required, required.most)}"
+    if words:
+        words += "at least "
+    return f"{words}{_amount(required, required.least)}"
+
+
+def _amount(required: Required, value: float) -> str:
+    text = _measured(grouped(value, 6), required.units)
+    years = years_of(value) if required.units == "h" else ""
+    return _noted(text, [years] if years else [])
+
+
+def _reach(required: Sequence[Required]) -> str:
+    """Return the verb of conditions that meet a requirement: 'reach 5,000 h'."""
+    if len(required) != 1:
+        return "meet the requirements"
+    one = required[0]
+    if math.isfinite(one.least) and math.isfinite(one.most):
+        return f"keep to {grouped(one.least, 6)} to {_amount(one, one.most)}"
+    if math.isfinite(one.most):
+        return f"stay within {_amount(one, one.most)}"
+    return f"reach {_amount(one, one.least)}"
+
+
+def _wanted(required: Sequence[Required]) -> str:
+    """Return the verb of one candidate that meets a requirement: 'reaches 5,000 h'; '' without a requirement."""
+    if not required:
+        return ""
+    if len(required) > 1:
+        return "meets the requirements"
+    verb, amount = _reach(required).split(" ", 1)
+    third = {"reach": "reaches", "stay": "stays", "keep": "keeps"}
+    return f"{third[verb]} {amount}"
+
+
+def _share(head: Mapping[str, Any]) -> str:
+    text = percent(head["share"])
+    if not _known(head, "share_low"):
+        return text
+    ends = [f"{100 * head[key]:.0f}" for key in ("share_low", "share_high")]
+    return f"{text} ({' to '.join(ends)})"
+
+
+def _part(lost: Mapping[str, Any], what: str) -> str:
+    """Return 'COUNT of ALL conditions', with the levels that hold them where they are short."""
+    where = _short(lost.get("where"))
+    return f"{lost['count']:,} of {lost['of']:,} {what}" + (f" ({where})" if where else "")
+
+
+def _short(text: Any) -> str:
+    """Return a text of the record if it is short, otherwise nothing: then it stands in the table alone."""
+    if not isinstance(text, str) or len(text.split()) > SHORT:
+        return ""
+    return text

@@ -1,0 +1,193 @@
+"""The blocks of a page that shows an answer: title line, headline, table, picture, what was not checked, warnings.
+
+`screen_of` makes them from the record, and `templates/blocks.html.j2` writes them. Study, sheet, spectrum, carriage and
+wear take the same blocks.
+"""
+
+from __future__ import annotations
+
+import base64
+import csv
+import io
+from dataclasses import dataclass
+from typing import Any
+
+from markupsafe import Markup
+
+from trackroller.report.headlines import WARNING_HEADS, headline_of, warning_rows
+from trackroller.report.numbers import count, long_name, on_duty, plain
+from trackroller.report.pictures import curves
+from trackroller.report.pictures.bars import Bars
+from trackroller.report.pictures.first_screen import map_of, picture_of, row_names
+from trackroller.report.tables.rows import (
+    FIRST_ROWS,
+    MOST_ROWS,
+    MOST_SHOWN,
+    Rows,
+    definitions,
+    ends_table,
+    fit_columns,
+    rows_of,
+)
+from trackroller.results.answer import Answer
+
+MOST_TRANSPOSED = 4  # rows of a table that may stand beside its picture as columns
+MOST_EFFECTS = 4  # of the first screen; the others stand under Why
+MOST_DOWNLOADED = 5000  # rows of a table that a page holds as a file
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A table as a page shows it.
+
+    Attributes
+    ----------
+    rows : heads and cells
+    bars : the head of its bars and one bar a row; None without bars
+    place : column before which the bars stand
+    key : what the marks of a bar mean
+    first : rows before the fold
+    of : all rows of the answer
+    """
+
+    rows: Rows
+    head: Markup | None
+    bars: tuple[Markup, ...]
+    bar_title: str
+    bar_unit: str
+    bar_meaning: str
+    place: int
+    key: tuple[tuple[Markup, str], ...]
+    first: int
+    of: int
+
+
+def screen_of(answer: Answer) -> dict[str, Any]:
+    """Return what the template of the blocks needs.
+
+    Parameters
+    ----------
+    answer : Answer
+        The record.
+
+    Returns
+    -------
+    dict
+        `title`, `description`, `facts`, `headline`, `table`, `others` (columns that do not fit), `transposed`,
+        `shared`, `picture`, `effects`, `effects_first`, `effects_caption`, `map`, `not_checked`, `not_used`,
+        `not_given`, `warnings`, `ends`, `definitions`, `download`.
+    """
+    with on_duty(answer.facts.get("duty")):
+        picture = picture_of(answer)
+        shown = table_of(answer)
+        beside = picture is not None and picture.beside
+        effects = curves.effects(answer)
+        first = MOST_EFFECTS if _curves_are_the_picture(answer, picture is not None or shown.head is not None) else 0
+        return {
+            "title": str(answer.facts.get("name", "")),
+            "description": str(answer.facts.get("description") or ""),
+            "facts": facts_line(answer),
+            "headline": headline_of(answer),
+            "table": shown,
+            "others": _others(answer),
+            "transposed": transposed_names(answer) if beside else [],
+            "shared": shown.rows.shared,
+            "picture": picture,
+            "effects_first": effects[:first],
+            "effects": effects[first:],
+            "effects_caption": curves.caption(answer) if effects else "",
+            "map": map_of(answer),
+            "not_checked": answer.not_checked,
+            "not_used": {plain(name): why for name, why in answer.not_used.items()},
+            "not_given": {long_name(name): value for name, value in answer.not_given.items()},
+            "warnings": warnings_of(answer),
+            "ends": ends_table(answer),
+            "definitions": list(definitions(answer)),
+            "download": download_of(answer),
+        }
+
+
+def transposed_names(answer: Answer) -> list[str]:
+    """Return the names of the rows that stand as columns beside a picture: those of the headline."""
+    named = len(answer.picture.get("named", ())) or len(answer.table)
+    return row_names(answer, min(named, len(answer.table), MOST_TRANSPOSED))
+
+
+def _curves_are_the_picture(answer: Answer, other: bool) -> bool:
+    """Return whether effect curves are the picture of the first screen."""
+    return answer.question == "what matters" or not other
+
+
+def facts_line(answer: Answer) -> str:
+    """Return the line below the title: question, date, size, models, accuracy."""
+    facts = answer.facts
+    sizes = []
+    candidates = facts.get("candidates") or 0
+    if candidates > 1:
+        sizes.append(f"{count(candidates)} candidates")
+    conditions = _conditions(facts.get("conditions"))
+    if conditions:
+        drawn = "drawn " if facts.get("drawn") else ""
+        sizes.append(f"{conditions} {drawn}conditions")
+    cases = f"{count(facts['cases'])} cases" if facts.get("cases", 0) > 1 else ""
+    size = f"{cases}: {', '.join(sizes)}" if cases and sizes else cases
+    models = facts.get("models", "")
+    models = models if isinstance(models, str) else ", ".join(map(str, models))
+    parts = [answer.question, str(facts.get("date") or "")[:10], size, models, str(facts.get("accuracy") or "")]
+    return " · ".join(part for part in parts if part)
+
+
+def _conditions(number: Any) -> str:
+    """Return how many conditions candidates have, as one number or as a range; '' for one condition."""
+    ends = [number, number] if isinstance(number, int) else list(number or ())
+    if not ends or max(ends) < 2:
+        return ""
+    return " to ".join(dict.fromkeys(count(end) for end in ends))
+
+
+def table_of(answer: Answer) -> Shown:
+    """Return the table of an answer with its bars; columns that do not fit the page are left to the proof."""
+    bars = Bars.of(answer)
+    fit = fit_columns(answer, bars is not None)
+    rows = rows_of(answer, fit.shown)
+    of = len(answer.table)
+    first = FIRST_ROWS if of > MOST_ROWS else of
+    if bars is None:
+        return Shown(rows, None, (), "", "", "", -1, (), first, of)
+    records = answer.table.head(MOST_SHOWN).to_dict("records")
+    names = [column.name for column in fit.shown]
+    place = next((i for i, name in enumerate(names) if name in bars.columns), len(names))
+    meaning = "; ".join(column.meaning for column in bars.columns.values() if column.meaning)
+    drawn = tuple(bars.row(row) for row in records)
+    return Shown(rows, bars.head(), drawn, bars.title, bars.units, meaning, place, tuple(bars.key()), first, of)
+
+
+def _others(answer: Answer) -> Rows | None:
+    """Return the columns that do not fit the first screen, with the names of their rows."""
+    fit = fit_columns(answer, Bars.of(answer) is not None)
+    if not fit.others:
+        return None
+    names = [column for column in fit.shown if column.role == "name"]
+    return rows_of(answer, [*names, *fit.others])
+
+
+def warnings_of(answer: Answer) -> list[tuple[str, str, str]]:
+    """Return the warnings: head, rows, where."""
+    return [(WARNING_HEADS[one.code], warning_rows(one), one.where) for one in answer.warnings]
+
+
+def download_of(answer: Answer) -> str:
+    """Return the table of an answer as a link to a CSV file with all digits; '' if it is too long for a page."""
+    if len(answer.table) > MOST_DOWNLOADED:
+        return ""
+    text = io.StringIO()
+    writer = csv.writer(text)
+    writer.writerow(answer.table.columns)
+    writer.writerows(answer.table.itertuples(index=False))
+    return f"data:text/csv;base64,{base64.b64encode(text.getvalue().encode()).decode('ascii')}"
+
+
+def empty_proof() -> dict[str, Any]:
+    """Return the proof of a page that has no study behind it."""
+    lists = dict.fromkeys(("base", "materials", "solution", "tables", "doubts", "record"), ())
+    return {"notice": "", "factors": None, "study_text": "", "used": None, **lists}

@@ -1,0 +1,287 @@
+"""The table of an answer: heads, cells as texts and numbers, what all rows share, and what does not fit the page."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from trackroller.report.bounds import bounds_of_output
+from trackroller.report.numbers import (
+    capital,
+    carried_range,
+    grouped,
+    level_text,
+    lowered,
+    unit_text,
+    year_words,
+)
+from trackroller.results.answer import Answer, Column
+from trackroller.study.design.levels import NAMED
+
+STATE_SIGNS = {"met": "● met", "open": "◐ open", "missed": "✕ missed", "none": "– none"}
+MOST_ROWS = 15  # of a table that stands on a page whole
+FIRST_ROWS = 12  # of a longer one, before the fold
+MOST_SHOWN = 200  # of a longer one, the fold included; the others stand in the files
+PAGE = 1090.0  # width of a table on a page [px]
+BARS = 210.0  # width of the bars of a table [px]
+GAP = 17.0  # between two columns [px]
+LETTER = 7.3  # mean width of a letter of a table [px]
+WRAPPED = 24  # letters of a line of a text in a table
+LINES = 2  # of a text in a table
+WIDEST = 40  # letters of such a line; longer texts stand in the proof
+NARROW_KINDS = ("ratio", "error")  # that a card of a narrow screen leaves out
+NARROW_NAMES = ("median", "best")
+WORDS = ("factor", "output")  # columns of words that name a row
+UNDRAWN = ("best",)  # columns that are drawn and not written
+
+
+@dataclass(frozen=True)
+class Head:
+    """The head of a column: title, unit, definition, and its classes."""
+
+    name: str
+    title: str
+    unit: str
+    meaning: str
+    kind: str
+
+
+@dataclass(frozen=True)
+class Cell:
+    """A cell: what it says, and its classes."""
+
+    text: str
+    kind: str
+    state: str = ""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The table of an answer as it is shown.
+
+    Attributes
+    ----------
+    heads : of its columns
+    cells : of its rows
+    shared : what all rows share, in words
+    """
+
+    heads: tuple[Head, ...]
+    cells: tuple[tuple[Cell, ...], ...]
+    shared: tuple[str, ...]
+
+
+def rows_of(answer: Answer, columns: Iterable[Column] | None = None) -> Rows:
+    """Return the table of an answer; columns that are equal in all rows are said once."""
+    shared = answer.shared
+    every = tuple(answer.columns) if columns is None else tuple(columns)
+    shown = [one for one in every if one.name not in shared and one.name not in UNDRAWN]
+    records = answer.table.head(MOST_SHOWN).to_dict("records")
+    heads = tuple(head_of(answer, column) for column in shown)
+    pairs = list(zip(shown, heads, strict=True))
+    cells = tuple(tuple(cell_of(answer, column, row, head.kind) for column, head in pairs) for row in records)
+    first = records[0] if records else {}
+    said = [_shared_text(answer, column, first) for column in answer.columns if column.name in shared]
+    said.append(year_words())
+    return Rows(heads, cells, tuple(text for text in said if text))
+
+
+def head_of(answer: Answer, column: Column) -> Head:
+    """Return the head of a column."""
+    return Head(column.name, capital(column.title), unit_of(column), column.meaning, classes_of(answer, column))
+
+
+def unit_of(column: Column) -> str:
+    """Return the unit of a column as its head shows it."""
+    if column.name in NAMED and column.role == "name":
+        return ""
+    signs = {"share": "%", "ratio": "×", "error": "± %"}
+    unit = signs.get(column.kind) or column.units
+    return unit_text(unit).replace("–", "")
+
+
+def classes_of(answer: Answer, column: Column) -> str:
+    """Return the classes of a column: aligned to the right, one line, left out in a card."""
+    classes = []
+    if _is_number(answer, column):
+        classes.append("n")
+    elif column.kind == "state":
+        classes.append("v" if column is _first_state(answer) else "s")
+    elif column.role == "name" and _longest(answer, column) <= WRAPPED:
+        classes.append("s")
+    if column.kind in NARROW_KINDS or column.name in NARROW_NAMES:
+        classes.append("z")
+    if column.role == "name":
+        classes.append("u")
+    return " ".join(classes)
+
+
+def _first_state(answer: Answer) -> Column | None:
+    """Return the column of the verdict: the first one of its kind."""
+    return next((column for column in answer.columns if column.kind == "state"), None)
+
+
+def _is_number(answer: Answer, column: Column) -> bool:
+    if column.kind in ("state", "text"):
+        return False
+    if column.kind != "level":
+        return True
+    return not any(isinstance(value, str) for value in answer.table[column.name])
+
+
+def cell_of(answer: Answer, column: Column, row: Mapping[Any, Any], kind: str) -> Cell:
+    """Return a cell of a row with the classes of its column."""
+    value = row[column.name]
+    if column.kind == "state":
+        return Cell(STATE_SIGNS.get(str(value), str(value)), kind, str(value))
+    return Cell(text_of(answer, column, row), kind)
+
+
+def text_of(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
+    """Return what a cell says, without the unit of its head."""
+    value = row[column.name]
+    if _missing(value):
+        return "–"
+    if column.kind == "level":
+        return _level_text(column, value)
+    if isinstance(value, str):
+        return capital(value) if column.name in WORDS else value
+    if column.kind == "count":
+        return grouped(float(value), 12)
+    low = float(value)
+    high = float(row[column.until]) if column.until and not _missing(row[column.until]) else low
+    if column.kind in ("share", "error"):
+        return _percent_range(low, high)
+    if column.kind == "ratio":
+        return " to ".join(dict.fromkeys(ratio_text(end) for end in (low, high)))
+    return carried_range(low, high, _error_of(row, column), _bounds(answer, column))
+
+
+def ratio_text(ratio: float) -> str:
+    """Write a ratio: three figures near 1, where small differences count, otherwise two."""
+    return grouped(ratio, 3 if 0.1 <= ratio < 10 else 2)
+
+
+def _missing(value: Any) -> bool:
+    return value is None or (isinstance(value, float) and math.isnan(value))
+
+
+def _level_text(column: Column, value: Any) -> str:
+    if isinstance(value, bool):
+        return "yes" if value else "no"
+    if isinstance(value, str) or column.name in NAMED:
+        return level_text(column.name, value)
+    return grouped(float(value))
+
+
+def _percent_range(low: float, high: float) -> str:
+    """Return shares in percent; only all is 100 and only none is 0."""
+    return " to ".join(dict.fromkeys(_percent(value) for value in (low, high)))
+
+
+def _percent(value: float) -> str:
+    whole = 100 * value
+    if math.isinf(whole):
+        return grouped(whole)
+    if 0 < whole < 1 or 99 < whole < 100:
+        return grouped(whole, 2 if whole < 1 else 4)
+    return grouped(float(f"{whole:.0f}"), 12) if whole >= 1 else "0"
+
+
+def _error_of(row: Mapping[Any, Any], column: Column) -> float:
+    """Return the told error of the numbers of a row; it belongs to the output alone."""
+    error = row.get("error")
+    return float(error) if error is not None and column.role == "bar" else math.nan
+
+
+def _bounds(answer: Answer, column: Column) -> list[float]:
+    if column.role != "bar":
+        return []
+    return bounds_of_output(answer)
+
+
+def _shared_text(answer: Answer, column: Column, row: Mapping[Any, Any]) -> str:
+    text = text_of(answer, column, row)
+    if text in ("–", ""):
+        return ""
+    title = lowered(column.title)
+    unit = unit_of(column)
+    return f"{title} {text} {unit}".strip().replace(" °", "°")
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Which columns of a table stand on the first screen, and which ones in the proof."""
+
+    shown: tuple[Column, ...]
+    others: tuple[Column, ...]
+
+
+def fit_columns(answer: Answer, bars: bool, width: float = PAGE) -> Fit:
+    """Return the columns that fit a width, from the first one on; columns that name a row or are drawn stay."""
+    shared = answer.shared
+    left = width - (BARS if bars else 0.0)
+    shown, others = [], []
+    for column in sorted(answer.columns, key=lambda one: not one.role and one.kind != "state"):
+        if column.name in shared or column.name in UNDRAWN:
+            continue
+        needed = _width(answer, column)
+        readable = column.kind != "text" or _longest(answer, column) <= LINES * WIDEST
+        if column.role or (readable and needed <= left):
+            left -= needed
+            shown.append(column)
+        else:
+            others.append(column)
+    order = {column.name: place for place, column in enumerate(answer.columns)}
+    shown.sort(key=lambda one: order[one.name])
+    others.sort(key=lambda one: order[one.name])
+    return Fit(tuple(shown), tuple(others))
+
+
+def _width(answer: Answer, column: Column) -> float:
+    """Return the estimated width of a column [px]; texts wrap, and numbers do not."""
+    longest = _longest(answer, column)
+    if column.kind == "text" or column.role == "name":
+        longest = max(min(longest, WRAPPED), longest // LINES)
+    if column.kind == "state":
+        longest = len("✕ missed")
+    heads = [len(word) for word in (*column.title.split(), unit_of(column))]
+    return LETTER * max(longest, *heads) + GAP
+
+
+def _longest(answer: Answer, column: Column) -> int:
+    """Return the letters of the longest cell of a column."""
+    texts = [text_of(answer, column, row) for row in answer.table.head(MOST_SHOWN).to_dict("records")]
+    return max([len(text) for text in texts], default=1)
+
+
+def definitions(answer: Answer) -> Iterator[tuple[str, str]]:
+    """Yield each column with its definition."""
+    for column in answer.columns:
+        if column.meaning:
+            unit = unit_of(column)
+            title = capital(column.title)
+            yield (f"{title} [{unit}]" if unit else title), capital(column.meaning)
+
+
+def ends_table(answer: Answer) -> tuple[list[str], list[list[str]], str]:
+    """Return heads and rows of the counts of what ends the cases, and what ends all of them if that is one thing."""
+    ends = answer.ends
+    if ends.empty:
+        return [], [], ""
+    limits = [str(name) for name in ends.columns if name not in ("factor", "level")]
+    rows = ends.to_dict("records")
+    ending = [limit for limit in limits if int(rows[0][limit]) > 0]
+    if len(ending) == 1:
+        return [], [], f"{grouped(float(rows[0][ending[0]]), 12)} cases: {ending[0]}"
+    shown = []
+    last = ""
+    for row in rows:
+        factor = capital(str(row["factor"]))
+        level = row["level"] if isinstance(row["level"], str) else grouped(float(row["level"]))
+        counts = [grouped(float(row[limit]), 12) for limit in ending]
+        shown.append(["" if factor == last else factor, level, *counts])
+        last = factor
+    return ["Factor", "Level", *(capital(limit) for limit in ending)], shown, ""

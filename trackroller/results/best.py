@@ -1,0 +1,634 @@
+"""The answer of a search: the best design, or the corners and the knee of a front."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.damage import LIMITS
+from trackroller.errors import InputError, listing
+from trackroller.methods.optimise import nondominated_ranks
+from trackroller.parameters import BODIES, REGIMES
+from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.results.answer import Answer, Caution, Column
+from trackroller.results.answer_parts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
+from trackroller.results.candidate_table import title_of
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import wilson
+from trackroller.results.judging import (
+    Judged,
+    Shares,
+    beyond_data,
+    choices_of,
+    ends_of_goal,
+    goal_column,
+    judge,
+    life_of_search,
+    optimum_of,
+    required,
+    shares_of,
+    shortfall,
+)
+from trackroller.results.lives import OF_PAIR
+from trackroller.results.requirement import required_of
+from trackroller.results.results import SAME_ENDS, Results
+from trackroller.roller.output_names import is_life
+from trackroller.study.design.levels import in_words
+from trackroller.study.file.search import judged_by
+from trackroller.study.outputs import flat
+
+AT_END = 1e-3  # of the range of a choice, within which a value stands at its end
+REASONS = {  # why a design does not hold, as what binds another one
+    "skids": "skidding",
+    "lifts off": "lift-off",
+    "breaks": "the tensile strength",
+    "yields": "yielding",
+    "misses a constraint": "a constraint",
+}
+GOAL = "goal_{}"  # column of a goal by its number; `_low` and `_high` are the ends of its range
+REFERENCE = "goal_{}_reference"
+
+
+@dataclass(frozen=True)
+class _Found:
+    """A search with its designs.
+
+    Attributes
+    ----------
+    results : the solved search
+    search : what it found, see `optimum_of`
+    """
+
+    results: Results
+    search: Mapping[str, Any]
+
+    @cached_property
+    def judged(self) -> Judged:
+        """Return all gathered designs."""
+        return judge(self.results)
+
+    @cached_property
+    def ranges(self) -> CaseRanges:
+        """Return the output of every case that says why a case does not hold: the life, otherwise the first goal."""
+        life = life_of_search(self.results)
+        if life is not None:
+            return life
+        goal, way = next(iter(self.goals.items()))
+        output = judged_by(goal)[1]
+        if output in REGIMES:
+            return CaseRanges(self.results, ("converged", "converged", "1"), True)
+        _, units, words = self.results.quantity(output)
+        return CaseRanges(self.results, (output, words, units), way == "max")
+
+    @cached_property
+    def shares(self) -> list[Shares]:
+        """Return the share of the conditions in which each design meets each requirement."""
+        return shares_of(self.results)
+
+    @cached_property
+    def goals(self) -> dict[str, str]:
+        """Return the goals with `max` or `min`."""
+        return dict(self.search["goals"])
+
+    @property
+    def wanted(self) -> bool:
+        """Return whether the designs have to meet a requirement."""
+        return required(self.results)
+
+    @cached_property
+    def verdict(self) -> np.ndarray:
+        """Return whether each design meets the requirement, shape (designs,): `met`, `open`, `missed`, or `none`.
+
+        `none` stands where a design does not hold in enough conditions to be compared.
+        """
+        short = shortfall(self.results)
+        states = np.where(short == 0, "met", np.where(short < 2, "open", "missed")).astype(object)
+        return np.where(self.judged.violation > 0, "none", states)
+
+    def rows(self, design: int) -> slice:
+        """Return the cases of a design."""
+        many = int(self.results.design.meta["inner_samples"])
+        return slice(design * many, (design + 1) * many)
+
+    @cached_property
+    def front(self) -> np.ndarray:
+        """Return the designs that no other one beats, shape (designs,) bool."""
+        best = self.judged
+        return np.asarray((nondominated_ranks(best.costs, best.missed) == 0) & (best.missed == best.missed.min()))
+
+    @cached_property
+    def optima(self) -> dict[int, Mapping[str, Any]]:
+        """Return the optima that were solved at `reference`, by the number of the design."""
+        return {int(one["design"]): one for one in self.search["optima"]}
+
+    @cached_property
+    def corners(self) -> dict[int, bool]:
+        """Return the best design in each of several goals, and whether no step improves it, by its number."""
+        found: dict[int, bool] = {}
+        for one in self.search.get("corners", ()):
+            found[int(one["design"])] = found.get(int(one["design"]), True) and bool(one["solved"])
+        return found
+
+    @property
+    def chosen(self) -> int:
+        """Return the recommended design."""
+        return int(self.search["recommended"])
+
+    @property
+    def usable(self) -> bool:
+        """Return whether a design holds in some condition."""
+        return bool(self.search["optima"])
+
+    @cached_property
+    def named(self) -> list[int]:
+        """Return the designs of the headline: the recommended one, or both corners and the knee in their order."""
+        if not self.usable:
+            return []
+        if len(self.goals) == 1 or self.wanted:
+            return [self.chosen]
+        corners = list(self.corners)
+        return list(dict.fromkeys([*corners[:1], self.chosen, *corners[1:]]))
+
+    @cached_property
+    def shown(self) -> list[int]:
+        """Return the designs of the table: those of the headline, the corners, then the others along the first goal."""
+        others = [number for number in self.optima if number not in (*self.named, *self.corners)]
+        order = sorted(others, key=lambda number: tuple(np.nan_to_num(self.judged.costs[number], nan=np.inf)))
+        return list(dict.fromkeys([*self.named, *self.corners, *order])) if self.usable else []
+
+
+def answer_of_search(results: Results) -> Answer:
+    """Return the answer of a search.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study with `method: optimise`.
+
+    Returns
+    -------
+    Answer
+        Its kind is `one` (one goal), `front` (several goals, no requirement: corners and knee), `front_required` (the
+        best that meets the requirement), `solve_finer` (only the error of the solution leaves the requirement open),
+        `open` (a range leaves it open), or `none`: no design holds, or none meets the requirement. The headline holds
+        `designs` (name, goals, `at`, `stopped`), `binds`, `accuracy`, `extrapolated`, `second` and `exceeded`. Where
+        no design is known to meet the requirement, `nearest` stands in place of `designs`.
+
+    Raises
+    ------
+    InputError
+        If the study is no search, or its results hold no search.
+    """
+    search = optimum_of(results)
+    if search is None:
+        allowed = "results of a search, method: optimise"
+        raise InputError("study", results.study.name, allowed, "Run the search to its end.", "holds no search")
+    found = _Found(results, search)
+    kind = _kind(found)
+    first = next(iter(found.goals))
+    _, units, words = goal_column(results, first)
+    table, columns = _table(found)
+    return Answer(
+        question="best",
+        kind=kind,
+        headline=_headline(found, kind),
+        output=(judged_by(first)[1], words, units),
+        table=table,
+        columns=columns,
+        required=required_of(results),
+        picture=_picture(found),
+        not_checked=checks_left_out(results),
+        not_used=given_for_nothing(results),
+        not_given=not_given_words(results),
+        warnings=_warnings(found),
+        facts=_facts(found),
+    )
+
+
+def _kind(found: _Found) -> str:
+    """Return the kind of the answer, see `answer_of_search`."""
+    if not found.usable:
+        return "none"
+    state = found.verdict[found.chosen]
+    if found.wanted and state == "open":
+        exact = shortfall(found.results, exact=True)[found.chosen]
+        return "open" if 1 <= exact < 2 else "solve_finer"
+    if found.wanted and state != "met":
+        return "none"
+    if len(found.goals) == 1:
+        return "one"
+    return "front_required" if found.wanted else "front"
+
+
+def _headline(found: _Found, kind: str) -> dict[str, Any]:
+    """Return the numbers and names of the headline."""
+    settled = kind in ("one", "front", "front_required")
+    head: dict[str, Any] = {"designs": [_design(found, number) for number in found.named] if settled else []}
+    if not found.usable:
+        return head
+    chosen = found.chosen
+    head |= {
+        "accuracy": "reference",
+        "extrapolated": bool(_beyond(found)[chosen]),
+        "second": _second(found, chosen),
+        "exceeded": _exceeded(found, chosen),
+        "count": int(found.front.sum()),
+    }
+    if not settled:
+        return head | {"nearest": _nearest(found, chosen)}
+    if kind != "front":
+        binds = _binds(found, chosen)[:2]
+        head["binds"] = listing(binds) if binds else ""
+    return head
+
+
+def _design(found: _Found, number: int) -> dict[str, Any]:
+    """Return a design of the headline: its choices and its goals at `reference`."""
+    at = ""
+    if len(found.named) > 1:
+        at = "corner" if number in found.corners else "knee"
+    goals = []
+    for goal, value in zip(found.goals, found.optima[number]["reference"], strict=True):
+        _, units, words = goal_column(found.results, goal)
+        goals.append({"words": words, "units": units, "value": float(value)})
+    return {"name": _name(found, number), "at": at, "goals": goals, "stopped": _is_stopped(found, number)}
+
+
+def _nearest(found: _Found, number: int) -> dict[str, Any]:
+    """Return the design that comes nearest to the requirement: its name, where it holds and meets, and its low end."""
+    rows = found.rows(number)
+    meets = min((own.sure[number] for own in found.shares), default=0.0)
+    of = rows.stop - rows.start
+    worse = found.ranges.worse[rows]
+    low = float(worse.min() if found.ranges.rises else worse.max())
+    return {
+        "name": _name(found, number),
+        "holds": int(found.results.held[rows].sum()),
+        "meets": round(float(meets) * of),
+        "of": of,
+        "low": low,
+        "verdict": str(found.verdict[number]),
+    }
+
+
+def _name(found: _Found, number: int) -> dict[str, Any]:
+    """Return the choices of a design, those that have one value in all designs left out."""
+    own = choices_of(found.results, number)
+    varied = [name for name in own if _varies(found, name)]
+    return {name: _level(name, own[name]) for name in varied or own}
+
+
+def _varies(found: _Found, name: str) -> bool:
+    """Return whether a choice has several values among the designs of the table."""
+    texts = {str(choices_of(found.results, number)[name]) for number in found.shown}
+    return len(texts) > 1 or len(found.shown) == 1
+
+
+def _level(name: str, value: Any) -> Any:
+    """Return a level as a number or as a text."""
+    if isinstance(value, (bool, int, float, np.number)):
+        return float(value)
+    return in_words(name, value)
+
+
+def _is_stopped(found: _Found, number: int) -> bool:
+    """Return whether the search stopped before a corner, or before its only optimum."""
+    if number in found.corners:
+        return not found.corners[number]
+    return number == found.chosen and len(found.goals) == 1 and not found.search.get("polished", False)
+
+
+def _table(found: _Found) -> tuple[pd.DataFrame, tuple[Column, ...]]:
+    """Return one row a design that was solved at `reference`, with its columns."""
+    table = pd.DataFrame([_row(found, number) for number in found.shown])
+    columns = [*_choice_columns(found), *_goal_columns(found)]
+    if found.wanted:
+        columns.append(Column("verdict", "Requirement", kind="state", meaning=_MEANINGS["verdict"]))
+        if found.results.design.meta["inner_samples"] > 1:
+            columns.append(Column("share", "Conditions that meet it", "1", _MEANINGS["share"], "share"))
+        if _is_drawn(found):
+            title = "95 % interval of the share"
+            columns.append(Column("share_low", title, "1", _MEANINGS["share_low"], "share", "share_high"))
+    columns += [
+        Column("binds", "Bound by", kind="text", meaning=_MEANINGS["binds"]),
+        Column("step", "A step changes the first goal to", "1", _MEANINGS["step"], "ratio"),
+        Column("step_of", "Step", kind="text", meaning="the choice that is moved, and by how much"),
+        Column("corner", "Corner", kind="text", meaning=_MEANINGS["corner"]),
+        Column("second", "Second model", "h", _MEANINGS["second"]),
+        Column("second_verdict", "By the second model", kind="state", meaning="the requirement by the second model"),
+        Column("exceeded", "Largest use above 100 %", "1", _MEANINGS["exceeded"], "share"),
+        Column("extrapolated", "Extrapolated", kind="text", meaning="a life among the goals lies beyond its data"),
+    ]
+    if table.empty:
+        names = [name for column in columns for name in (column.name, column.until) if name]
+        return pd.DataFrame(columns=names), tuple(columns)
+    return table, tuple(column for column in columns if _is_known(table, column))
+
+
+_MEANINGS = {
+    "verdict": "met: enough conditions meet the requirement also with the told error; missed: they do not; open: "
+    "between both",
+    "share": "share of the conditions that meet the requirement with the told error",
+    "share_low": "Wilson's 95 % interval of this share for the number of drawn conditions",
+    "binds": "what a design with a better goal would miss, and the choices that stand at an end of their range",
+    "step": "smallest ratio (of a goal to be large) or largest one (of a goal to be small) if one choice moves by its "
+    "tolerance",
+    "corner": "solved: neither an end of a range nor the smallest step improves the goal; stopped: the search stopped "
+    "before",
+    "second": "shortest life by a second model of an end that another limit has",
+    "exceeded": "largest use of a limit other than fatigue over the conditions, if it is above 100 %",
+}
+
+
+def _is_known(table: pd.DataFrame, column: Column) -> bool:
+    """Return whether a column says something in some row."""
+    values = table[column.name]
+    return bool(column.role) or bool((values.notna() & (values.astype(str) != "")).any())
+
+
+def _choice_columns(found: _Found) -> list[Column]:
+    """Return a column for each choice."""
+    columns = []
+    for name in found.results.design.meta["outer"]:
+        known = parameter_of(name)
+        units = known.units if known else ""
+        role = "name" if _varies(found, name) else ""
+        columns.append(Column(name, long_name_of(name), units, "choice of the designer", "level", role=role))
+    return columns
+
+
+def _goal_columns(found: _Found) -> list[Column]:
+    """Return the columns of each goal: its value, the range of a life, and its value at `reference`."""
+    columns = []
+    for number, (goal, way) in enumerate(found.goals.items(), 1):
+        _, units, words = goal_column(found.results, goal)
+        better = "larger is better" if way == "max" else "smaller is better"
+        name = GOAL.format(number)
+        columns.append(Column(name, words, units, f"{words}; {better}"))
+        columns.append(Column(f"{name}_low", f"{words}, range", units, "with placeholders", until=f"{name}_high"))
+        columns.append(Column(REFERENCE.format(number), f"{words} at reference", units, "the same at `reference`"))
+    return columns
+
+
+def _row(found: _Found, number: int) -> dict[str, Any]:
+    """Return the row of a design."""
+    row: dict[str, Any] = {"design": number}
+    row |= {name: _level(name, value) for name, value in choices_of(found.results, number).items()}
+    reference = found.optima[number]["reference"]
+    for place, (goal, value) in enumerate(zip(found.goals, reference, strict=True), 1):
+        name = GOAL.format(place)
+        row[name] = float(found.judged.values[number, place - 1])
+        row |= dict(zip((f"{name}_low", f"{name}_high"), _range(found, goal, number), strict=True))
+        row[REFERENCE.format(place)] = float(value)
+    if found.wanted:
+        row |= _requirement(found, number)
+    row |= _step(found) if number == found.chosen else {"step": np.nan, "step_of": ""}
+    row["binds"] = ", ".join(_binds(found, number)) if number in (*found.named, *found.corners) else ""
+    row["corner"] = _corner(found, number)
+    second = _second_life(found, number)
+    row["second"] = np.nan if second is None else second[1]
+    row["second_verdict"] = "" if second is None else second[2]
+    over = _exceeded(found, number)
+    row["exceeded"] = np.nan if over is None else over["use"]
+    row["extrapolated"] = "yes" if _beyond(found)[number] else ""
+    return row
+
+
+def _range(found: _Found, goal: str, number: int) -> tuple[float, float]:
+    """Return both ends of a life that is a goal; NaN where it has no range."""
+    ends = ends_of_goal(found.results, goal)
+    if ends is None or not ends[1][number] > ends[0][number] * (1.0 + SAME_ENDS):
+        return np.nan, np.nan
+    return float(ends[0][number]), float(ends[1][number])
+
+
+def _corner(found: _Found, number: int) -> str:
+    """Return whether a design that ends the front, or the optimum of one goal, is solved."""
+    if number not in found.corners:
+        return ""
+    return "stopped" if _is_stopped(found, number) else "solved"
+
+
+def _requirement(found: _Found, number: int) -> dict[str, Any]:
+    """Return whether a design meets the requirement, and in which share of the conditions."""
+    share = float(min((own.sure[number] for own in found.shares), default=np.nan))
+    low, high = (np.nan, np.nan)
+    if _is_drawn(found):
+        count = np.array([found.results.design.meta["inner_samples"]])
+        low, high = (float(end[0]) for end in wilson(share * count, count))
+    return {"verdict": str(found.verdict[number]), "share": share, "share_low": low, "share_high": high}
+
+
+def _is_drawn(found: _Found) -> bool:
+    """Return whether the conditions are drawn, so that a share has an interval."""
+    design = found.results.design
+    inner = design.meta["inner"]
+    return bool(inner) and not any(design.factors[name].discrete for name in inner)
+
+
+def _step(found: _Found) -> dict[str, Any]:
+    """Return to which part or multiple a tolerance takes the first goal of the recommended design."""
+    way = next(iter(found.goals.values()))
+    own = float(found.judged.values[found.chosen, 0])
+    worst, step = np.nan, ""
+    for one in found.search["neighbours"]:
+        ratio = float(one["values"][0]) / own if own else np.nan
+        if np.isnan(worst) or (ratio < worst if way == "max" else ratio > worst):
+            worst, step = ratio, f"{long_name_of(one['choice'])} {one['step']}"
+    return {"step": worst, "step_of": step}
+
+
+def _binds(found: _Found, number: int) -> list[str]:
+    """Return what binds a design: what the nearest design with a better goal misses, then ends of ranges.
+
+    A goal in which a design that misses no more is better is bound by the other goals.
+    """
+    judged, words = found.judged, []
+    for costs in judged.costs.T:
+        better = costs < costs[number]
+        misses = judged.missed > judged.missed[number]
+        if (better & ~misses).any() or not better.any():
+            continue
+        rows = np.flatnonzero(better)
+        away = np.abs(judged.genes[rows] - judged.genes[number]).sum(axis=1)
+        words.append(_missed(found, int(rows[np.argmin(away)])))
+    return [*dict.fromkeys(word for word in words if word), *_at_ends(found, number)]
+
+
+def _missed(found: _Found, number: int) -> str:
+    """Return what a design misses, in words that follow "bound by"."""
+    if found.judged.violation[number] == 0:
+        lacking = [own for own in found.shares if not own.enough(own.sure)[number]]
+        return f"the required {lacking[0].required.words}" if lacking else ""
+    causes = Counter(str(word) for word in found.ranges.reason[found.rows(number)] if word)
+    if not causes:
+        return ""
+    cause = causes.most_common(1)[0][0]
+    return REASONS.get(cause, title_of(cause.removeprefix("limit ")))
+
+
+def _at_ends(found: _Found, number: int) -> list[str]:
+    """Return the choices of a design that stand at an end of the range that the search may take."""
+    words = []
+    for name, value in choices_of(found.results, number).items():
+        factor = found.results.study.parsed[name]
+        tried = factor.numbers
+        if factor.discrete:
+            tried = factor.levels if factor.ordered and factor.numeric and len(factor.levels) > 2 else ()
+        if not tried:
+            continue
+        low, high = min(map(float, tried)), max(map(float, tried))
+        for end, word in ((low, "smallest"), (high, "largest")):
+            if high > low and abs(float(value) - end) <= AT_END * (high - low):
+                words.append(f"the {word} {long_name_of(name)}")
+    return words
+
+
+def _beyond(found: _Found) -> np.ndarray:
+    """Return the designs with a goal that is a life beyond its data, shape (designs,)."""
+    lives = [goal for goal in found.goals if is_life(judged_by(goal)[1])]
+    none = np.zeros(len(found.judged.values), dtype=bool)
+    return np.asarray(np.any([none, *(beyond_data(found.results, goal) for goal in lives)], axis=0))
+
+
+def _required_life(found: _Found) -> tuple[float, float]:
+    """Return the required life of the pair and the share of the conditions that has to reach it; NaN without one."""
+    lives = [own for own in found.shares if own.required.output in OF_PAIR and own.required.least > 0]
+    if not lives:
+        return np.nan, np.nan
+    longest = max(lives, key=lambda own: own.required.least)
+    return longest.required.least, longest.wanted
+
+
+def _second_life(found: _Found, number: int) -> tuple[str, float, str] | None:
+    """Return the second model with the shortest life of a design, this life [h], and its verdict on the requirement.
+
+    None where no second model knows its life in every condition that is judged.
+    """
+    data, rows = found.results.data, found.rows(number)
+    if "life_hours_by_limit" not in data:
+        return None
+    hours = flat(data, "life_hours_by_limit", found.results.dims)[rows]
+    valid = found.results.valid[rows]
+    least, wanted = _required_life(found)
+    shortest: tuple[str, float, str] | None = None
+    for place, limit in enumerate(data["limit"].values.tolist()):
+        own = np.fmin.reduce(hours[valid, place], axis=1)
+        if limit not in LIMITS or not LIMITS[limit].beside or not own.size or np.isnan(own).any():
+            continue
+        verdict = ""
+        if not np.isnan(least):
+            verdict = "met" if (own >= least).sum() / len(valid) >= wanted - 1e-9 else "missed"
+        if shortest is None or own.min() < shortest[1]:
+            shortest = limit, float(own.min()), verdict
+    return shortest
+
+
+def _second(found: _Found, number: int) -> dict[str, str] | None:
+    """Return the second model that turns the verdict of a design; None if none does."""
+    second = _second_life(found, number)
+    if second is None or second[2] in ("", found.verdict[number]):
+        return None
+    return {"limit": second[0], "verdict": second[2]}
+
+
+def _exceeded(found: _Found, number: int) -> dict[str, Any] | None:
+    """Return the limit of a design that is exceeded most, second models included; None if all are kept.
+
+    A use of the S-N curve above 1 is a finite life, and no excess.
+    """
+    data, rows = found.results.data, found.rows(number)
+    if "utilisation" not in data:
+        return None
+    use = flat(data, "utilisation", found.results.dims)[rows]
+    hours = flat(data, "life_hours_by_limit", found.results.dims)[rows]
+    limits = data["limit"].values.tolist()
+    counted = np.array([limit != "fatigue" for limit in limits])
+    known = np.where(counted[:, None] & found.results.valid[rows][:, None, None], use, np.nan)
+    if not (known > 1.0).any():
+        return None
+    case, limit, body = np.unravel_index(np.nanargmax(known), known.shape)
+    after = float(hours[case, limit, body])
+    return {"limit": limits[limit], "body": BODIES[body], "use": float(known[case, limit, body]), "hours": after}
+
+
+def _picture(found: _Found) -> dict[str, Any]:
+    """Return the designs of the picture: their goals, those of the front, and those of the headline.
+
+    Of one goal `history` holds the best value that was known after each design, among those that miss least.
+    """
+    judged, names = found.judged, list(found.goals)
+    picture: dict[str, Any] = {
+        "goals": judged.values,
+        "front": found.front,
+        "met": judged.missed == 0,
+        "named": np.array(found.named, dtype=int),
+        "words": [goal_column(found.results, goal)[2] for goal in names],
+        "units": [goal_column(found.results, goal)[1] for goal in names],
+        "ways": list(found.goals.values()),
+    }
+    if len(names) == 1:
+        costs = np.where(judged.missed == 0, judged.costs[:, 0], np.inf)
+        best = np.minimum.accumulate(np.where(np.isnan(costs), np.inf, costs))
+        sign = -1.0 if found.goals[names[0]] == "max" else 1.0
+        picture["history"] = np.where(np.isfinite(best), sign * best, np.nan)
+    return picture
+
+
+def _warnings(found: _Found) -> tuple[Caution, ...]:
+    """Return the warnings of a search."""
+    results = found.results
+    if not found.usable:
+        said = ", ".join(f"{word.replace('_', ' ')} {n:,}" for word, n in found.search["reasons"].items())
+        tried = int(found.search["designs"])
+        return (Caution("not_held", tried, tried, said, "candidates"),)
+    rows = np.zeros(len(results.table), dtype=bool)
+    rows[found.rows(found.chosen)] = True
+    warnings = case_cautions(results, found.ranges, rows)
+    warnings = [one for one in warnings if one.code != "extrapolated"]  # of the designs of the table, below
+    shown = np.array(found.shown)
+    beyond = int(_beyond(found)[shown].sum())
+    if beyond:
+        warnings.append(Caution("extrapolated", beyond, len(shown), "designs of the table", "candidates"))
+    turned = [number for number in found.shown if _second(found, number) is not None]
+    if turned:
+        limits = sorted({str(_second_life(found, number)[0]) for number in turned})  # type: ignore[index]
+        warnings.append(Caution("second_model", len(turned), len(shown), listing(limits), "candidates"))
+    stopped = [number for number in found.named if _is_stopped(found, number)]
+    ends = _at_ends(found, found.chosen)
+    if stopped or ends:
+        where = ["the search stopped before it", *ends] if stopped else ends
+        warnings.append(Caution("at_end", len(stopped) or 1, len(found.named), listing(where), "candidates"))
+    return tuple(warnings)
+
+
+def _facts(found: _Found) -> dict[str, Any]:
+    """Return what the title line says, and how the search went."""
+    results, search = found.results, found.search
+    conditions = int(results.design.meta["inner_samples"])
+    return facts_of(results) | {
+        "candidates": int(results.design.meta["design_points"]),
+        "conditions": [conditions, conditions],
+        "drawn": _is_drawn(found),
+        "searched": int(search["designs"]),
+        "searched_with": str(search["model"]),
+        "stopped": str(search["stopped"]),
+        "alike": _are_alike(found.judged.values[found.front]),
+    }
+
+
+def _are_alike(values: np.ndarray) -> Sequence[bool]:
+    """Return which goals have one value over the front, shape (goals,)."""
+    return [len(np.unique(column[~np.isnan(column)])) <= 1 for column in values.T]

@@ -1,0 +1,430 @@
+"""The table of a decision: one row a candidate with what it reaches over its conditions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.damage import LIMITS
+from trackroller.parameters import BODIES
+from trackroller.parameters.of_carriage import long_name_of, parameter_of
+from trackroller.results.answer import STATES, Column
+from trackroller.results.comparison import Comparison, wilson
+from trackroller.results.lives import BESIDE, OF_PAIR
+from trackroller.results.places import levels_of, place_text, places_of, places_text, plain
+from trackroller.roller.output_names import is_life
+from trackroller.study.outputs import flat
+
+DESCRIBED = 500  # candidates whose misses are described by levels; of further ones they are counted
+
+
+def candidate_table(own: Comparison) -> pd.DataFrame:
+    """Return one row a candidate, in the order of their numbers.
+
+    Parameters
+    ----------
+    own : the comparison of a study
+
+    Returns
+    -------
+    The columns of `candidate_columns`, `number` and `case` (its worst condition, a row of the study) and `middle`, the
+    geometric middle of the range at the worst condition.
+    """
+    table = own.members.copy()
+    table.insert(0, "number", np.arange(own.count))
+    table = table.assign(**_ends(own), **_counts(own), **_shares(own), **_second_models(own), **_exceeded(own))
+    table["state"] = states_of(own, table)
+    table["fails"] = _fails(own, table)
+    table["edge"] = _edges(own)
+    return table
+
+
+def candidate_columns(own: Comparison, table: pd.DataFrame) -> tuple[Column, ...]:
+    """Return the columns of the table of candidates that a reader is shown, as far as the study has them."""
+    name, words, units = own.ranges.output
+    chance = float(own.results.data.attrs.get("failure_probability", 0.5))
+    life = f"{words}, at {100 * chance:g} % failure probability" if is_life(name) else words
+    columns = []
+    if own.required:
+        meaning = (
+            "met: the low end over (1 + error) reaches the requirement. Missed: the high end times (1 + error) does "
+            "not. Otherwise open; none: no condition is held"
+        )
+        columns.append(Column("state", "Verdict", meaning=meaning, kind="state"))
+    for choice in own.choices:
+        known = parameter_of(choice)
+        unit = "" if known is None else known.units.replace("1", "") if known.units == "1" else known.units
+        meaning = long_name_of(choice) if known is None else known.meaning
+        columns.append(Column(choice, long_name_of(choice), unit, meaning, "level", role="name"))
+    columns += [
+        Column(
+            "low", "Worst", units, f"{life}: worst condition, low to high end of its range", until="high", role="bar"
+        ),
+        Column("median", "Median", units, f"{words}: median of the conditions that are held", role="bar"),
+        Column("best", "Best", units, f"{words}: best condition that is held", role="bar"),
+        Column("worst", "Worst condition", "", "the levels of the condition at the low end", "text"),
+        Column("ends", "Ended by", "", "what ends the candidate at the low end of its worst condition", "text"),
+        Column("ends_high", "At the high end", "", "what ends the candidate at the high end of its range", "text"),
+        Column("holds", "Holds", "", "conditions in which the roller rolls inside all limits", "count"),
+        Column("judged", "Judged", "", "conditions that the model can judge", "count"),
+    ]
+    if own.required:
+        columns.append(Column("meets", "Meets", "", "conditions that meet the requirement within the error", "count"))
+    columns.append(Column("of", "Of", "", "conditions of the candidate", "count"))
+    if own.required:
+        columns.append(
+            Column("fails", "Fails where", "", "levels that cover the misses, or counts of their causes", "text")
+        )
+    if own.drawn:
+        share = "share of the drawn conditions that meet the requirement" if own.required else "share that is held"
+        columns += [
+            Column("share", "Share", "1", share, "share"),
+            Column("share_low", "95 %", "1", "Wilson's interval of the share", "share", until="share_high"),
+            Column(
+                "share_short",
+                "With error",
+                "1",
+                "share if all lives are shorter, or longer, by their told error",
+                "share",
+                until="share_long",
+            ),
+            Column("tenth", "Tenth part", units, "what nine of ten drawn conditions reach"),
+            Column(
+                "tenth_low", "Its 95 %", units, "interval of the tenth part by order statistics", until="tenth_high"
+            ),
+            Column("median_low", "95 % of the median", units, "interval by order statistics", until="median_high"),
+        ]
+    if (table["second"] != "").any():
+        columns += [
+            Column("second", "Second model", "", "the second model of the same end with the shortest life", "text"),
+            Column("second_low", "By second model", "h", "its life at its worst condition", until="second_high"),
+        ]
+        if any(one.output in OF_PAIR for one in own.required):
+            columns.append(Column("second_state", "Its verdict", "", "the requirement by the second model", "state"))
+    if (table["exceeded"] != "").any():
+        columns.append(
+            Column("exceeded", "Above 100 %", "", "limits that are exceeded somewhere, the worst one", "text")
+        )
+    columns += [
+        Column("ratio_low", "To the leader", "1", "ratio to the leader in the same condition", "ratio", "ratio_high"),
+        Column("longer", "Better in", "", "conditions in which the candidate is better than the leader", "count"),
+        Column("error", "Error", "1", "told 95 % error of the solution at the worst condition", "error"),
+        Column("extrapolated", "Extrapolated", "", "conditions whose life lies beyond the data of its rule", "count"),
+    ]
+    if (table["edge"] != "").any():
+        columns.append(
+            Column("edge", "At the end of", "", "choices at the smallest or largest of their levels", "text")
+        )
+    return tuple(columns)
+
+
+def _ends(own: Comparison) -> dict[str, Any]:
+    """Return the range at the worst condition, the median and the best condition, and what ends the candidate."""
+    ranges = own.ranges
+    rows = own.own if own.drawn else own.reachable
+    worse, case = own.smallest(ranges.worse, rows)
+    better, case_better = _at_best_place(own, rows)
+    low, high = (worse, better) if ranges.rises else (better, worse)
+    best = -own.ranges.sign * _least(own, -own.ranges.sign * ranges.better, rows & ranges.held)
+    with np.errstate(invalid="ignore", over="ignore"):
+        middle = np.where((low > 0) & (high > 0), np.sqrt(low) * np.sqrt(high), 0.5 * (low + high))
+    names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
+    worst = [_condition_text(own, names, row) for row in case]
+    at_worse = ("_low", "_high") if ranges.rises else ("_high", "_low")
+    ends, body = _end_words(own, case, at_worse[0])
+    ends_high, body_high = _end_words(own, case_better, at_worse[1])
+    return {
+        "case": case,
+        "low": low,
+        "high": high,
+        "middle": np.where(low == high, low, middle),
+        "median": own.median(ranges.middle, rows & ranges.held),
+        "best": best,
+        "worst": worst,
+        "ends": ends,
+        "body": body,
+        "ends_high": ends_high,
+        "body_high": body_high,
+        "error": np.where(case < 0, 0.0, ranges.error[case]),
+        "extrapolated": _conditions_with(own, ranges.beyond & rows),
+    }
+
+
+def _at_best_place(own: Comparison, rows: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return the better end at the worst condition of each candidate, and its case, shape (candidates,) each.
+
+    Where a factor spans the range of a placeholder, the place at which this end is best counts.
+    """
+    best = np.full(own.count, np.nan)
+    case = np.full(own.count, -1)
+    for level in np.unique(own.level[rows & own.own]):
+        values, cases = own.smallest(own.ranges.better, rows & (own.level == level))
+        with np.errstate(invalid="ignore"):
+            longer = np.isnan(best) | (own.ranges.sign * values > own.ranges.sign * best)
+        best = np.where(longer, values, best)
+        case = np.where(longer, cases, case)
+    return best, case
+
+
+def _least(own: Comparison, values: np.ndarray, rows: np.ndarray) -> np.ndarray:
+    """Return the smallest of some values of each candidate, shape (candidates,); NaN without a row."""
+    chosen = np.flatnonzero(rows & own.own & ~np.isnan(values))
+    out = np.full(own.count, np.inf)
+    np.minimum.at(out, own.place[chosen], values[chosen])
+    some = np.bincount(own.place[chosen], minlength=own.count) > 0
+    return np.where(some, out, np.nan)
+
+
+def _condition_text(own: Comparison, names: list[str], row: int) -> str:
+    if row < 0 or not names:
+        return ""
+    return place_text({name: (level,) for name, level in levels_of(own.results.table, names, row).items()})
+
+
+def _end_words(own: Comparison, case: np.ndarray, end: str) -> tuple[list[str], list[str]]:
+    """Return what ends each candidate in a case, and the body; '' where nothing does, or it is not known."""
+    names, guide = own.ranges.first_at(end)
+    value = own.ranges.low if end == "_low" else own.ranges.high
+    words, bodies = [], []
+    for row in case:
+        word = "" if row < 0 else str(own.ranges.reason[row])
+        ended = row >= 0 and not word and np.isfinite(value[row])
+        word = str(names[row]) if ended else word
+        words.append(title_of(word.removeprefix("limit ")))
+        bodies.append(BODIES[int(guide[row])] if ended and word else "")
+    return words, bodies
+
+
+def title_of(name: str) -> str:
+    """Return the words of a limit by its name, and any other text as it is."""
+    return LIMITS[name].title if name in LIMITS else name
+
+
+def _conditions_with(own: Comparison, rows: np.ndarray) -> np.ndarray:
+    """Return the number of conditions of each candidate with one of some cases, shape (candidates,)."""
+    pair = own.pairs[2]
+    hit = np.bincount(pair[rows & own.own], minlength=len(own.pairs[0])) > 0
+    return own.counted(hit)
+
+
+def _counts(own: Comparison) -> dict[str, Any]:
+    every = np.ones(len(own.pairs[0]), dtype=bool)
+    sure, may = own.met()
+    return {
+        "holds": own.counted(own.all_in_pair(own.ranges.held)),
+        "judged": own.counted(own.all_in_pair(own.ranges.judged)),
+        "meets": own.counted(own.all_in_pair(sure)),
+        "perhaps": own.counted(own.all_in_pair(may)),
+        "of": own.counted(every),
+    }
+
+
+def states_of(own: Comparison, table: pd.DataFrame, exact: bool = False) -> list[str]:
+    """Return the state of each candidate: met, open or missed of the requirement, or none; '' where none is judged.
+
+    Conditions that no candidate holds do not count. `exact` leaves the errors of the solution out.
+    """
+    held, unjudged = table["holds"].to_numpy(), (table["of"] - table["judged"]).to_numpy()
+    never = (held == 0) & (unjudged == 0)
+    if not own.required or (own.drawn and not np.isfinite(own.wanted_share)):
+        return ["none" if gone else "" for gone in never]
+    if own.drawn:
+        short, long = _share_ends(table) if not exact else (table["share"], table["share"])
+        surely, perhaps = np.asarray(short >= own.wanted_share), np.asarray(long >= own.wanted_share)
+    else:
+        sure, may = own.met(exact)
+        surely = _everywhere(own, sure)
+        perhaps = _everywhere(own, may)
+    state = np.where(surely, "met", np.where(perhaps, "open", "missed"))
+    return [str(one) for one in np.where(never, STATES[3], state)]
+
+
+def _everywhere(own: Comparison, rows: np.ndarray) -> np.ndarray:
+    """Return the candidates of which all cases that count are among some rows, shape (candidates,)."""
+    counts = own.reachable
+    bad = np.bincount(own.place[counts & ~rows], minlength=own.count)
+    some = np.bincount(own.place[counts], minlength=own.count) > 0
+    return np.asarray((bad == 0) & some)
+
+
+def _shares(own: Comparison) -> dict[str, Any]:
+    """Return the share of the drawn conditions that meets the requirement, with both of its ranges."""
+    if not own.drawn:
+        return {}
+    hits = own.hits()
+    size = np.bincount(own.place[own.own], minlength=own.count)
+    share = own.shares(hits)
+    low, high = wilson(share * size, size)
+    sure, may = own.met()
+    tenth = np.array([own.tenth_part(number) for number in range(own.count)])
+    middle = np.array([own.middle_interval(number) for number in range(own.count)])
+    return {
+        "n": size,
+        "share": share,
+        "share_low": low,
+        "share_high": high,
+        "share_short": np.minimum(share, own.shares(sure)),
+        "share_long": np.maximum(share, own.shares(may)),
+        "tenth": tenth[:, 0],
+        "tenth_low": tenth[:, 1],
+        "tenth_high": tenth[:, 2],
+        "median_low": middle[:, 0],
+        "median_high": middle[:, 1],
+    }
+
+
+def _share_ends(table: pd.DataFrame) -> tuple[np.ndarray, np.ndarray]:
+    """Return the ends of the share of each candidate by both of its ranges together, shape (candidates,) each."""
+    size = table["n"].to_numpy()
+    low = wilson(table["share_short"].to_numpy() * size, size)[0]
+    high = wilson(table["share_long"].to_numpy() * size, size)[1]
+    return low, high
+
+
+def _fails(own: Comparison, table: pd.DataFrame) -> list[str]:
+    """Return where each candidate misses its requirement, or is not held without one."""
+    good = own.met()[0] if own.required else own.ranges.held
+    names = [name for name in own.conditions if own.results.table[name].nunique() > 1]
+    missed = table["of"].to_numpy() - (table["meets"] if own.required else table["holds"]).to_numpy()
+    out = []
+    for number in range(own.count):
+        if missed[number] == 0:
+            out.append("")
+        elif missed[number] == table["of"].iloc[number]:
+            out.append("everywhere" if table["of"].iloc[number] > 1 else "")
+        elif number < DESCRIBED and not own.drawn:
+            out.append(_where(own, names, number, good))
+        else:
+            out.append(f"{missed[number]} of {table['of'].iloc[number]}")
+    return out
+
+
+def _where(own: Comparison, names: list[str], number: int, good: np.ndarray) -> str:
+    """Return the levels that cover the misses of a candidate, otherwise how often it misses by what."""
+    rows = own.rows[number]
+    part = own.results.table.iloc[rows]
+    found = places_of(part, names, ~good[rows], np.ones(len(rows), dtype=bool))
+    few = [place for place in found if len(place) <= MOST_FACTORS]
+    if found and len(few) == len(found):
+        return places_text(found)
+    reasons = pd.Series(own.ranges.reason[rows][~good[rows]]).replace(
+        "", "too short" if own.ranges.rises else "too much"
+    )
+    counts = reasons.map(lambda word: title_of(str(word).removeprefix("limit "))).value_counts()
+    return ", ".join(f"{word} in {count}" for word, count in counts.items())
+
+
+MOST_FACTORS = 2  # whose levels describe where a candidate fails
+
+
+def _second_models(own: Comparison) -> dict[str, Any]:
+    """Return the life of each candidate by the second model that is shortest, with its name and its verdict."""
+    nothing = {"second": "", "second_low": np.nan, "second_high": np.nan, "second_state": ""}
+    value = own.hours_by_limit("")
+    if value is None or not is_life(own.ranges.output[0]):
+        return nothing
+    names = [str(name) for name in own.results.data["limit"].values]
+    low, high = value, value
+    lower, upper = own.hours_by_limit("_low"), own.hours_by_limit("_high")
+    if lower is not None and upper is not None:
+        low = np.where(np.isnan(lower), value, lower)
+        high = np.where(np.isnan(upper), value, upper)
+    rows = own.own & (own.ranges.held if own.drawn else own.reachable)
+    shortest = np.full(own.count, np.inf)
+    longest = np.full(own.count, np.inf)
+    which = np.full(own.count, "", dtype=object)
+    for place, name in enumerate(names):
+        if name not in BESIDE or np.isnan(low[rows, place]).all():
+            continue
+        ends = []
+        for values in (low, high):
+            of_pair = np.fmin.reduce(values[:, place], axis=1)
+            ends.append(_least(own, np.where(np.isnan(of_pair), np.inf, of_pair), rows))
+        shorter = np.nan_to_num(ends[0], nan=np.inf) < shortest
+        which[shorter] = name
+        shortest = np.where(shorter, ends[0], shortest)
+        longest = np.where(shorter, ends[1], longest)
+    known = which != ""
+    found = {
+        "second": [title_of(str(name)) for name in which],
+        "second_low": np.where(known, shortest, np.nan),
+        "second_high": np.where(known, longest, np.nan),
+    }
+    least = max((one.least for one in own.required if one.output in OF_PAIR), default=np.nan)
+    state = np.where(shortest >= least, "met", np.where(longest >= least, "open", "missed"))
+    found["second_state"] = [str(one) for one in np.where(known & np.isfinite(least), state, "")]
+    return found
+
+
+def _exceeded(own: Comparison) -> dict[str, Any]:
+    """Return the limit of each candidate that is used most above 100 %, its body, its use and its hours."""
+    nothing: dict[str, Any] = {
+        "exceeded": "",
+        "exceeded_by": "",
+        "exceeded_body": "",
+        "use": np.nan,
+        "use_hours": np.nan,
+    }
+    data = own.results.data
+    if "limit_state" not in data or "utilisation" not in data:
+        return nothing
+    words = str(data["limit_state"].attrs["flag_meanings"]).split()
+    state = flat(data, "limit_state", own.results.dims)
+    use = flat(data, "utilisation", own.results.dims).astype(float)
+    beyond = np.where((state == words.index("exceeded")) & (use > 1.0), use, np.nan)
+    flattened = beyond.reshape(len(beyond), -1)
+    most = np.where(np.isnan(flattened), -np.inf, flattened)
+    place = most.argmax(axis=1)
+    worst = most[np.arange(len(place)), place]
+    rows = own.own & (own.reachable if not own.drawn else own.own) & np.isfinite(worst)
+    if not rows.any():
+        return nothing
+    names = [str(name) for name in data["limit"].values]
+    hours = own.hours_by_limit("")
+    case = np.full(own.count, -1)
+    order = np.flatnonzero(rows)
+    order = order[np.lexsort((-worst[order], own.place[order]))]
+    numbers, first = np.unique(own.place[order], return_index=True)
+    case[numbers] = order[first]
+    out: dict[str, list[Any]] = {name: [] for name in nothing}
+    for row in case:
+        if row < 0:
+            for name, value in nothing.items():
+                out[name].append(value)
+            continue
+        limit, body = divmod(int(place[row]), len(BODIES))
+        out["exceeded"].append(f"{title_of(names[limit])} of the {BODIES[body]} {100 * worst[row]:.3g} %")
+        out["exceeded_by"].append(names[limit])
+        out["exceeded_body"].append(BODIES[body])
+        out["use"].append(float(worst[row]))
+        out["use_hours"].append(np.nan if hours is None else float(hours[row, limit, body]))
+    return out
+
+
+def _edges(own: Comparison) -> list[str]:
+    """Return the choices of each candidate that stand at the smallest or largest of at least three numbers."""
+    table, out = own.members, np.full(own.count, "", dtype=object)
+    for name in own.choices:
+        levels = own.results.levels(name)
+        if len(levels) < 3 or not own.results.numeric(name):
+            continue
+        at = table[name].isin([levels[0], levels[-1]]).to_numpy()
+        words = long_name_of(name)
+        out = np.array(
+            [f"{old}, {words}" if old and hit else words if hit else old for old, hit in zip(out, at, strict=True)]
+        )
+    return [str(one) for one in out]
+
+
+def names_of(own: Comparison, numbers: list[int]) -> list[dict[str, Any]]:
+    """Return the choices of some candidates that tell them apart; all choices of a single one.
+
+    Values that all candidates share are left out.
+    """
+    table = own.members.iloc[numbers]
+    told = [n for n in own.choices if own.members[n].nunique() > 1]
+    if len(numbers) > 1:
+        told = [n for n in told if table[n].nunique() > 1] or told
+    return [{name: plain(table[name].iloc[i]) for name in told} for i in range(len(numbers))]

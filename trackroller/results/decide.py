@@ -1,0 +1,339 @@
+"""Which candidate to build: the answer to a study with choices."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.parameters.of_carriage import long_name_of
+from trackroller.results.answer import Answer
+from trackroller.results.answer_parts import (
+    cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    lost_by_missing_input,
+    not_given_words,
+)
+from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of, states_of
+from trackroller.results.comparison import EQUAL, Comparison
+from trackroller.results.effect_curves import Effects
+from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.lives import OF_PAIR
+from trackroller.results.places import places_of, places_text, plain
+from trackroller.results.results import Results
+from trackroller.results.turning import Turning
+from trackroller.roller.output_names import is_life
+
+RIVALS = 200  # of the leader that are compared with it pair by pair, the best ones
+
+
+@dataclass
+class Decision:
+    """What a decision says of its candidates, by their numbers.
+
+    Attributes
+    ----------
+    kind : see `trackroller.results.answer.Answer`
+    order : all candidates, the best one first
+    named : candidates that the headline names
+    why : of `cannot_tell`: `model`, `conditions` or `materials`
+    measure : what to measure, see `Turning`
+    """
+
+    kind: str
+    order: list[int]
+    named: list[int]
+    why: str = ""
+    measure: dict[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True, eq=False)
+class Decider:
+    """The comparison of a study with the table of its candidates.
+
+    Attributes
+    ----------
+    own : the comparison
+    table : see `candidate_table`
+    """
+
+    own: Comparison
+    table: pd.DataFrame
+
+    @cached_property
+    def turning(self) -> Turning:
+        """Return the lives of candidates while a placeholder moves."""
+        return Turning(self.own)
+
+    @cached_property
+    def score(self) -> np.ndarray:
+        """Return what ranks the candidates, more is better, shape (m,).
+
+        It is the tenth part of drawn conditions, otherwise the geometric middle of the range at the worst condition.
+        """
+        name = "tenth" if self.own.drawn and is_life(self.own.ranges.output[0]) else "middle"
+        values = self.table[name].to_numpy(dtype=float)
+        worst = -np.inf if not self.own.ranges.rises else 0.0
+        return np.where(np.isnan(values), worst, self.own.ranges.sign * values)
+
+    @cached_property
+    def goal(self) -> np.ndarray:
+        """Return the one goal of the study beside its requirement, more is better, shape (m,); 0 without one."""
+        goals = self.own.results.config.pareto
+        if len(goals) != 1 or not self.own.required:
+            return np.zeros(self.own.count)
+        name, way = next(iter(goals.items()))
+        values = self.own.results.quantity(name)[0]
+        if values.dtype.kind not in "fiu":
+            return np.zeros(self.own.count)
+        sign = 1.0 if way == "max" else -1.0
+        out = np.full(self.own.count, np.inf)
+        rows = self.own.reachable & ~np.isnan(values.astype(float))
+        np.minimum.at(out, self.own.place[rows], sign * values[rows].astype(float))
+        return out
+
+    def best_first(self, among: Iterable[int]) -> list[int]:
+        """Return some candidates, the best one first: by the goal, the score, the median, then the number held."""
+        numbers = np.array(list(among), dtype=int)
+        median = self.own.ranges.sign * np.nan_to_num(self.table["median"].to_numpy(dtype=float), nan=-np.inf)
+        keys = (self.table["holds"].to_numpy(), median, self.score, self.goal)
+        order = np.lexsort(tuple(-key[numbers] for key in keys))
+        return [int(one) for one in numbers[order]]
+
+    def nearest_first(self, among: Iterable[int]) -> list[int]:
+        """Return some candidates: those that hold most conditions first, then meet most, then with the largest low."""
+        numbers = np.array(list(among), dtype=int)
+        worse = self.table["low" if self.own.ranges.rises else "high"].to_numpy(dtype=float)
+        low = self.own.ranges.sign * np.nan_to_num(worse, nan=self.own.ranges.worst_value)
+        median = self.own.ranges.sign * np.nan_to_num(self.table["median"].to_numpy(dtype=float), nan=-np.inf)
+        keys = (median, low, self.table["meets"].to_numpy(), self.table["holds"].to_numpy())
+        order = np.lexsort(tuple(-key[numbers] for key in keys))
+        return [int(one) for one in numbers[order]]
+
+    def decided(self) -> Decision:
+        """Return which candidate to build, or why that cannot be said."""
+        if self.own.drawn and self.own.required and not np.isfinite(self.own.wanted_share):
+            return self._by_share()
+        return self._by_requirement() if self.own.required else self._by_rank()
+
+    def _by_share(self) -> Decision:
+        """Return the candidate with the largest share; the shares are not judged."""
+        keys = self.score, self.table["share"].to_numpy()
+        order = [int(one) for one in np.lexsort(tuple(-key for key in keys))]
+        held = self.table["holds"].to_numpy() > 0
+        if not held.any():
+            return Decision("none", order, [])
+        return Decision("build", order, order[:1])
+
+    def _by_requirement(self) -> Decision:
+        state = self.table["state"].to_numpy()
+        every = np.arange(self.own.count)
+        groups = [self.best_first(every[state == word]) for word in ("met", "open")]
+        rest = self.nearest_first(every[(state != "met") & (state != "open")])
+        order = [*groups[0], *groups[1], *rest]
+        if groups[0]:
+            tied = [one for one in groups[0][1:RIVALS] if self._tied(groups[0][0], one)]
+            named = [groups[0][0], *tied]
+            return Decision("a_or_b" if tied else "build", [*named, *(n for n in order if n not in named)], named)
+        if groups[1]:
+            return self._open(order, groups[1])
+        return Decision("none", order, [])
+
+    def _open(self, order: list[int], among: list[int]) -> Decision:
+        """Return the decision where no candidate surely meets the requirement, and some may."""
+        judged = self.table["judged"].to_numpy() == self.table["of"].to_numpy()
+        known = [number for number in among if judged[number]]
+        if not known:
+            return Decision("cannot_tell", order, [], "model")
+        leader = known[0]
+        order = [leader, *(n for n in order if n != leader)]
+        if self.own.drawn:
+            return Decision("solve_finer", order, [leader], "sample")
+        if states_of(self.own, self.table, exact=True)[leader] != "open":
+            return Decision("solve_finer", order, [leader], "error")
+        least = max((one.least for one in self.own.required if one.output in OF_PAIR), default=np.nan)
+        found = self.turning.of_open_limit(leader) or self.turning.decides(leader, least)
+        return Decision("measure", order, [leader], measure=found or {})
+
+    def _by_rank(self) -> Decision:
+        own, table = self.own, self.table
+        every = np.arange(own.count)
+        order = self.nearest_first(every)
+        judged = (table["judged"] == table["of"]).to_numpy()
+        counts = own.counted(np.isin(own.pairs[1], np.unique(own.use[own.reachable])))
+        holds_all = (table["holds"].to_numpy() >= counts) if not own.drawn else (self.score > 0) | (table["holds"] > 0)
+        pool = every[judged & np.asarray(holds_all)] if not own.drawn else every[np.asarray(holds_all)]
+        if not len(pool):
+            unknown = (~judged & (table["holds"] == 0)).any() and (table["holds"] == 0).all()
+            return Decision("cannot_tell" if unknown else "none", order, [], "model" if unknown else "")
+        if not own.rankable:
+            return Decision("cannot_tell", order, [], "materials")
+        if not own.matched and not own.drawn and own.conditions and own.count > 1:
+            return Decision("cannot_tell", order, [], "conditions")
+        ranked = self.best_first(pool)
+        leader, *rivals = ranked
+        rivals = rivals[:RIVALS]
+        named = [leader, *(one for one in rivals if not self._beats(leader, one))]
+        order = [*named, *(n for n in ranked if n not in named), *(n for n in order if n not in ranked)]
+        found = self.turning.of_span(leader, rivals) or self.turning.leads(leader, rivals)
+        if found:
+            return Decision("measure", order, [leader], measure=found)
+        return Decision("build" if len(named) == 1 else "a_or_b", order, named)
+
+    def _beats(self, one: int, other: int) -> bool:
+        """Return whether a candidate is never worse than another one by more than the error, and somewhere better.
+
+        Where ratios cross, the worst condition decides.
+        """
+        ratios = self.own.ratios(one, other)
+        error = self.own.error_of_ratio(one, other)
+        never_worse = bool((ratios >= 1.0 / (1.0 + error) - EQUAL).all())
+        somewhere_better = bool((ratios > 1.0 + error + EQUAL).any())
+        if never_worse:
+            return somewhere_better
+        mine, theirs = self.score[one], self.score[other]
+        margin = error * abs(theirs)
+        return bool(mine > theirs + margin + EQUAL * abs(theirs))
+
+    def _tied(self, one: int, other: int) -> bool:
+        """Return whether two candidates are equal within the error in every condition, and by the goal."""
+        if self.goal[one] != self.goal[other]:
+            return False
+        ratios = self.own.ratios(one, other)
+        error = self.own.error_of_ratio(one, other)
+        inside = (ratios >= 1.0 / (1.0 + error) - EQUAL) & (ratios <= 1.0 + error + EQUAL)
+        return bool(inside.all() and ratios.size)
+
+
+def answer_decide(results: Results) -> Answer:
+    """Return which candidate of a study to build.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study with a life, a stress or a requirement.
+    """
+    own = Comparison.of(results)
+    assert own is not None
+    table = candidate_table(own)
+    decider = Decider(own, table)
+    found = decider.decided()
+    turns = _missing_input(own, found)
+    if turns:
+        found.kind = "give"
+    shown = with_ratios(own, table.iloc[found.order].reset_index(drop=True))
+    return Answer(
+        question="decide",
+        kind=found.kind,
+        headline=_headline(own, table, found) | turns,
+        output=own.ranges.output,
+        table=shown,
+        columns=candidate_columns(own, shown),
+        required=own.required,
+        curves=Effects.of(own.ranges).curves(),
+        ends=ends_by_factor(results, own.ranges),
+        not_checked=checks_left_out(results),
+        not_used=given_for_nothing(results) | own.idle,
+        not_given=not_given_words(results),
+        warnings=cautions(own, shown, len(found.named)),
+        facts=facts_of(results, own),
+    )
+
+
+def _missing_input(own: Comparison, found: Decision) -> dict[str, Any]:
+    """Return the load to give that was not given and by which conditions are lost; {} without one."""
+    name = lost_by_missing_input(own)
+    return {"give": {"what": long_name_of(name)}} if name and found.kind != "cannot_tell" else {}
+
+
+def with_ratios(own: Comparison, shown: pd.DataFrame) -> pd.DataFrame:
+    """Return the table with the ratios of each candidate to the first one."""
+    numbers = shown["number"].tolist()
+    ends = np.full((len(numbers), 2), np.nan)
+    better = np.zeros(len(numbers), dtype=int)
+    for i, number in enumerate(numbers):
+        middle = own.ratios(number, numbers[0])
+        if middle.size and own.matched:
+            one = np.sqrt(middle[0]) * np.sqrt(middle[1])
+            ends[i] = one.min(), one.max()
+            better[i] = int((one > 1.0 + own.error_of_ratio(number, numbers[0])).sum())
+    return shown.assign(ratio_low=ends[:, 0], ratio_high=ends[:, 1], longer=better)
+
+
+def _headline(own: Comparison, table: pd.DataFrame, found: Decision) -> dict[str, Any]:
+    """Return the numbers and names of the headline: the named candidates, and what a reader must know of them."""
+    one = table.iloc[found.order[0]]
+    told: dict[str, Any] = {
+        "names": names_of(own, found.named) if found.named else [],
+        "why": found.why,
+        **leading(own, one),
+        "measure": found.measure,
+    }
+    told |= not_held_by_any(own)
+    if found.kind in ("none", "cannot_tell"):
+        told["nearest"] = {
+            "name": names_of(own, [found.order[0]])[0],
+            **{key: plain(one[key]) for key in ("holds", "of", "meets", "low", "fails")},
+        }
+    return told | _level_reached(own, table)
+
+
+def leading(own: Comparison, one: pd.Series) -> dict[str, Any]:
+    """Return what a headline says of one candidate, a row of `candidate_table`."""
+    told: dict[str, Any] = {
+        key: plain(one[key]) for key in ("low", "high", "worst", "ends", "ends_high", "body", "body_high", "error")
+    }
+    told["extrapolated"] = bool(one["extrapolated"])
+    told["elsewhere"] = bool(one["holds"] < one["of"])
+    if one["exceeded_by"]:
+        told["exceeded"] = {
+            "limit": plain(one["exceeded_by"]),
+            "body": plain(one["exceeded_body"]),
+            "use": float(one["use"]),
+            "hours": float(one["use_hours"]),
+        }
+    if one["second_state"] not in ("", one["state"]):
+        told["second"] = {"limit": plain(one["second"]), "verdict": plain(one["second_state"])}
+    if own.drawn:
+        told |= {key: float(one[key]) for key in ("share", "share_low", "share_high")}
+        told |= {"wanted": own.wanted_share, "n": int(one["n"])}
+    return told
+
+
+def not_held_by_any(own: Comparison) -> dict[str, Any]:
+    """Return how many conditions no candidate holds, and where; {} if each is held by one."""
+    rows = own.unreachable
+    if not rows.any():
+        return {}
+    table = own.results.table
+    first = np.flatnonzero(own.own)[np.unique(own.use[own.own], return_index=True)[1]]
+    lost = np.isin(own.use[first], np.unique(own.use[rows]))
+    names = [name for name in own.conditions if table[name].nunique() > 1]
+    place = places_of(table.iloc[first], names, lost, np.ones(len(first), dtype=bool))
+    judged = own.ranges.judged[rows]
+    told = {"count": int(lost.sum()), "of": len(first), "where": places_text(place)}
+    return {"not_held" if judged.any() else "not_judged": told}
+
+
+def _level_reached(own: Comparison, table: pd.DataFrame) -> dict[str, Any]:
+    """Return between which levels of the single numeric choice all conditions meet the requirement; {} without."""
+    if len(own.choices) != 1 or not own.required or not own.results.numeric(own.choices[0]):
+        return {}
+    levels = own.members[own.choices[0]].to_numpy(dtype=float)
+    met = (table["state"] == "met").to_numpy()
+    order = np.argsort(levels)
+    hits = np.flatnonzero(met[order])
+    if not len(hits) or len(hits) == len(levels) or hits[-1] - hits[0] + 1 != len(hits):
+        return {}
+    told = {}
+    if hits[0] > 0:
+        told["from_on"] = float(levels[order][hits[0]])
+    if hits[-1] < len(levels) - 1:
+        told["up_to"] = float(levels[order][hits[-1]])
+    return told

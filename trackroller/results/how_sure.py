@@ -1,0 +1,75 @@
+"""How surely a requirement is met: the answer to a study of one candidate, or to one that asks for shares."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from trackroller.results.answer import Answer
+from trackroller.results.answer_parts import (
+    cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
+from trackroller.results.candidate_table import candidate_columns, candidate_table, names_of
+from trackroller.results.comparison import Comparison
+from trackroller.results.decide import Decider, leading, not_held_by_any, with_ratios
+from trackroller.results.effect_curves import Effects
+from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.results import Results
+
+
+def answer_how_sure(results: Results) -> Answer:
+    """Return how surely the candidates of a study meet its requirement.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study with a life, a stress or a requirement.
+
+    Notes
+    -----
+    `kind` is `share` for drawn conditions and `count` for listed ones. Of several candidates the one with the largest
+    share stands first.
+    """
+    own = Comparison.of(results)
+    assert own is not None
+    table = candidate_table(own)
+    order = _order(own, table)
+    shown = with_ratios(own, table.iloc[order].reset_index(drop=True))
+    one = shown.iloc[0]
+    told: dict[str, Any] = {"names": names_of(own, order[:1]) if own.count > 1 else [], **leading(own, one)}
+    if not own.drawn:
+        told |= {"meets": int(one["meets"]), "of": int(one["of"])}
+    return Answer(
+        question="how sure",
+        kind="share" if own.drawn else "count",
+        headline=told | not_held_by_any(own),
+        output=own.ranges.output,
+        table=shown,
+        columns=candidate_columns(own, shown),
+        required=own.required,
+        curves=Effects.of(own.ranges).curves(),
+        ends=ends_by_factor(results, own.ranges),
+        picture={"values": _values(own, order)},
+        not_checked=checks_left_out(results),
+        not_used=given_for_nothing(results) | own.idle,
+        not_given=not_given_words(results),
+        warnings=cautions(own, shown),
+        facts=facts_of(results, own),
+    )
+
+
+def _order(own: Comparison, table: Any) -> list[int]:
+    """Return the candidates by the share or the number of conditions that meet the requirement, the largest first."""
+    decider = Decider(own, table)
+    share = table["share"] if own.drawn else table["meets"] / table["of"]
+    return [int(n) for n in np.lexsort((-decider.score, -share.to_numpy(dtype=float)))]
+
+
+def _values(own: Comparison, order: list[int]) -> list[np.ndarray]:
+    """Return the output of the conditions of each candidate, in rising order."""
+    return [np.sort(np.where(own.ranges.held, own.ranges.middle, own.ranges.worst_value)[own.rows[n]]) for n in order]

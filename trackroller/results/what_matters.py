@@ -1,0 +1,257 @@
+"""Which factors matter: the answer to a sensitivity analysis, a screening or a response surface."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pandas as pd
+import xarray as xr
+
+from trackroller.parameters import REGIMES
+from trackroller.parameters.of_carriage import long_name_of
+from trackroller.results.answer import Answer, Column, Curve
+from trackroller.results.answer_parts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.comparison import compared_output
+from trackroller.results.effect_curves import Effects
+from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.places import level_text
+from trackroller.results.ranking import SIZED, estimate, headline, order, robust_design, used_share
+from trackroller.results.requirement import required_of
+from trackroller.results.results import Results
+from trackroller.roller.output_names import is_life
+from trackroller.study.design.entries import OPTION_FACTORS
+from trackroller.study.outputs import default_names
+
+PAIRED = ("S2", "interaction_share", "interaction")  # indices of pairs of factors, the most exact first
+WORTH = 0.02  # of the variance: a smaller interaction is not named
+
+
+def shown_ranges(results: Results) -> CaseRanges | None:
+    """Return the output that a study without candidates is about: its first wanted one, its life or a stress."""
+    required = required_of(results)
+    named = [name for name in results.config.analysis.outputs or () if name not in REGIMES]
+    if named and not required:
+        _, units, words = results.quantity(named[0])
+        life = results.life
+        if life is not None and named[0] == life[0]:
+            return CaseRanges(results, life, True)
+        return CaseRanges(results, (named[0], words, units), is_life(named[0]))
+    found = compared_output(results, required)
+    if found is not None:
+        return CaseRanges(results, *found)
+    for name in default_names(results.data, results.design.factors, results.dims):
+        _, units, words = results.quantity(name)
+        return CaseRanges(results, (name, words, units), False)
+    return None
+
+
+def answer_what_matters(results: Results) -> Answer:
+    """Return which factors of a study matter for its output, the largest effect first.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study.
+
+    Notes
+    -----
+    `kind` is `indices` where the method has them for this output, otherwise `curves`. The total index ranks the factors
+    of a Saltelli design; the height of their curves ranks all others.
+    """
+    ranges = shown_ranges(results)
+    assert ranges is not None
+    curves = Effects.of(ranges).curves()
+    table = _table(results, ranges, curves)
+    sens = _indices(results, ranges)
+    rows = results.of_one_model()
+    return Answer(
+        question="what matters",
+        kind="curves" if sens is None else "indices",
+        headline={"factors": [_named(table, curves, place) for place in range(min(2, len(table)))]},
+        output=ranges.output,
+        table=table,
+        columns=_columns(ranges, table, sens),
+        required=required_of(results),
+        curves=_in_order(curves, table),
+        ends=ends_by_factor(results, ranges),
+        picture=pair_shares(sens, ranges.output[0]),
+        not_checked=checks_left_out(results),
+        not_used=given_for_nothing(results),
+        not_given=not_given_words(results),
+        warnings=tuple(case_cautions(results, ranges, rows)),
+        facts=facts_of(results),
+    )
+
+
+def _indices(results: Results, ranges: CaseRanges) -> xr.Dataset | None:
+    """Return the analysis of a study if it has indices that are shares of variance, or elementary effects."""
+    sens = results.analysis
+    name = ranges.output[0]
+    if sens is None or robust_design(sens) or name not in sens["output"].values:
+        return None
+    return sens if order(sens, name) and headline(sens) in sens else None
+
+
+def _table(results: Results, ranges: CaseRanges, curves: tuple[Curve, ...]) -> pd.DataFrame:
+    """Return one row a factor: index with its interval, height and shape of its curve, and both of its ends."""
+    sens = _indices(results, ranges)
+    known = {curve.factor: curve for curve in curves}
+    lost = _lost(results, ranges)
+    found = []
+    for name in (n for n in results.factors if n not in OPTION_FACTORS):
+        curve = known.get(name)
+        row: dict[str, Any] = {
+            "factor": long_name_of(name),
+            "name": name,
+            "role": results.roles.get(name, ""),
+            "range": _range(results, name),
+            "height": np.nan if curve is None else curve.height,
+            "shape": "" if curve is None else curve.shape,
+            "at_low": np.nan if curve is None else float(curve.middle[0]),
+            "at_high": np.nan if curve is None else float(curve.middle[-1]),
+            "lost": lost[name],
+        }
+        if sens is not None:
+            row |= _index(sens, ranges.output[0], name)
+        found.append(row)
+    table = pd.DataFrame(found)
+    by_index = sens is not None and headline(sens) not in SIZED
+    keys = ["index", "height"] if by_index and "index" in table else ["height"]
+    return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(drop=True)
+
+
+def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
+    """Return the index of a factor with its interval, a share cut to 0 to 1, and the factors that it interacts with."""
+    index = headline(sens)
+    part = sens.sel(output=output)
+    names = [str(one) for one in part["factor"].values]
+    if name not in names:
+        return {"index": np.nan, "index_low": np.nan, "index_high": np.nan, "interacts": ""}
+    value, low, high = estimate(part, index)[:, names.index(name)]
+    if index not in SIZED:
+        value, low, high = (float(np.clip(one, 0.0, 1.0)) for one in (value, low, high))
+    return {
+        "index": float(value),
+        "index_low": float(low),
+        "index_high": float(high),
+        "interacts": ", ".join(_partners(part, names.index(name))),
+    }
+
+
+def _partners(part: xr.Dataset, place: int) -> list[str]:
+    """Return the factors whose interaction with a factor surely holds at least `WORTH` of the variance."""
+    name = next((one for one in PAIRED[:2] if one in part), "")
+    if not name:
+        return []
+    value, low, _ = estimate(part, name)
+    both = np.fmax(value, value.T)
+    sure = np.fmax(np.where(np.isnan(low), value, low), np.where(np.isnan(low), value, low).T)
+    titles = [str(one) for one in part["factor_name"].values]
+    hits = np.flatnonzero((both[place] >= WORTH) & (sure[place] > 0))
+    return [titles[i] for i in hits if i != place]
+
+
+def pair_shares(sens: xr.Dataset | None, output: str) -> dict[str, Any]:
+    """Return the shares of variance of all pairs of factors as a matrix with its names; {} without them."""
+    if sens is None:
+        return {}
+    part = sens.sel(output=output)
+    name = next((one for one in PAIRED[:2] if one in part and np.isfinite(part[one].values).any()), "")
+    if not name:
+        return {}
+    value = part[name].values.astype(float)
+    return {"pairs": np.fmax(value, value.T), "titles": [str(one) for one in part["factor_name"].values]}
+
+
+def _lost(results: Results, ranges: CaseRanges) -> dict[str, int]:
+    """Return how many cases are lost (skids, lift-offs and others) between the levels of a factor, most less least."""
+    rows = results.of_one_model()
+    bad = (~ranges.held)[rows]
+    out = {}
+    for name in results.factors:
+        own = results.table[name].to_numpy()[rows]
+        if len(results.levels(name)) > 12:
+            out[name] = int(bad.sum())
+            continue
+        counts = [int(bad[own == level].sum()) for level in results.levels(name)]
+        out[name] = max(counts, default=0) - min(counts, default=0)
+    return out
+
+
+def _range(results: Results, name: str) -> str:
+    """Return the levels of a factor in words: both ends of a number, or its names."""
+    levels = results.levels(name)
+    if results.numeric(name) and len(levels) > 2:
+        return f"{level_text(name, levels[0])} to {level_text(name, levels[-1])}"
+    return ", ".join(level_text(name, level) for level in levels[:6])
+
+
+def _named(table: pd.DataFrame, curves: tuple[Curve, ...], place: int) -> dict[str, Any]:
+    """Return what a headline says of a factor."""
+    row = table.iloc[place]
+    curve = next((one for one in curves if one.factor == row["name"]), None)
+    told: dict[str, Any] = {"title": row["factor"], "name": row["name"], "height": float(row["height"])}
+    told |= {key: float(row.get(key, np.nan)) for key in ("index", "index_low", "index_high")}
+    if curve is not None:
+        low, high = (0, len(curve.levels) - 1)
+        if not curve.ordered or curve.shape in ("hump", "dip"):
+            low, high = int(curve.middle.argmin()), int(curve.middle.argmax())
+        told |= {
+            "units": curve.units,
+            "from": curve.levels[low],
+            "to": curve.levels[high],
+            "at_from": float(curve.middle[low]),
+            "at_to": float(curve.middle[high]),
+        }
+    return told
+
+
+def _in_order(curves: tuple[Curve, ...], table: pd.DataFrame) -> tuple[Curve, ...]:
+    place = {name: i for i, name in enumerate(table["name"])}
+    return tuple(sorted(curves, key=lambda curve: place.get(curve.factor, len(place))))
+
+
+def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -> tuple[Column, ...]:
+    _, words, units = ranges.output
+    columns = [
+        Column("factor", "Factor", "", "factor of the study", "text", role="name"),
+        Column("role", "Role", "", "choice: the designer sets it. Condition: the use does", "text"),
+        Column("range", "Range", "", "levels of the factor in this study", "text"),
+    ]
+    if sens is not None:
+        index = headline(sens)
+        share = index not in SIZED
+        meaning = str(sens[index].attrs.get("long_name", index))
+        unit = "1" if share else ""
+        kind = "share" if share else "number"
+        columns += [
+            Column("index", "Index", unit, meaning + (", cut to 0 to 100 %" if share else ""), kind),
+            Column("index_low", "95 %", unit, "interval of the index", kind, until="index_high"),
+        ]
+        if table["interacts"].any():
+            meaning = f"factors with which a pair surely holds {100 * WORTH:.0f} % of the variance or more"
+            columns.append(Column("interacts", "Interacts with", "", meaning, "text"))
+    positive = bool(np.nanmin(table["at_low"], initial=np.inf) > 0)
+    meaning = "largest over smallest value of the curve" if positive else "largest less smallest value of the curve"
+    columns += [
+        Column("height", "Height", "" if positive else units, meaning, "ratio" if positive else "number"),
+        Column("at_low", "At the first level", units, f"{words}: the curve at the smallest or first level"),
+        Column("at_high", "At the last level", units, f"{words}: the curve at the largest or last level"),
+        Column("shape", "Shape", "", "rise, fall, hump, dip, cliff (in one step), groups or flat", "text"),
+        Column("lost", "Rows lost", "", "cases that are not held: most of a level less fewest of a level", "count"),
+    ]
+    return tuple(columns)
+
+
+def share_used(results: Results, output: str) -> float:
+    """Return the share of the rows that the indices of an output use [1]."""
+    sens = results.analysis
+    return 1.0 if sens is None or output not in sens["output"].values else used_share(sens, output)

@@ -1,0 +1,199 @@
+"""Whether the contact model changes a decision: the answer to a study whose only choice is the model."""
+
+from __future__ import annotations
+
+import dataclasses
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from trackroller.parameters import EXACTNESS
+from trackroller.results.answer import Answer, Column
+from trackroller.results.answer_parts import (
+    case_cautions,
+    checks_left_out,
+    facts_of,
+    given_for_nothing,
+    not_given_words,
+)
+from trackroller.results.candidate_table import candidate_table, names_of
+from trackroller.results.candidates import Candidates
+from trackroller.results.case_ranges import CaseRanges
+from trackroller.results.columns import codes
+from trackroller.results.comparison import Comparison, compared_output
+from trackroller.results.decide import Decider
+from trackroller.results.effect_curves import Effects
+from trackroller.results.first_ends import ends_by_factor
+from trackroller.results.places import plain
+from trackroller.results.requirement import required_of
+from trackroller.results.results import Results
+
+MODEL = "contact_model"
+
+
+def models_of(results: Results) -> list[str]:
+    """Return the contact models of a study, the most exact one first."""
+    known = set(results.table[MODEL]) if MODEL in results.table else set()
+    return [model for model in EXACTNESS if model in known]
+
+
+def of_model(results: Results, model: str) -> Results:
+    """Return the results of one contact model alone, as those of a study that was solved with it."""
+    rows = np.flatnonzero((results.table[MODEL] == model).to_numpy())
+    data = results.data
+    if MODEL in data.dims:
+        data = data.sel({MODEL: model})
+    else:
+        data = data.isel(case=rows)
+    columns = {name: own[rows] for name, own in results.design.columns.items()}
+    design = dataclasses.replace(results.design, columns=columns, unit=results.design.unit[rows])
+    return dataclasses.replace(results, data=data, design=design, known_indices=None)
+
+
+def answer_which_model(results: Results) -> Answer:
+    """Return whether the requirement or the order of the candidates changes with the contact model.
+
+    Parameters
+    ----------
+    results : Results
+        A solved study with the factor `contact_model`.
+
+    Notes
+    -----
+    `kind` is `same` or `changes`. Outputs are compared over the cases that both models hold.
+    """
+    models = models_of(results)
+    required = required_of(results)
+    found = compared_output(results, required)
+    assert found is not None
+    ranges = CaseRanges(results, *found)
+    parts = {model: _of_model(results, ranges, model, models[0]) for model in models}
+    table = pd.DataFrame([parts[model] for model in models])
+    verdicts = {str(row["verdict"]) for row in parts.values()}
+    leaders = {str(row["leader_key"]) for row in parts.values()}
+    changed = [word for word, own in (("verdict", verdicts), ("order", leaders)) if len(own) > 1]
+    several = len(set(table["leader"])) > 1 or table["leader"].iloc[0] != ""
+    base = models[0]
+    told = {
+        "changes": " and ".join(changed),
+        "base": base,
+        "models": [
+            {**{k: plain(v) for k, v in parts[m].items() if k in TOLD}, "leader": parts[m]["names"]} for m in models
+        ],
+        "smallest": float(np.nanmin(table["ratio_low"])) if table["ratio_low"].notna().any() else np.nan,
+        "largest": float(np.nanmax(table["ratio_high"])) if table["ratio_high"].notna().any() else np.nan,
+    }
+    return Answer(
+        question="which model",
+        kind="changes" if changed else "same",
+        headline=told,
+        output=ranges.output,
+        table=table.drop(columns=["names", "leader_key"]),
+        columns=_columns(ranges, bool(required), several),
+        required=required,
+        curves=Effects.of(ranges).curves(),
+        ends=ends_by_factor(results, ranges),
+        picture=_like_against_like(results, ranges, models),
+        not_checked=checks_left_out(results),
+        not_used=given_for_nothing(results),
+        not_given=not_given_words(results),
+        warnings=tuple(case_cautions(results, ranges, np.ones(len(results.table), dtype=bool))),
+        facts=facts_of(results),
+    )
+
+
+TOLD = ("model", "verdict", "low", "high", "error", "meets", "of", "holds")
+
+
+def _of_model(results: Results, ranges: CaseRanges, model: str, base: str) -> dict[str, Any]:
+    """Return the row of one contact model: its own decision, and its ratios to the most exact one on like cases."""
+    own_results = of_model(results, model)
+    required = required_of(own_results)
+    own = Comparison(
+        own_results,
+        CaseRanges(own_results, ranges.output, ranges.rises),
+        required,
+        Candidates.grouped(own_results, ranges.output),
+    )
+    table = candidate_table(own)
+    decided = Decider(own, table).decided()
+    leader = table.iloc[decided.order[0]]
+    names = names_of(own, decided.order[:1])[0]
+    ratios = _ratios(results, ranges, model, base)
+    sure = own.met()[0]
+    return {
+        "model": model,
+        "verdict": plain(leader["state"]) or decided.kind,
+        "leader": ", ".join(f"{key.replace('_', ' ')} {value}" for key, value in names.items()),
+        "names": names,
+        "leader_key": str(sorted(names.items())),
+        "low": float(leader["low"]),
+        "high": float(leader["high"]),
+        "error": float(leader["error"]),
+        "ratio_low": float(np.min(ratios)) if ratios.size else np.nan,
+        "ratio_high": float(np.max(ratios)) if ratios.size else np.nan,
+        "like": int(ratios.size),
+        "meets": int(sure[own.own].sum()) if required else int(own.ranges.held[own.own].sum()),
+        "holds": int(own.ranges.held[own.own].sum()),
+        "of": int(own.own.sum()),
+        "skids": int((own.ranges.reason[own.own] == "skids").sum()),
+    }
+
+
+def _like(results: Results, model: str, base: str) -> tuple[np.ndarray, np.ndarray]:
+    """Return the cases of two models that agree in all other factors, shape (k,) each."""
+    others = [name for name in results.factors if name != MODEL]
+    key = codes(results.table, others)
+    found = []
+    for name in (model, base):
+        rows = np.flatnonzero((results.table[MODEL] == name).to_numpy())
+        first = np.unique(key[rows], return_index=True)
+        found.append((first[0], rows[first[1]]))
+    both = np.intersect1d(found[0][0], found[1][0], assume_unique=True)
+    return tuple(rows[np.searchsorted(keys, both)] for keys, rows in found)  # type: ignore[return-value]
+
+
+def _ratios(results: Results, ranges: CaseRanges, model: str, base: str) -> np.ndarray:
+    """Return the output by a model over that by the most exact one, over the cases that both hold, shape (k,)."""
+    one, other = _like(results, model, base)
+    both = ranges.held[one] & ranges.held[other]
+    mine, theirs = ranges.value[one[both]], ranges.value[other[both]]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        found = np.where(mine == theirs, 1.0, mine / theirs)
+    return np.asarray(found[np.isfinite(found)])
+
+
+def _like_against_like(results: Results, ranges: CaseRanges, models: list[str]) -> dict[str, Any]:
+    """Return the output by each model against that by the most exact one, on the cases that both hold."""
+    points = {}
+    for model in models[1:]:
+        one, other = _like(results, model, models[0])
+        both = ranges.held[one] & ranges.held[other]
+        points[model] = {"y": ranges.value[one[both]], "x": ranges.value[other[both]]}
+    return {"base": models[0], "points": points}
+
+
+def _columns(ranges: CaseRanges, required: bool, several: bool) -> tuple[Column, ...]:
+    _, words, units = ranges.output
+    columns = [Column("model", "Contact model", "", "contact model of these cases", "text", role="name")]
+    if required:
+        columns.append(Column("verdict", "Verdict", "", "requirement of the leader by this model", "state"))
+    if several:
+        columns.append(Column("leader", "Leader", "", "candidate that this model names first", "text"))
+    columns += [
+        Column("low", "Worst", units, f"{words} of the leader at its worst condition", until="high", role="bar"),
+        Column(
+            "ratio_low", "To the exact model", "1", "ratio on like cases, smallest to largest", "ratio", "ratio_high"
+        ),
+        Column("like", "Like cases", "", "cases that both models hold", "count"),
+    ]
+    if required:
+        columns.append(Column("meets", "Meets", "", "cases that meet the requirement within the error", "count"))
+    columns += [
+        Column("holds", "Holds", "", "cases in which the roller rolls inside all limits", "count"),
+        Column("skids", "Skids", "", "cases that skid", "count"),
+        Column("of", "Of", "", "cases of this model", "count"),
+        Column("error", "Error", "1", "told 95 % error at the worst condition", "error"),
+    ]
+    return tuple(columns)
