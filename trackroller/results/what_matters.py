@@ -23,7 +23,7 @@ from trackroller.results.comparison import compared_output
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.places import level_text
-from trackroller.results.ranking import SIZED, estimate, headline, order, robust_design, used_share
+from trackroller.results.ranking import estimate, headline, index_words, order, robust_design, used_share
 from trackroller.results.requirement import required_of
 from trackroller.results.results import Results
 from trackroller.roller.output_names import is_life
@@ -123,7 +123,7 @@ def _table(results: Results, ranges: CaseRanges, curves: tuple[Curve, ...]) -> p
             row |= _index(sens, ranges.output[0], name)
         found.append(row)
     table = pd.DataFrame(found)
-    by_index = sens is not None and headline(sens) not in SIZED
+    by_index = sens is not None and not index_words(sens, headline(sens)).sized
     keys = ["index", "height"] if by_index and "index" in table else ["height"]
     return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(drop=True)
 
@@ -136,7 +136,7 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
     if name not in names:
         return {"index": np.nan, "index_low": np.nan, "index_high": np.nan, "interacts": ""}
     value, low, high = estimate(part, index)[:, names.index(name)]
-    if index not in SIZED:
+    if not index_words(sens, index).sized:
         value, low, high = (float(np.clip(one, 0.0, 1.0)) for one in (value, low, high))
     return {
         "index": float(value),
@@ -228,7 +228,7 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
     ]
     if sens is not None:
         index = headline(sens)
-        share = index not in SIZED
+        share = not index_words(sens, index).sized
         meaning = str(sens[index].attrs.get("long_name", index))
         unit = "1" if share else ""
         kind = "share" if share else "number"
