@@ -116,3 +116,30 @@ def test_a_file_may_import_parameters_from_the_catalogue_and_must_not_take_a_nam
     file.write_text(lines.replace('"permissible_pressure"', '"hardness"'))
     said = solve(place, "--allow-code", code=2)
     assert "'hardness' is a value of a material already" in said
+
+
+BROKEN = {
+    "import sys\nsys.exit(0)\n": (2, "cannot be loaded", "SystemExit: 0"),
+    "def half(\n": (1, "cannot be loaded", "SyntaxError"),
+    "x = 1\nnothing.at_all\n": (2, "cannot be loaded", "NameError: name 'nothing'"),
+}
+
+
+@pytest.mark.parametrize("text", BROKEN)
+def test_a_file_that_cannot_be_loaded_is_named_with_its_line(place, text):
+    line, wrong, cause = BROKEN[text]
+    (place / "config" / "limits" / "lining.py").write_text(text)
+    said = command(place, "--allow-code", "verify", "no-such-folder", code=2)
+    assert f"lining.py, line {line}: limits = 'lining.py' {wrong}" in said and cause in said
+
+
+def test_an_error_of_a_limit_names_file_and_line(place):
+    file = place / "config" / "limits" / "lining.py"
+    text = file.read_text().replace(
+        'pressure / solved.materials["permissible_pressure"]', 'pressure / solved.nothing["x"]'
+    )
+    file.write_text(text)
+    line = 1 + next(i for i, row in enumerate(text.splitlines()) if "solved.nothing" in row)
+    said = solve(place, "--allow-code", code=2)
+    assert f"lining.py, line {line}: limits = 'lining.py' fails in evaluate" in said
+    assert "AttributeError" in said and "nothing" in said and "report it" not in said

@@ -12,8 +12,11 @@ import xarray as xr
 from typer.testing import CliRunner
 
 from trackroller.cli.main import app
-from trackroller.errors import InputError
+from trackroller.errors import InputError, WorkError
 from trackroller.study.store.crate import METADATA, compare_results, damaged_files, read_crate
+from trackroller.study.store.digests import MARK, record_digest
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.inputs import study_of_folder
 
 MATERIALS = """
 materials:
@@ -127,3 +130,13 @@ def test_a_crate_cannot_name_files_outside_itself(tmp_path, name):
 def test_a_folder_without_a_crate_is_refused(tmp_path):
     with pytest.raises(InputError, match=METADATA):
         damaged_files(tmp_path)
+
+
+def test_a_plan_whose_inputs_are_a_list_is_refused(crate, tmp_path):
+    copy = Path(shutil.copytree(crate, tmp_path / "copy"))
+    record = json.loads((copy / MARK).read_text())
+    record["inputs"] = list(record["inputs"])
+    del record["digest"]
+    (copy / MARK).write_text(json.dumps(record | {"digest": record_digest(record)}))
+    with pytest.raises(WorkError, match=r"plan\.json was altered or damaged"):
+        study_of_folder(StudyFolder(copy))

@@ -8,18 +8,23 @@ inherit.
 from __future__ import annotations
 
 import contextlib
+import dataclasses
+import functools
 import hashlib
 import importlib.util
 import os
 import sys
+import traceback
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from trackroller.damage.limit import Limit
-from trackroller.errors import InputError
+from trackroller.errors import InputError, WorkError
 
 VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
+FUNCTIONS = ("evaluate", "verdict", "shared")  # of a limit, which a file of a user programs
 
 
 def hint(name: Any) -> str:
@@ -60,11 +65,38 @@ def _load(path: Path) -> Limit:
     try:
         with contextlib.redirect_stdout(sys.stderr):  # what a file prints must not stand among the results
             spec.loader.exec_module(module)
-    except Exception as error:
-        why = f"{type(error).__name__}: {error}"
-        raise InputError("limits", str(path), "a file that Python can load", f"Correct it: {why}") from error
+    except (Exception, SystemExit) as error:
+        raise _error_of(path, error, "cannot be loaded") from error
     limit = getattr(module, "LIMIT", None)
     if not isinstance(limit, Limit) or limit.name != path.stem:
         declares = f"{path.name} must declare LIMIT = Limit(name='{path.stem}', ...)"
         raise InputError("limits", str(path), "a file that declares one LIMIT", declares)
-    return limit
+    functions = {name: getattr(limit, name) for name in FUNCTIONS}
+    guarded: dict[str, Any] = {name: _guarded(path, own) for name, own in functions.items() if own is not None}
+    return dataclasses.replace(limit, **guarded)
+
+
+def _guarded(path: Path, function: Callable[..., Any]) -> Callable[..., Any]:
+    """Return a function of a user's file whose errors name the file and the line."""
+
+    @functools.wraps(function)
+    def call(*arguments: Any) -> Any:
+        try:
+            return function(*arguments)
+        except (InputError, WorkError):
+            raise
+        except (Exception, SystemExit) as error:
+            raise _error_of(path, error, f"fails in {function.__name__}") from error
+
+    return call
+
+
+def _error_of(path: Path, error: BaseException, wrong: str) -> InputError:
+    """Return the message for an error in a user's file, with the last line of the file that led to it."""
+    lines = [step.lineno for step in traceback.extract_tb(error.__traceback__) if step.filename == str(path)]
+    if isinstance(error, SyntaxError) and error.filename == str(path):
+        lines.append(error.lineno)
+    remedy = f"Correct the file, or leave out --allow-code: {type(error).__name__}: {error}"
+    found = InputError("limits", path.name, "a file that Python can load and run", remedy, wrong)
+    known = [line for line in lines if line is not None]
+    return found.at(path, known[-1]) if known else found
