@@ -357,3 +357,24 @@ def test_a_given_factor_replaces_the_range_of_the_wear_coefficients():
         np.testing.assert_allclose(moved["wear_volume_per_km"], base["wear_volume_per_km"], rtol=1e-12)
         alone = tr.solve(case | {"placeholder_position": place}, **keys)
         assert (abs(3 * alone["wear_volume_per_km"] / base["wear_volume_per_km"] - 1) > 0.1).any()
+
+
+def test_work_outside_the_table_of_the_energy_law_is_told():
+    """The largest work of an element, from the stored tractions, lies inside, above or below the table."""
+    rows = {"wear_law": "energy", "roller_material": {"like": QUENCHED, "density": 7800}}
+    whole = {"work_rate": [0, 1e6], "roller": [0, 1e6], "guide": [0, 1e6]}
+    inside = solved((*OUTPUTS, "tractions"), wear_table=whole, **rows)
+    work = np.hypot(inside.shear_lateral, inside.shear_rolling) * np.hypot(inside.slip_lateral, inside.slip_rolling)
+    largest = float(work.max())
+    flag = validity_bit("wear_extrapolated")
+    assert largest > 0 and not int(inside.validity) & flag
+    for rates, told in (([0, 1.001], False), ([0, 0.999], True), ([0.5, 1.001], True)):
+        table = {"work_rate": [largest * rate for rate in rates], "roller": rates, "guide": rates}
+        ds = solved(wear_table=table, **rows)
+        assert bool(int(ds.validity) & flag) == told, rates
+        assert "_beyond_wear_table" not in ds
+    assert not int(solved().validity) & flag
+    both = tr.solve(
+        [tr.Case(**GIVEN, wear_table=t) for t in (whole, table)], OUTPUTS, accuracy="preview", wear_law="energy"
+    )
+    assert [bool(bits & flag) for bits in both.validity.values] == [False, True]

@@ -13,7 +13,8 @@ elsewhere. The mean of both is stated as the value. On six rollers that were fol
 
 ASSUME: wear coefficients do not depend on pressure, speed or temperature; the debris leaves the contact.
 ASSUME: a braked roller in full slip stands still, so that the guide slides below it over the whole distance.
-ASSUME: beyond its last work rate, a table of the energy law continues with its last slope.
+ASSUME: beyond its last work rate, a table of the energy law continues with its last slope, and below its first one with
+its first loss. The flag `wear_extrapolated` says where.
 """
 
 from __future__ import annotations
@@ -165,6 +166,25 @@ def energy_ratio(energy: np.ndarray, elements: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(ratio) & (ratio > 0.0), ratio, 1.0)
 
 
+BEYOND_TABLE = "_beyond_wear_table"  # for the flag `wear_extrapolated`; no result
+
+
+def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
+    """Return whether an element does more frictional work than the last entry of the table, or less than the first.
+
+    Elements that do no work have no wear to extrapolate. `work` has the shape (n, contact, y, x), the result (n,).
+    """
+    out = np.zeros(len(work), dtype=bool)
+    if solved.options["wear_law"] != "energy":
+        return out
+    texts = solved.cases["wear_table"]
+    for text in set(texts.tolist()) - {""}:
+        rows, rates = texts == text, TABLE.parsed(text)["work_rate"]
+        own = work[rows]
+        out[rows] = np.any((own > rates[-1]) | ((own > 0.0) & (own < rates[0])), axis=(1, 2, 3))
+    return out
+
+
 def _rates(solved: SolvedRollers, t: Tractions, sliding: np.ndarray) -> list[np.ndarray]:
     """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a table."""
     shear = np.hypot(t.shear_lateral, t.shear_rolling)
@@ -184,7 +204,7 @@ def of_mechanics(solved: SolvedRollers) -> Values:
 
     The coefficient is k by Archard's law, and 1/density by the energy law. Results are `_worn_depth` [mm], `wear_place`
     [mm] and `_worn_volume` [mm3/km], (n, contact, body), `_gap_at_edge` [mm] and `wear_error_estimate` [1], (n,
-    contact).
+    contact), and whether the table of the energy law is left, (n,).
     """
     t = solved.tractions()
     locked = (solved.cases["motor_force"] > 0.0)[:, None, None, None] & np.isnan(t.slip_rolling) & (t.pressure >= 0.0)
@@ -207,6 +227,7 @@ def of_mechanics(solved: SolvedRollers) -> Values:
         "wear_place": place,
         "_worn_volume": 1e6 * depth.sum(axis=-1) * wide[..., None],
         "_gap_at_edge": _gaps_at_edges(solved, t),
+        BEYOND_TABLE: _beyond_table(solved, np.hypot(t.shear_lateral, t.shear_rolling) * sliding),
         "wear_error_estimate": ERROR.get(solved.options["contact_model"], np.nan) / t.x.shape[-1] + 0.0 * wide,
     }
 

@@ -107,4 +107,10 @@ VALIDITY: dict[str, ValidityFlag] = {
         "Compare smooth: auto with twice the noise, measure with less noise, or describe the shape by its radii (arc, "
         "arcs).",
     ),
+    "wear_extrapolated": ValidityFlag(
+        "the frictional work lies outside the table of wear",
+        "frictional work of an element above the last work_rate of wear_table, or below its first one (wear_law: "
+        "energy): the loss of mass is extrapolated",
+        "Take depth and life of wear as estimates, or extend wear_table by tests at this frictional work.",
+    ),
 }

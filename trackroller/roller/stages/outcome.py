@@ -14,7 +14,7 @@ from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import Tractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
-from trackroller.damage.wear import KM_PER_HOUR
+from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
 from trackroller.numerics.rows import distinct
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
 from trackroller.parameters.validity import VALIDITY
@@ -123,7 +123,7 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
         names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
         known = [_nothing(limit) if limit not in wanted else limit for limit in counted]
         v |= verdict.verdict(places, known, [names.index(limit.name) for limit in counted], len(names))
-    for name in [name for name in v if name.startswith("_")]:
+    for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
 
 
@@ -234,5 +234,7 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
             warn("overheated", np.any(v["heat_utilisation"] > 1.0, axis=1))
         if "run_in_distance" in v:
             warn("worn", outlives_groove(table, block, options))
+        if BEYOND_TABLE in v:
+            warn("wear_extrapolated", v.pop(BEYOND_TABLE))
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]
