@@ -258,6 +258,7 @@ def test_a_material_of_ones_own_is_written_and_solved(tmp_path, monkeypatch):
         ("our steel", {}, "test", "material"),
         ("our steel", {"tensile_strength": "800"}, " ", "source"),
         (" ", {"tensile_strength": "800"}, "test", "material name"),
+        *(("our steel", {key: "800"}, "test", key) for key in ("source", "path", "name", "replace", "like", "family")),
     ],
 )
 def test_a_wrong_material_leaves_the_file_as_it_is(tmp_path, monkeypatch, name, changed, source, field):
