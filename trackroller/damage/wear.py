@@ -169,19 +169,25 @@ def energy_ratio(energy: np.ndarray, elements: np.ndarray) -> np.ndarray:
 BEYOND_TABLE = "_beyond_wear_table"  # for the flag `wear_extrapolated`; no result
 
 
-def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
-    """Return whether an element does more frictional work than the last entry of the table, or less than the first.
+def leaves_table(work: np.ndarray, table: str) -> np.ndarray:
+    """Return whether an element does more frictional work than the last entry of a table, or less than the first.
 
-    Elements that do no work have no wear to extrapolate. `work` has the shape (n, contact, y, x), the result (n,).
+    Elements that do no work have no wear to extrapolate. `work` is |tau| |s| [N/mm2] with the shape (..., y, x), the
+    result has the shape (...). `table` is the canonical JSON of the case.
     """
+    rates = TABLE.parsed(table)["work_rate"]
+    return np.asarray(np.any((work > rates[-1]) | ((work > 0.0) & (work < rates[0])), axis=(-2, -1)))
+
+
+def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
+    """Return whether a contact of a case leaves the table of the case, (n,); see `leaves_table`."""
     out = np.zeros(len(work), dtype=bool)
     if solved.options["wear_law"] != "energy":
         return out
     texts = solved.cases["wear_table"]
     for text in set(texts.tolist()) - {""}:
-        rows, rates = texts == text, TABLE.parsed(text)["work_rate"]
-        own = work[rows]
-        out[rows] = np.any((own > rates[-1]) | ((own > 0.0) & (own < rates[0])), axis=(1, 2, 3))
+        rows = texts == text
+        out[rows] = leaves_table(work[rows], text).any(axis=1)
     return out
 
 

@@ -192,13 +192,17 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
-    """Return True where the first life of a body, in travel of the roller, exceeds the run-in distance, (n, 2)."""
+    """Return True where the own life of a body, in travel of the roller, exceeds the run-in distance, (n, 2).
+
+    The life is that to the first limit among those that are computed: a body that breaks has none, and a second model
+    of an end does not shorten it. A life that is not known exceeds nothing.
+    """
     v = block.values
     solved = solved_of(table, v, options, block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
-    lives = [own.verdict(solved, v).life_hours for own in to_compute(solved, options) if own.verdict is not None]
-    shortest = np.fmin.reduce([hours for hours in lives if hours is not None])
-    return np.asarray(shortest > run_in[:, None])
+    counted = [own for own in to_compute(solved, options) if own.verdict is not None]
+    known = verdict.verdict([solved], counted, range(len(counted)), len(counted))
+    return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
 def validity(table: CaseTable, block: Block, options: Options) -> None:
