@@ -63,6 +63,8 @@ def _known(sens: xr.Dataset, keys: Sequence[str]) -> list[str]:
 def _all_indices(sens: xr.Dataset) -> Table | None:
     declared = indices_of(method_of(sens))
     keys = _known(sens, [name for name, index in declared.items() if index.of_factor])
+    if not keys:  # such as an inner/outer design, whose analysis is that of its points
+        return None
     rows = []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)
