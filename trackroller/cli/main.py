@@ -171,7 +171,10 @@ def repeat(
 
 @command("trackroller.cli.study", "print_verified")
 def verify(
-    folder: Annotated[Path, typer.Argument(help="results/NAME of a study that was run", show_default=False)],
+    folder: Annotated[
+        Path, typer.Argument(help="name of a study that was run, or its folder results/NAME", show_default=False)
+    ],
+    results: Results = Path("results"),
 ) -> None:
     """Check every file of a study against the digests in its RO-Crate; exit 1 if one is missing or changed."""
 

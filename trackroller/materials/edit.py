@@ -14,7 +14,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-from trackroller.errors import InputError, WorkError, check_names
+from trackroller.damage.own import check_fields
+from trackroller.errors import InputError, WorkError
 from trackroller.files import read_text, write_whole
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, read_database
@@ -70,7 +71,7 @@ def add_material(path: Path | str, name: str, *, replace: bool = False, **values
     path = Path(os.path.realpath(expanded))
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "a text that is not empty")
-    check_names(f"material '{name}': field", values, FIELDS)
+    check_fields(f"material '{name}': field", values, FIELDS)
     values = {key: _plain(f"material '{name}': {key}", value) for key, value in values.items() if value is not None}
     if not values:
         remedy = f"Give one of {', '.join(PROPERTIES)}."
