@@ -197,6 +197,7 @@ def test_an_output_that_is_missing_in_all_rows_stops_no_page(solved, tmp_path, n
     assert not wrong
 
 
+@pytest.mark.slow
 def test_sheet_workbook_and_json_of_a_roller_bear_an_output_that_is_missing(tmp_path):
     ds = tr.solve(tr.Case(**BASE), OUTPUTS, **QUICK)
     for output in floats(ds):
