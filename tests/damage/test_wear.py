@@ -11,7 +11,7 @@ from command_line import trackroller
 from scipy.integrate import quad
 
 import trackroller as tr
-from trackroller.contact.common import Ellipse
+from trackroller.contact.quantities import Ellipse
 from trackroller.damage.wear import deepest, mass_loss, sunk_area, wear_depth
 from trackroller.parameters.accuracy import PRESETS
 from trackroller.roller.dataset import validity_bit

@@ -77,6 +77,8 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     if not source.strip():
         raise InputError("source", source, "where the values come from", "Name the data sheet or the test.")
     database, file = load_database(), find_user_file(None) or FILE
+    check_names("material value", values, (*PROPERTIES, *ALTERNATIVES))
+    values = {field: str(text) for field, text in values.items()}
     changed = {field: typed(text) for field, text in values.items() if text.strip()}
     base = {} if name in database or like == name else {"like": database.material(like, "like").name}
     if not changed:
