@@ -139,6 +139,9 @@ def opened(
     except FileNotFoundError:
         raise InputError(what, str(path), "the path of a file", "Check the path.", "does not exist") from None
     except (OSError, ValueError) as exc:
+        too_long = long_name(exc) if isinstance(exc, OSError) else None
+        if too_long is not None:
+            raise too_long.named(what) from None
         why = exc.strerror if isinstance(exc, OSError) and exc.strerror else exc
         wrong = f"cannot be read ({why})"
         raise InputError(what, str(path), "a file that can be read", "Check path and rights.", wrong) from None
@@ -246,6 +249,16 @@ def find_beside(name: Any, field: str) -> Path:
 
 
 FAILED_WRITES = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG, errno.EROFS)  # no other system call fails for these reasons
+
+
+def long_name(exc: OSError) -> InputError | None:
+    """Return the message for a path with a name that the system refuses for its length; None for another error."""
+    if exc.errno != errno.ENAMETOOLONG:
+        return None
+    path = str(exc.filename or "")
+    longest = max((len(os.fsencode(part)) for part in Path(path).parts), default=0)
+    allowed = "names of files and folders of at most 255 bytes, and paths of at most 4095"
+    return InputError("path", path, allowed, "Give a shorter name.", f"is too long: a name in it has {longest} bytes")
 
 
 def disk_error(exc: OSError, path: Path) -> WorkError:

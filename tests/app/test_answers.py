@@ -261,6 +261,7 @@ def test_a_material_of_ones_own_is_written_and_solved(tmp_path, monkeypatch):
         ("our steel", {}, "test", "material"),
         ("our steel", {"tensile_strength": "800"}, " ", "source"),
         (" ", {"tensile_strength": "800"}, "test", "material name"),
+        *(("our steel", {key: "800"}, "test", key) for key in ("source", "path", "name", "replace", "like", "family")),
     ],
 )
 def test_a_wrong_material_leaves_the_file_as_it_is(tmp_path, monkeypatch, name, changed, source, field):
@@ -296,3 +297,10 @@ def test_a_curve_of_a_life_says_how_many_hours_are_a_year():
     assert curve(values, "axial_force", [0, 30])["columns"]["roller_life_hours"]["unit"] == "h; 4000 h = 1 year"
     del values["duty"]
     assert curve(values, "axial_force", [0, 30])["columns"]["roller_life_hours"]["unit"] == "h"
+
+
+def test_outputs_of_a_case_file_are_computed_beside_those_of_the_page():
+    values = {"motor_force": 0, "contact_model": "sliding", "accuracy": "preview", "outputs": ["forces", "shakedown"]}
+    shown = picture(values)
+    assert numbers(shown) == numbers(picture({key: value for key, value in values.items() if key != "outputs"}))
+    assert curve(values, "motor_force", [0, 10])["along"] == pytest.approx(np.linspace(0, 10, 21))

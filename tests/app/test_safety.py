@@ -218,3 +218,10 @@ def test_a_study_runs_to_its_report_and_is_deleted_after_asking(live):
     assert live.ask("delete", name="small", confirm="small")[0] == 200
     assert live.entry("small") == {}
     assert json.loads(json.dumps(live.ask("text_of", name="small")[1]))["text"] == STUDY
+
+
+@pytest.mark.parametrize("question", ["text_of", "headlines", "delete"])
+def test_a_name_that_is_too_long_is_refused_in_words(live, question):
+    status, answer = live.ask(question, name="n" * 300)
+    assert status in (404, 422)
+    assert "nternal error" not in answer["errors"][0]["message"]

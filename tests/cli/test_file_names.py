@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import os
+import subprocess
+import sys
 
 import pytest
 from command_line import trackroller, trackroller_process
@@ -133,3 +135,25 @@ def test_a_home_that_is_not_known_is_no_folder(tmp_path):
     )
     line = trackroller(*words, cwd=tmp_path, code=2).stderr
     assert "names a home that this machine does not know" in line and not list(tmp_path.iterdir())
+
+
+LONG = "n" * 300
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("solve", f"{LONG}.yaml"),
+        ("solve", "--set", "contact_model=sliding", "--set", "outputs=[forces]", "-o", f"{LONG}.nc"),
+        ("report", LONG),
+        ("status", LONG),
+        ("verify", LONG),
+        ("explore", LONG),
+        ("rerun", LONG),
+    ],
+)
+def test_a_name_that_is_too_long_is_named_as_such(tmp_path, words):
+    line = [sys.executable, "-m", "trackroller.cli", *words]
+    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and len(done.stderr.splitlines()) == 1, done.stderr
+    assert "is too long: a name in it has 30" in done.stderr and "Give a shorter name." in done.stderr

@@ -4,6 +4,7 @@ import hashlib
 import json
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -73,7 +74,7 @@ def test_a_study_names_the_digest_and_an_edited_limit_solves_anew(place):
     command(place, "report", "own", "--allow-code")
     crate = (place / "results" / "own" / "ro-crate-metadata.json").read_text(encoding="utf-8")
     assert "config/limits/lining.py" in crate and hashlib.sha256(file.read_bytes()).hexdigest() in crate
-    assert "permissible_pressure" in command(place, "report", "own", code=2)  # nothing is half read
+    assert "limits that are loaded, here lining" in command(place, "report", "own", code=2)  # nothing is half read
     assert "2 of them solved already" in command(place, "plan", "study.yaml", "--allow-code")
     file.write_text(file.read_text(encoding="utf-8").replace("pressure / solved", "2.0 * pressure / solved"))
     assert "0 of them solved already" in command(place, "plan", "study.yaml", "--allow-code")
@@ -145,3 +146,30 @@ def test_a_file_that_exits_does_not_vouch_for_a_damaged_folder(place):
     (place / "results" / "own").mkdir(parents=True)
     assert "lining.py, line 2" in command(place, "verify", "results/own", "--allow-code", code=2)
     assert command(place, "verify", "results/own", code=2)
+
+
+UNKNOWN = "lining.py declares it: add --allow-code"
+
+
+def test_every_command_that_meets_a_value_of_a_limit_names_how_to_load_it(place):
+    assert UNKNOWN in solve(place, code=2)
+    values = ("--set", "like=1.7225-normalised", "--set", "permissible_pressure=500")
+    assert UNKNOWN in command(place, "materials", "add", "other", *values, code=2)
+    assert UNKNOWN in command(place, "materials", "list", code=2)
+    command(place, "materials", "add", "other", *values, "--allow-code")
+    assert "permissible_pressure" in (place / "config" / "materials.yaml").read_text().partition("other")[2]
+
+
+@pytest.mark.long
+def test_a_solved_study_says_which_limit_it_needs_and_the_remedy_works(place):
+    command(place, "run", "study.yaml", "--allow-code")
+    for words in (("best", "own"), ("status", "own"), ("report", "own"), ("repeat", "own", "1"), ("rerun", "own")):
+        assert UNKNOWN in command(place, *words, code=2), words
+    command(place, "best", "own", "--allow-code")
+    elsewhere = place / "elsewhere"
+    shutil.copytree(place / "results" / "own", elsewhere / "own")
+    said = command(elsewhere, "rerun", "own", code=2)
+    assert "here lining. Read own/inputs/limits/lining.py, copy it to config/limits, and add --allow-code." in said
+    (elsewhere / "config" / "limits").mkdir(parents=True)
+    shutil.copy(elsewhere / "own" / "inputs" / "limits" / "lining.py", elsewhere / "config" / "limits")
+    assert "have the same values" in command(elsewhere, "rerun", "own", "--allow-code")

@@ -5,6 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+import xarray as xr
+import yaml
+from command_line import trackroller
 from scipy.integrate import quad
 
 import trackroller as tr
@@ -241,6 +244,61 @@ def test_flag_worn_where_a_life_exceeds_the_run_in_distance():
     assert not int(thin.validity) & validity_bit("worn")
 
 
+def worn(ds):
+    return {str(body): bool(int(ds.validity_body.sel(body=body)) & validity_bit("worn")) for body in ds.body.values}
+
+
+# the roller wears to its permissible depth long before its run-in, the guide long after it
+UNLIKE = {"permissible_wear_depth": 1e-5, "roller_material": steel(100 * K), "guide_material": steel(K / 100)}
+
+
+def test_the_groove_wears_away_within_the_life_of_a_body_whose_own_life_is_longer():
+    ds = solved(**UNLIKE)
+    lives, run_in = ds.life_to_first_limit_hours, float(ds.run_in_distance) / 3.6  # 60 m/min
+    assert float(lives.sel(body="roller")) < run_in < float(lives.sel(body="guide"))
+    assert worn(ds) == {"roller": False, "guide": True}
+    # without the verdict the life follows from the limits that are computed
+    assert worn(solved(("forces", "wear"), **UNLIKE)) == {"roller": False, "guide": True}
+
+
+def test_a_body_that_breaks_has_no_life_that_a_groove_could_outlast():
+    weak = steel(K) | {"tensile_strength": 300.0, "yield_strength": 250.0}
+    ds = solved(roller_material=weak, guide_material=steel(K))
+    assert float(ds.life_to_first_limit_hours.sel(body="roller")) == 0
+    assert worn(ds) == {"roller": False, "guide": True}
+
+
+def test_page_and_terminal_name_the_body_that_outlives_the_groove(tmp_path):
+    (tmp_path / "case.yaml").write_text(yaml.safe_dump({**GIVEN, **UNLIKE, "contact_model": "kalker"}))
+    shown = trackroller("solve", "case.yaml", cwd=tmp_path).stdout
+    trackroller("solve", "case.yaml", "--report", "sheet.html", cwd=tmp_path)
+    for text in (shown, (tmp_path / "sheet.html").read_text(encoding="utf-8")):
+        assert "The groove wears away within the life of the guide." in " ".join(text.split())
+
+
+@pytest.mark.parametrize(
+    ("output", "told"),
+    [
+        ("life_to_first_limit_hours_roller", []),
+        ("life_to_first_limit_hours_guide", [2]),
+        ("pair_life_to_first_limit_hours", []),  # it ends with the roller
+        ("peak_stress_roller", [2]),
+    ],
+)
+def test_the_answer_counts_the_life_that_it_is_about(tmp_path, monkeypatch, output, told):
+    entries = [
+        f"  {name}: {{like: {QUENCHED}, wear_coefficient: {{value: {k}, source: test}}}}"
+        for name, k in (("soft", 100 * K), ("hard", K / 100))
+    ]
+    (tmp_path / "materials.yaml").write_text("\n".join(["materials:", *entries, ""]))
+    monkeypatch.setenv("TRACKROLLER_MATERIALS", str(tmp_path / "materials.yaml"))
+    base = GIVEN | {"permissible_wear_depth": 1e-5, "roller_material": "soft", "guide_material": "hard"}
+    study = {"name": "unlike", "base": base, "factors": {"axial_force": {"values": [0, 5]}}, "accuracy": "preview"}
+    study |= {"outputs": [*OUTPUTS, "peak_stress"], "contact_model": "sliding", "question": "how it behaves"}
+    answer = tr.run(study | {"analysis": {"outputs": [output]}}, progress=False).answer
+    assert [one.count for one in answer.warnings if one.code == "worn"] == told
+
+
 def test_energy_law_equals_archard_for_a_linear_table_and_follows_its_corners():
     table = {"work_rate": [0, 100], "roller": [0, 100 * 7800 * K / 0.3], "guide": [0, 50 * 7800 * K / 0.3]}
     of_mass = {"like": QUENCHED, "density": 7800}
@@ -357,3 +415,67 @@ def test_a_given_factor_replaces_the_range_of_the_wear_coefficients():
         np.testing.assert_allclose(moved["wear_volume_per_km"], base["wear_volume_per_km"], rtol=1e-12)
         alone = tr.solve(case | {"placeholder_position": place}, **keys)
         assert (abs(3 * alone["wear_volume_per_km"] / base["wear_volume_per_km"] - 1) > 0.1).any()
+
+
+def test_work_outside_the_table_of_the_energy_law_is_told():
+    """The largest work of an element, from the stored tractions, lies inside, above or below the table."""
+    rows = {"wear_law": "energy", "roller_material": {"like": QUENCHED, "density": 7800}}
+    whole = {"work_rate": [0, 1e6], "roller": [0, 1e6], "guide": [0, 1e6]}
+    inside = solved((*OUTPUTS, "tractions"), wear_table=whole, **rows)
+    work = np.hypot(inside.shear_lateral, inside.shear_rolling) * np.hypot(inside.slip_lateral, inside.slip_rolling)
+    largest = float(work.max())
+    flag = validity_bit("wear_extrapolated")
+    assert largest > 0 and not int(inside.validity) & flag
+    for rates, told in (([0, 1.001], False), ([0, 0.999], True), ([0.5, 1.001], True)):
+        table = {"work_rate": [largest * rate for rate in rates], "roller": rates, "guide": rates}
+        ds = solved(wear_table=table, **rows)
+        assert bool(int(ds.validity) & flag) == told, rates
+        assert "_beyond_wear_table" not in ds
+    assert not int(solved().validity) & flag
+    both = tr.solve(
+        [tr.Case(**GIVEN, wear_table=t) for t in (whole, table)], OUTPUTS, accuracy="preview", wear_law="energy"
+    )
+    assert [bool(bits & flag) for bits in both.validity.values] == [False, True]
+
+
+LEFT = "The frictional work lies outside the table of wear."
+TABLE_CASE = """
+motor_force: -10
+friction_coefficient: 0.2
+roller_material: {like: 1.7225-quenched-tempered, density: 7800}
+guide_material: {like: 1.7225-quenched-tempered, density: 7800}
+wear_law: energy
+wear_table: {work_rate: [0, MOST], roller: [0, MOST], guide: [0, MOST]}
+outputs: [forces, wear, limits]
+contact_model: sliding
+accuracy: preview
+"""
+
+
+@pytest.mark.parametrize(("most", "told"), [("0.5", True), ("1000", False)])
+def test_terminal_sheet_rows_and_answer_tell_of_work_outside_the_table(tmp_path, most, told):
+    (tmp_path / "case.yaml").write_text(TABLE_CASE.replace("MOST", most))
+    shown = trackroller("solve", "case.yaml", cwd=tmp_path).stdout
+    trackroller("solve", "case.yaml", "--report", "sheet.html", cwd=tmp_path)
+    assert (LEFT in " ".join(shown.split())) == told
+    assert (LEFT in (tmp_path / "sheet.html").read_text(encoding="utf-8")) == told
+    given = yaml.safe_load(TABLE_CASE.replace("MOST", most))
+    options = {name: given.pop(name) for name in ("wear_law", "outputs", "contact_model", "accuracy")}
+    given |= {"roller_material": QUENCHED, "guide_material": QUENCHED}  # the work does not depend on the density
+    study = {"name": "table", "base": given, "factors": {"axial_force": {"values": [0, 20]}}, **options}
+    results = tr.run(study, progress=False)
+    assert results.flagged("wear_extrapolated").tolist() == [told, told]
+    where = [one.where for one in results.answer.warnings if one.code == "extrapolated"]
+    assert ("wear beyond the table of its energy law" in where) == told
+
+
+@pytest.mark.parametrize(("most", "told"), [("0.5", True), ("1000", False)])
+def test_a_roller_that_is_followed_while_it_wears_tells_of_work_outside_the_table(tmp_path, most, told):
+    """Whatever outputs the case names; the page needs the patch, which every run has."""
+    (tmp_path / "case.yaml").write_text(
+        TABLE_CASE.replace("MOST", most).replace("forces, wear, limits", "forces, limits")
+    )
+    trackroller("wear", "case.yaml", "--to", "1km", "-o", "w.nc", "--report", "w.html", cwd=tmp_path)
+    with xr.open_dataset(tmp_path / "w.nc") as ds:
+        assert ((ds["validity"].values & validity_bit("wear_extrapolated")) > 0).all() == told
+    assert (LEFT in (tmp_path / "w.html").read_text(encoding="utf-8")) == told

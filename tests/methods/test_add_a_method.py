@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from typing import ClassVar
 
 import fake_solver
 import numpy as np
@@ -12,6 +13,8 @@ import pytest
 import trackroller as tr
 from trackroller.app.fields import all_fields
 from trackroller.methods import METHODS, Method, register
+from trackroller.methods.method import Estimated, Index
+from trackroller.methods.sample import RandomSample
 from trackroller.results.growing import grow_study
 from trackroller.results.looks import looks_of
 
@@ -79,3 +82,56 @@ def test_everything_else_follows_from_the_class(halton):
 def test_names_are_unique():
     with pytest.raises(tr.InputError, match="no other design of experiments"):
         register(type("Grid", (Method,), {"name": "grid"}))
+
+
+class Ratio(RandomSample):
+    """A random sample whose index is the range of the output over the range of a factor, in the unit of the output."""
+
+    name = "ratio"
+    headline, judged = "pull", ()
+    indices: ClassVar = {"pull": Index("pull of the factor", sized=True, signed=True, of_factor=True)}
+
+    def draw(self, free, n, seed, settings):
+        return np.random.default_rng(seed).random((n, len(free))), {}
+
+    def estimate(self, y, design):
+        good = np.isfinite(y)
+        pull = [np.polyfit(design.unit[good, j], y[good], 1)[0] for j in range(design.unit.shape[1])]
+        return Estimated({"pull": np.array(pull)}, len(y), len(y))
+
+
+class Undeclared(Ratio):
+    name = "undeclared"
+    indices: ClassVar = {"drag": Index("drag of the factor")}
+
+
+@pytest.fixture
+def own_index():
+    for method in (Ratio, Undeclared):
+        register(method)
+    yield
+    for method in (Ratio, Undeclared):
+        del METHODS[method.name]
+
+
+def test_a_method_declares_an_index_of_its_own(own_index, tmp_path):
+    asked = {"design": "ratio", "samples": 32, "question": "what matters", "analysis": {"outputs": ["normal_force_1"]}}
+    solved = tr.run(STUDY | asked, progress=False)
+    pull = solved.indices()["pull"]
+    assert pull.attrs["long_name"] == "pull of the factor" and pull.attrs["units"] == ""
+    answer = solved.answer
+    shown = {column.name: column for column in answer.columns}
+    assert shown["index"].kind == "number" and shown["index"].meaning.startswith("pull of the factor")
+    rolling = solved.data["regime"].values == 0
+    force = solved.data["normal_force"].sel(contact=1).values
+    raw = np.polyfit(solved.design.unit[rolling, 0], force[rolling], 1)[0]
+    assert float(pull.sel(output="normal_force_1", factor="axial_force")) == pytest.approx(raw)
+    ranked = answer.table.set_index("name")["index"]
+    assert ranked["axial_force"] == pytest.approx(raw)
+    page = solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
+    assert "ull of the factor" in page
+
+
+def test_an_index_that_a_method_does_not_declare_is_refused(own_index):
+    with pytest.raises(tr.InputError, match=r"index of design undeclared = 'pull' is not declared.*drag"):
+        tr.run(STUDY | {"design": "undeclared", "samples": 32}, progress=False).indices()

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import os
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -61,3 +63,12 @@ def test_callers_of_a_changed_function_are_compiled_again(tmp_path, edited, left
         os.utime(place, (1e9, 1e9 + 10.0 * name.startswith("__") + 20.0 * (name == edited)))
     forget_stale(tmp_path)
     assert len(list(tmp_path.rglob("*.nb[ic]"))) == left
+
+
+def test_a_switched_off_compiler_is_refused_in_one_line(tmp_path):
+    """The kernels read records by attribute, which plain NumPy does not: the first stress would end in a traceback."""
+    off = os.environ | {"NUMBA_DISABLE_JIT": "1"}
+    command = [sys.executable, "-m", "trackroller.cli", "solve"]
+    ended = subprocess.run(command, env=off, cwd=tmp_path, capture_output=True, text=True, check=False)
+    assert ended.returncode == 2 and len(ended.stderr.splitlines()) == 1
+    assert "NUMBA_DISABLE_JIT = '1'" in ended.stderr and "unset NUMBA_DISABLE_JIT" in ended.stderr

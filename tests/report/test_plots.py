@@ -182,6 +182,34 @@ def test_one_case_alone_draws_nothing_and_raises_nothing(tmp_path):
     assert drawn(sampled_study(1), tmp_path) == set()
 
 
+EFFECTS = {
+    "name": "effects",
+    "contact_model": "sliding",
+    "outputs": ["forces"],
+    "design": "morris",
+    "factors": {"friction_coefficient": {"uniform": [0.05, 0.3]}, "axial_force": {"uniform": [0, 40]}},
+    "analysis": {"outputs": ["normal_force_1"]},
+}
+
+
+def test_one_effect_has_no_spread_and_no_figure(tmp_path):
+    solved = tr.run(EFFECTS | {"samples": 1}, progress=False)
+    sens = solved.analysis
+    one = sens.sel(output="normal_force_1")
+    assert np.isfinite(one["mu_star"]).any() and np.isnan(one["sigma"]).all()
+    assert morris_plane(sens, "normal_force_1") is None
+    assert "normal force" in solved.report(tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_a_factor_with_one_valid_effect_is_left_out_of_the_figure_and_named():
+    solved = tr.run(EFFECTS | {"samples": 2}, progress=False)
+    sens = solved.analysis
+    assert list(sens["effects_used"].sel(output="normal_force_1").values) == [1, 2]  # one row slips
+    figure, info = morris_plane(sens, "normal_force_1")
+    assert info.caption.endswith("Not drawn, because one effect has no spread: friction coefficient.")
+    assert [text.get_text() for text in figure.legends[0].get_texts()][-1] == "Axial force"
+
+
 def test_parameters_computed_from_factors_are_no_factors_but_can_be_drawn():
     ds = sampled_study(100)
     study = "factors: {ratio: {uniform: [1, 2]}, roller_profile_radius: {expression: -6 * ratio}}"

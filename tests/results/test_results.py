@@ -160,3 +160,14 @@ def test_only_a_life_by_the_sn_curve_can_lie_beyond_its_data():
         assert beyond_sn_data(results, name).all()
     for name in ("bearing_life_hours", "friction_power"):
         assert not beyond_sn_data(results, name).any()
+
+
+@pytest.mark.parametrize("name", ["normal_force", "regime", "converged"])
+def test_a_dimension_that_was_added_is_refused_and_can_be_selected_away(name):
+    study = {"name": "wide", "factors": {"axial_force": {"values": [0, 10]}}, "contact_model": "sliding"}
+    ds = tr.solve(tr.load_study(study).design(), ("forces",), accuracy="preview", contact_model="sliding")
+    gathered = tr.open_study(ds).data
+    wide = gathered.assign({name: gathered[name].expand_dims({"load": 3})})
+    with pytest.raises(tr.InputError, match=rf"{name} = 'load' is a dimension that was added.*isel\(load=0\)"):
+        tr.open_study(wide)
+    assert tr.open_study(wide.isel(load=0)).table.shape == tr.open_study(gathered).table.shape

@@ -9,11 +9,15 @@ from pathlib import Path
 
 import pytest
 import xarray as xr
+from command_line import trackroller
 from typer.testing import CliRunner
 
 from trackroller.cli.main import app
-from trackroller.errors import InputError
+from trackroller.errors import InputError, WorkError
 from trackroller.study.store.crate import METADATA, compare_results, damaged_files, read_crate
+from trackroller.study.store.digests import MARK, record_digest
+from trackroller.study.store.folder import StudyFolder
+from trackroller.study.store.inputs import study_of_folder
 
 MATERIALS = """
 materials:
@@ -127,3 +131,32 @@ def test_a_crate_cannot_name_files_outside_itself(tmp_path, name):
 def test_a_folder_without_a_crate_is_refused(tmp_path):
     with pytest.raises(InputError, match=METADATA):
         damaged_files(tmp_path)
+
+
+def test_a_plan_whose_inputs_are_a_list_is_refused(crate, tmp_path):
+    copy = Path(shutil.copytree(crate, tmp_path / "copy"))
+    record = json.loads((copy / MARK).read_text())
+    record["inputs"] = list(record["inputs"])
+    del record["digest"]
+    (copy / MARK).write_text(json.dumps(record | {"digest": record_digest(record)}))
+    with pytest.raises(WorkError, match=r"plan\.json was altered or damaged"):
+        study_of_folder(StudyFolder(copy))
+
+
+def test_verify_takes_a_name_in_a_folder_of_results(crate, tmp_path):
+    shutil.copytree(crate, tmp_path / "kept" / "small")
+    assert "files are as they were written" in trackroller("verify", "small", "--results", "kept", cwd=tmp_path).stdout
+    assert "small" in trackroller("verify", "small", cwd=tmp_path, code=2).stderr  # not in results/
+
+
+@pytest.mark.parametrize(("kind", "ending", "tool"), [("gztar", "tar.gz", "tar xf"), ("zip", "zip", "unzip")])
+def test_an_archive_is_to_be_unpacked_first(crate, tmp_path, kind, ending, tool):
+    """What the message says is done, and the folder is verified."""
+    shutil.copytree(crate, tmp_path / "results" / "small")
+    name = Path(shutil.make_archive(str(tmp_path / "sent"), kind, tmp_path, "results")).name
+    shutil.rmtree(tmp_path / "results")
+    for command in ("verify", "rerun"):
+        said = trackroller(command, name, cwd=tmp_path, code=2).stderr
+        assert f"folder = '{name}' is an archive" in said and f"Unpack it ({tool} sent.{ending})" in said
+    shutil.unpack_archive(tmp_path / name, tmp_path)
+    assert "files are as they were written" in trackroller("verify", "results/small", cwd=tmp_path).stdout

@@ -7,6 +7,7 @@ from typing import Any
 
 from trackroller.errors import InputError, check_names
 from trackroller.materials import add_material, load_database
+from trackroller.materials.entries import NUMBERS
 from trackroller.materials.file import find_user_file
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES
 from trackroller.materials.tables import material_details, material_rows
@@ -69,8 +70,10 @@ def save_material(name: str, like: str, values: dict[str, str], source: str) -> 
     Raises
     ------
     InputError
-        If the name is empty, nothing was changed, or a value is not possible. The file is then unchanged.
+        If the name is empty, nothing was changed, a key of `values` is no value of a material, or a value is not
+        possible. The file is then unchanged.
     """
+    check_names("value of a material", values, NUMBERS)
     if not source.strip():
         raise InputError("source", source, "where the values come from", "Name the data sheet or the test.")
     database, file = load_database(), find_user_file(None) or FILE

@@ -9,6 +9,7 @@ import json
 import math
 import re
 import tempfile
+from collections.abc import Sequence
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -51,7 +52,14 @@ def read(values: Values) -> tuple[Case, dict[str, Any], dict[str, Any]]:
 def _solved(text: str, accuracy: str, groups: tuple[str, ...]) -> xr.Dataset:
     """Return the solution of a case given as JSON; the steps of one picture ask for it several times."""
     case, options, beside = read(json.loads(text))
-    return with_beside(solve(case, groups, **{"accuracy": accuracy, **options}), beside)
+    return with_beside(_solve(case, groups, accuracy, options), beside)
+
+
+def _solve(case: Case | Sequence[Case], groups: Sequence[str], accuracy: str, options: dict[str, Any]) -> xr.Dataset:
+    """Solve a case or several with the outputs of the page and those of the case file."""
+    own = {"accuracy": accuracy, **options}
+    wanted = dict.fromkeys((*groups, *own.pop("outputs", ())))
+    return solve(case, tuple(wanted), **own)
 
 
 def picture(values: Values, accuracy: str = "preview", complete: bool = False, inside: bool = False) -> dict[str, Any]:
@@ -191,7 +199,7 @@ def curve(values: Values, over: str, ends: list[float]) -> dict[str, Any]:
             refused = str(exc.errors[0])
     if not cases:
         raise InputError(over, f"{low:g} to {high:g}", "values of which one at least can be solved", refused)
-    ds = solve(cases, (*LIVE[:-1], *_JUDGED, "limits"), **{"accuracy": "preview", **read(values)[1]})
+    ds = _solve(cases, (*LIVE[:-1], *_JUDGED, "limits"), "preview", read(values)[1])
     columns, duty = {}, read(values)[2].get("duty")
     names, regimes = every_name(ds, (), ("case",)), ("rolling", "full_slip", "lift_off")
     for one in outputs(ds, (), names, regimes, unlimited=True, scale="natural"):

@@ -27,7 +27,7 @@ import tornado.web
 
 from trackroller.app.lane import Lane
 from trackroller.errors import InputError, WorkError
-from trackroller.files import MAX_BYTES
+from trackroller.files import MAX_BYTES, long_name
 
 HOST = "127.0.0.1"
 USUAL = 80  # the port of http
@@ -137,6 +137,7 @@ class _Handler(tornado.web.RequestHandler):
     def write_error(self, status_code: int, **info: Any) -> None:
         """Answer with the reason in words; an error of the program leaves its traceback in the terminal only."""
         exc = info["exc_info"][1]
+        exc = (long_name(exc) if isinstance(exc, OSError) else None) or exc
         self.set_status(next((status for kind, status in STATUS.items() if isinstance(exc, kind)), status_code))
         errors = [{"field": "", "message": str(exc)}]
         if isinstance(exc, InputError):
@@ -150,6 +151,8 @@ class _Handler(tornado.web.RequestHandler):
 
     def log_exception(self, typ: Any, value: Any, tb: Any) -> None:
         """Print the traceback of an error of the program; refusals and wrong input are answers."""
+        if isinstance(value, OSError) and long_name(value) is not None:
+            return
         if not isinstance(value, (tornado.web.HTTPError, *STATUS)):
             traceback.print_exception(typ, value, tb)
 

@@ -29,7 +29,7 @@ from trackroller.cli.fit import fit
 from trackroller.cli.materials import materials
 from trackroller.cli.usage import Commands, print_line
 from trackroller.errors import InputError, WorkError
-from trackroller.files import FAILED_WRITES, check_utf_8, disk_error, interrupts_wait_for_files
+from trackroller.files import FAILED_WRITES, check_utf_8, disk_error, interrupts_wait_for_files, long_name
 from trackroller.numerics.threads import check_threads
 from trackroller.parameters import options_text
 
@@ -171,7 +171,10 @@ def repeat(
 
 @command("trackroller.cli.study", "print_verified")
 def verify(
-    folder: Annotated[Path, typer.Argument(help="results/NAME of a study that was run", show_default=False)],
+    folder: Annotated[
+        Path, typer.Argument(help="name of a study that was run, or its folder results/NAME", show_default=False)
+    ],
+    results: Results = Path("results"),
 ) -> None:
     """Check every file of a study against the digests in its RO-Crate; exit 1 if one is missing or changed."""
 
@@ -297,13 +300,21 @@ def run_app(command: Callable[[], object]) -> int:
         sys.stderr.close()
         return 1
     except OSError as exc:
-        if exc.errno in FAILED_WRITES:
-            return _tell(str(disk_error(exc, Path(exc.filename or "the output"))), 1)
-        # other failed writes have their own messages: this file could not be read
-        return _tell(f"{exc.filename or 'a file'} cannot be read ({exc.strerror or exc}). Repair or replace it.", 1)
+        return _tell_of_file(exc)
     except Exception as exc:
         return _tell(f"internal error, {type(exc).__name__}. Please report it with the log {_log(exc)}", 3)
     return 0
+
+
+def _tell_of_file(exc: OSError) -> int:
+    """Print why the system refused a file, and return the exit code."""
+    too_long = long_name(exc)
+    if too_long is not None:
+        return _tell(str(too_long), 2)
+    if exc.errno in FAILED_WRITES:
+        return _tell(str(disk_error(exc, Path(exc.filename or "the output"))), 1)
+    # other failed writes have their own messages: this file could not be read
+    return _tell(f"{exc.filename or 'a file'} cannot be read ({exc.strerror or exc}). Repair or replace it.", 1)
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:

@@ -216,8 +216,24 @@ def _how_equal(compared: Mapping[str, Difference]) -> str:
     return f"up to rounding; the largest difference is {apart:.1e} of {scale} ({name})"
 
 
-def print_verified(folder: Path) -> int:
+ARCHIVES = (".zip", ".tar", ".tgz", ".gz", ".xz", ".bz2", ".7z")
+
+
+def _crate_at(named: Path, results: Path) -> Path:
+    """Return the folder of a crate by its path or by its name in the results folder; refuse an archive of it."""
+    if named.is_file():
+        packed = named.suffix.lower() in ARCHIVES
+        wrong = "is an archive" if packed else "is a file"
+        tool = "unzip" if named.suffix.lower() == ".zip" else "tar xf"
+        remedy = f"Unpack it ({tool} {named.name}), and name the folder." if packed else "Name the folder."
+        raise InputError("folder", str(named), "the folder of a study, such as results/NAME", remedy, wrong)
+    inside = results / named
+    return inside if not named.exists() and inside.is_dir() else named
+
+
+def print_verified(folder: Path, results: Path) -> int:
     """Print the damaged files of a crate and return the exit code: 0 if there is none."""
+    folder = _crate_at(folder, results)
     damaged = damaged_files(folder)
     for name, what in damaged.items():
         print(f"{what}: {name}")
@@ -228,6 +244,7 @@ def print_verified(folder: Path) -> int:
 
 def print_rerun(crate: Path, results: Path) -> int:
     """Solve the study of a crate again, print the comparison and return the exit code: 0 if every value is the same."""
+    crate = _crate_at(crate, Path("results"))
     stored = crate / "study.nc"
     if stored.name not in read_crate(crate) or not stored.is_file():
         raise InputError("crate", str(crate), "a crate that holds study.nc", "Run the study to its end first.")

@@ -12,9 +12,10 @@ import functools
 import hashlib
 import importlib.util
 import os
+import re
 import sys
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import replace
 from functools import cache
@@ -22,16 +23,40 @@ from pathlib import Path
 from typing import Any
 
 from trackroller.damage.limit import Limit
-from trackroller.errors import InputError
+from trackroller.errors import InputError, raise_all, unknown_name
 
-FUNCTIONS = ("evaluate", "verdict", "shared")  # of a limit
+FOLDER = Path("config", "limits")
 VARIABLE = "TRACKROLLER_ALLOW_CODE"  # the command line sets it for --allow-code
+FUNCTIONS = ("evaluate", "verdict", "shared")  # of a limit, which a file of a user programs
 
 
 def hint(name: Any) -> str:
     """Return how to load the file of the folder config/limits that declares a limit; an empty text if none does."""
-    file = Path("config", "limits", f"{name}.py")
-    return f"{file} declares it: add --allow-code." if file.is_file() else ""
+    file = FOLDER / f"{name}.py"
+    return _how(file) if file.is_file() else ""
+
+
+def _how(file: Path) -> str:
+    return f"{file} declares it: add --allow-code."
+
+
+def unknown_field(kind: str, name: str, options: Iterable[str], elsewhere: Iterable[str] = ()) -> InputError:
+    """Return the error for a field of a case or a material that is not known, see `unknown_name`.
+
+    A limit of a user declares fields, too. Where the text of a file that is not loaded holds the name, the remedy is to
+    load it.
+    """
+    error = unknown_name(kind, name, options, elsewhere)
+    files = () if VARIABLE in os.environ else sorted(FOLDER.glob("*.py"))
+    quoted = re.compile(rf"""["']{re.escape(name)}["']""")
+    file = next((file for file in files if quoted.search(file.read_text(encoding="utf-8", errors="replace"))), None)
+    return error if file is None else InputError(kind, name, error.allowed, _how(file), error.wrong)
+
+
+def check_fields(kind: str, names: Iterable[object], options: Iterable[str]) -> None:
+    """Raise the errors `unknown_field` for those of `names` that are not among `options`."""
+    known = tuple(options)
+    raise_all(unknown_field(kind, str(name), known) for name in names if name not in known)
 
 
 @cache

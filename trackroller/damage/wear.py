@@ -13,7 +13,8 @@ elsewhere. The mean of both is stated as the value. On six rollers that were fol
 
 ASSUME: wear coefficients do not depend on pressure, speed or temperature; the debris leaves the contact.
 ASSUME: a braked roller in full slip stands still, so that the guide slides below it over the whole distance.
-ASSUME: beyond its last work rate, a table of the energy law continues with its last slope.
+ASSUME: beyond its last work rate, a table of the energy law continues with its last slope, and below its first one with
+its first loss. The flag `wear_extrapolated` says where.
 """
 
 from __future__ import annotations
@@ -165,6 +166,31 @@ def energy_ratio(energy: np.ndarray, elements: np.ndarray) -> np.ndarray:
     return np.where(np.isfinite(ratio) & (ratio > 0.0), ratio, 1.0)
 
 
+BEYOND_TABLE = "_beyond_wear_table"  # for the flag `wear_extrapolated`; no result
+
+
+def leaves_table(work: np.ndarray, table: str) -> np.ndarray:
+    """Return whether an element does more frictional work than the last entry of a table, or less than the first.
+
+    Elements that do no work have no wear to extrapolate. `work` is |tau| |s| [N/mm2] with the shape (..., y, x), the
+    result has the shape (...). `table` is the canonical JSON of the case.
+    """
+    rates = TABLE.parsed(table)["work_rate"]
+    return np.asarray(np.any((work > rates[-1]) | ((work > 0.0) & (work < rates[0])), axis=(-2, -1)))
+
+
+def _beyond_table(solved: SolvedRollers, work: np.ndarray) -> np.ndarray:
+    """Return whether a contact of a case leaves the table of the case, (n,); see `leaves_table`."""
+    out = np.zeros(len(work), dtype=bool)
+    if solved.options["wear_law"] != "energy":
+        return out
+    texts = solved.cases["wear_table"]
+    for text in set(texts.tolist()) - {""}:
+        rows = texts == text
+        out[rows] = leaves_table(work[rows], text).any(axis=1)
+    return out
+
+
 def _rates(solved: SolvedRollers, t: RollerTractions, sliding: np.ndarray) -> list[np.ndarray]:
     """Return `local_rates` of each case, (n, contact, y, x) of roller and guide; NaN without a table."""
     shear = np.hypot(t.shear_lateral, t.shear_rolling)
@@ -184,7 +210,7 @@ def of_mechanics(solved: SolvedRollers) -> Values:
 
     The coefficient is k by Archard's law, and 1/density by the energy law. Results are `_worn_depth` [mm], `wear_place`
     [mm] and `_worn_volume` [mm3/km], (n, contact, body), `_gap_at_edge` [mm] and `wear_error_estimate` [1], (n,
-    contact).
+    contact), and whether the table of the energy law is left, (n,).
     """
     t = solved.tractions()
     locked = (solved.cases["motor_force"] > 0.0)[:, None, None, None] & np.isnan(t.slip_rolling) & (t.pressure >= 0.0)
@@ -207,6 +233,7 @@ def of_mechanics(solved: SolvedRollers) -> Values:
         "wear_place": place,
         "_worn_volume": 1e6 * depth.sum(axis=-1) * wide[..., None],
         "_gap_at_edge": _gaps_at_edges(solved, t),
+        BEYOND_TABLE: _beyond_table(solved, np.hypot(t.shear_lateral, t.shear_rolling) * sliding),
         "wear_error_estimate": ERROR.get(solved.options["contact_model"], np.nan) / t.x.shape[-1] + 0.0 * wide,
     }
 

@@ -13,7 +13,8 @@ from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
-from trackroller.errors import InputError, WorkError, check_names, checked_text
+from trackroller.damage.own import check_fields
+from trackroller.errors import InputError, WorkError, checked_text
 from trackroller.files import read_text, write_whole
 from trackroller.materials.entries import NUMBERS, TEXTS, VALUE_KEYS
 from trackroller.materials.file import build_database, own_file, read_database
@@ -66,7 +67,7 @@ def add_material(path: Path | str, name: str, /, *, replace: bool = False, **val
     if not isinstance(name, str) or not name.strip():
         raise InputError("material name", name, "a text that is not empty")
     checked_text(name, "name of a material")
-    check_names(f"material '{name}': field", values, FIELDS)
+    check_fields(f"material '{name}': field", values, FIELDS)
     values = {key: _plain(f"material '{name}': {key}", value) for key, value in values.items() if value is not None}
     if not values:
         remedy = f"Give one of {', '.join(PROPERTIES)}."

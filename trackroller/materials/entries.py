@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials.material import UNNAMED, Material, contradictions
 from trackroller.materials.properties import ALTERNATIVES, PROPERTIES, REQUIRED, Value, check_number
@@ -246,7 +247,7 @@ class EntryParser:
         """Return the numbers that an entry gives; raise the errors of all its fields together."""
         wrong, given = Collector(), {}
         with wrong.part():
-            check_names(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
+            check_fields(f"{where}: field", entry, (*NUMBERS, *TEXTS, POINTS, FIELD))
         for key in TEXTS:
             if entry.get(key) is not None and not isinstance(entry[key], str):
                 wrong.errors.append(InputError(f"{where}.{key}", entry[key], "a text", "Put it in quotes."))

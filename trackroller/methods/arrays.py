@@ -25,6 +25,7 @@ from trackroller.methods.method import (
     Estimated,
     Estimates,
     Factors,
+    Index,
     Method,
     Settings,
     crossed,
@@ -39,6 +40,12 @@ class Coded(Method):
 
     quick = quadratic = True
     tail = TAIL
+    indices = {
+        "effect": Index("change over the range", sized=True, signed=True, of_factor=True),
+        "curvature": Index("curvature of the fit", sized=True, signed=True, of_factor=True),
+        "interaction": Index("two-factor interaction effect", sized=True, signed=True),
+        "r_squared": Index("share of variance fitted"),
+    }
     headline, judged = "effect", ()
     needs = "enough rows for the fitted polynomial"
     rows: Callable[[int], np.ndarray]

@@ -11,7 +11,8 @@ import numpy as np
 
 from trackroller.errors import InputError
 from trackroller.methods.intervals import constant
-from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Method, Settings, spread
+from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Index, Method, Settings, spread
+from trackroller.methods.sample import GIVEN_DATA
 
 MAX_ROWS = 50_000_000  # a larger number is a typing error
 
@@ -21,6 +22,12 @@ class Grid(Method):
 
     name = "grid"
     weighted = crossed = quick = True
+    indices = {
+        "main_share": Index("first-order index", of_factor=True),
+        "interaction_share": Index("share of variance of interaction"),
+        "higher_share": Index("share of variance of interactions of three and more factors"),
+        **GIVEN_DATA,
+    }
     headline, judged = "main_share", ()
     needs = "a full grid, every level weighing the same"
     unit, whole = "cells", "cases of the grid"

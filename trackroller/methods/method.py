@@ -31,6 +31,23 @@ class Key(NamedTuple):
     meaning: str
 
 
+class Index(NamedTuple):
+    """An index that a method gives: its words, and what its numbers are.
+
+    Parameters
+    ----------
+    words : name of the index in tables and data sets
+    sized : whether it has the unit of the output; otherwise it is a share or another number without a unit
+    signed : whether it may be negative, so that its size counts whatever its sign
+    of_factor : whether tables show it beside each factor
+    """
+
+    words: str
+    sized: bool = False
+    signed: bool = False
+    of_factor: bool = False
+
+
 class Estimated(NamedTuple):
     """Estimates for one output, how many rows, blocks, effects or cells they used, and the sizes of their course."""
 
@@ -117,6 +134,7 @@ class Method:
     quick : whether the analysis leaves out the measures of given data, which take longer than all others
     tail : quantile [1] at which an unbounded factor is cut, for designs that visit the ends of a range
     first_look : samples of a replicate at the first look of the key `until`
+    indices : every index that the analysis gives, by the name of its estimate and in the order of tables
     headline : index that ranks the factors; `first` if the analysis does not have it
     narrowed : indices whose intervals the key `until` narrows
     judged : indices whose intervals say whether there are samples enough; empty for a design without an interval
@@ -134,6 +152,7 @@ class Method:
     sampled = weighs = weighted = grows = crossed = observed = subset = points = proposes = quick = False
     tail = 0.0
     first_look = 8
+    indices: Mapping[str, Index] = {}
     headline = "first"
     narrowed: tuple[str, ...] = ("first",)
     judged: tuple[str, ...] = ("first",)
@@ -277,6 +296,13 @@ class Method:
         return type(self).level_indices is not Method.level_indices
 
 
+GROUPED = {  # indices of the keys `groups` and `conditional_on`, of every method that takes them
+    "group_S1": Index("first-order Sobol index of the group, interactions inside the group included"),
+    "group_ST": Index("total Sobol index of the group"),
+    "conditional_S1": Index("first-order Sobol index, computed from the rows of one level only"),
+    "conditional_ST": Index("total Sobol index, computed from the rows of one level only"),
+    "conditional_rows": Index("rows, cells or blocks behind the indices of one level"),
+}
 METHODS: dict[str, Method] = {}
 M = TypeVar("M", bound=type[Method])
 
@@ -300,6 +326,32 @@ def register(method: M) -> M:
         raise InputError("design", method.name, "a name that no other design of experiments has")
     METHODS[method.name] = method()
     return method
+
+
+def indices_of(method: Method | None) -> dict[str, Index]:
+    """Return the indices that a method declares, or those of all methods, with those of groups and levels."""
+    methods = [method] if method is not None else METHODS.values()
+    return {name: index for one in methods for name, index in one.indices.items()} | GROUPED
+
+
+def index_of(method: Method | None, name: str) -> Index:
+    """Return the declaration of an index.
+
+    Parameters
+    ----------
+    method : the method of the analysis; None where the analysis names no method
+    name : name of the estimate, without `_low`, `_high` and `_course`
+
+    Raises
+    ------
+    InputError : the method does not declare the index
+    """
+    known = indices_of(method)
+    if name not in known:
+        of = "a design" if method is None else f"design {method.name}"
+        remedy = f"Add '{name}': Index(words, ...) to `indices` of the class of the method."
+        raise InputError(f"index of {of}", name, ", ".join(known), remedy, wrong="is not declared")
+    return known[name]
 
 
 def study_keys() -> dict[str, tuple[Key, str]]:

@@ -8,7 +8,7 @@ from trackroller.errors import InputError
 from trackroller.methods import convergence
 from trackroller.methods.factor import TAIL
 from trackroller.methods.intervals import constant, percentile_bounds
-from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Key, Method, Settings
+from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Index, Key, Method, Settings
 from trackroller.methods.replicates import jackknife, left_out
 
 
@@ -19,6 +19,12 @@ class Morris(Method):
     takes = {"replicates": 1, "levels": Key(int, 4, "number of levels")}
     sampled = grows = effects = quick = True
     tail, first_look = TAIL, 2
+    indices = {
+        "mu_star": Index("mean absolute effect", sized=True, of_factor=True),
+        "sigma": Index("spread of effects σ", sized=True, of_factor=True),
+        "mu": Index("mean elementary effect", sized=True, signed=True),
+        "effects_used": Index("elementary effects used"),
+    }
     headline, narrowed, judged = "mu_star", ("mu_star",), ("mu_star",)
     half_width = 0.15  # of mu*, relative to the largest mu*
     needs = "pairs of neighbouring rows of a trajectory"

@@ -31,8 +31,20 @@ import numpy as np
 
 from trackroller.methods import convergence
 from trackroller.methods.intervals import constant, percentile_bounds
-from trackroller.methods.method import Design, Drawn, Estimated, Estimates, Factors, Key, Method, Settings, spread
+from trackroller.methods.method import (
+    Design,
+    Drawn,
+    Estimated,
+    Estimates,
+    Factors,
+    Index,
+    Key,
+    Method,
+    Settings,
+    spread,
+)
 from trackroller.methods.replicates import in_turn, jackknife, left_out
+from trackroller.methods.sample import GIVEN_DATA
 
 MIN_BLOCKS = 8
 DRAWN_AT_ONCE = 4_000_000  # weights of the bootstrap that are held in memory
@@ -44,6 +56,12 @@ class Saltelli(Method):
     name = "saltelli"
     takes = {"replicates": 1, "second_order": Key(bool, True, "also the second-order indices"), "groups": None}
     sampled = weighs = weighted = grows = quick = True
+    indices = {
+        "S1": Index("first-order index", of_factor=True),
+        "ST": Index("total index", of_factor=True),
+        "S2": Index("second-order index"),
+        **GIVEN_DATA,
+    }
     headline, narrowed, judged = "ST", ("S1", "ST"), ("ST", "S1")
     needs = "whole blocks of the Saltelli design and independent factors"
     unit, samples_unit = "blocks", "base samples"

@@ -5,13 +5,24 @@ from __future__ import annotations
 import numpy as np
 
 from trackroller.methods import correlation
-from trackroller.methods.method import Design, Estimated, Estimates, Method
+from trackroller.methods.method import Design, Estimated, Estimates, Index, Method
+
+GIVEN_DATA = {
+    "first": Index("first-order index from given data", of_factor=True),
+    "fit_alone": Index("first-order index by a fitted polynomial", of_factor=True),
+    "delta": Index("delta", of_factor=True),
+    "prcc": Index("partial rank correlation", signed=True, of_factor=True),
+    "delta_noise": Index("delta index below which an inert factor stays"),
+    "fit_share": Index("share of variance predicted by the fitted polynomial"),
+    "interaction_share": Index("share of variance of interaction"),
+}
 
 
 class Sample(Method):
     """Rows that may be left out one by one, so that their indices come from given data."""
 
     subset = weighted = True
+    indices = GIVEN_DATA
     needs = "independent factors (correlated factors share their influence); any usable rows"
 
     def estimate(self, y: np.ndarray, design: Design) -> Estimated:

@@ -23,6 +23,7 @@ from numba.extending import register_jitable
 from numba.misc.appdirs import AppDirs
 
 from trackroller.environment import is_writable, temporary_cache
+from trackroller.errors import InputError
 
 COMPILES = re.compile(rf"^\s*(?:import|from) (?:numba|{re.escape(__name__)})\b", re.MULTILINE)  # in a source file
 FAST = {"reassoc", "contract", "arcp", "nsz"}  # lets loops run in vectors; keeps NaN and inf
@@ -79,6 +80,19 @@ def can_cache(package: Path) -> bool:
     return True
 
 
+def check_compiler() -> None:
+    """Refuse the setting of numba that leaves functions uncompiled; their records work in compiled code only."""
+    if vars(numba.config)["DISABLE_JIT"]:
+        raise InputError(
+            "environment variable NUMBA_DISABLE_JIT",
+            os.environ.get("NUMBA_DISABLE_JIT", "1"),
+            "0, or no such variable",
+            "Remove the variable (`unset NUMBA_DISABLE_JIT`), or remove disable_jit from .numba_config.yaml.",
+            wrong="switches off the compiler that the solver needs",
+        )
+
+
+check_compiler()
 PACKAGE = Path(__file__).parents[1]
 forget_stale(PACKAGE)
 CACHE = can_cache(PACKAGE)

@@ -118,7 +118,9 @@ class Option:
         if self.kind in ("accuracy", "number"):
             number = isinstance(value, (int, float)) and not isinstance(value, bool)
             if not number or not self.bounds[0] < value < self.bounds[1]:
-                raise InputError(where, value, self.allowed())
+                percent = number and self.bounds == (0.0, 1.0) and 1.0 < value < 100.0
+                remedy = f"Give {value / 100.0:g} for {value:g} %." if percent else ""
+                raise InputError(where, value, self.allowed(), remedy)
             return float(value)
         return value
 

@@ -90,8 +90,8 @@ VALIDITY: dict[str, ValidityFlag] = {
     ),
     "worn": ValidityFlag(
         "the groove wears away within the life",
-        "a life in km of travel exceeds run_in_distance, beyond which the profiles are no longer those given (group "
-        "wear)",
+        "the life of the body to its first limit, in km of travel, exceeds run_in_distance, beyond which the profiles "
+        "are no longer those given (group wear)",
         "Take the life as an estimate: beyond the run-in distance the worn groove decides pressure, stress and life.",
         of_body=True,
     ),
@@ -106,5 +106,11 @@ VALIDITY: dict[str, ValidityFlag] = {
         "the noise that is found in them",
         "Compare smooth: auto with twice the noise, measure with less noise, or describe the shape by its radii (arc, "
         "arcs).",
+    ),
+    "wear_extrapolated": ValidityFlag(
+        "the frictional work lies outside the table of wear",
+        "frictional work of an element above the last work_rate of wear_table, or below its first one (wear_law: "
+        "energy): the loss of mass is extrapolated",
+        "Take depth and life of wear as estimates, or extend wear_table by tests at this frictional work.",
     ),
 }

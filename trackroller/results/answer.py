@@ -21,7 +21,7 @@ WARNINGS = {  # code -> what it means
     "not_held": "cases that skid, lift off, break, or exceed a limit",
     "not_judged": "cases that the model cannot judge",
     "second_model": "a second model of the same end changes the verdict",
-    "extrapolated": "lives beyond the data that their rule was made from",
+    "extrapolated": "lives or wear beyond the data that their rule was made from",
     "worn": "results of the new groove beyond its run-in",
     "not_given": "values that nobody gave",
     "at_end": "the named design stands at the end of a range, or the search stopped before it",

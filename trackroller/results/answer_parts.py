@@ -17,10 +17,11 @@ from trackroller.results.candidates import slip_margin
 from trackroller.results.case_ranges import CaseRanges
 from trackroller.results.columns import codes
 from trackroller.results.comparison import Comparison
+from trackroller.results.lives import OF_PAIR, body_lives
 from trackroller.results.places import level_text, places_of, places_text
 from trackroller.results.solved_cases import SolvedCases
 from trackroller.roller.limit_notes import given_in_vain
-from trackroller.roller.output_names import is_life
+from trackroller.roller.output_names import body_of, is_life
 from trackroller.roller.stored_inputs import names_not_given
 from trackroller.study.outputs import flat
 from trackroller.study.store.provenance import DATE
@@ -224,13 +225,34 @@ def case_cautions(results: SolvedCases, ranges: CaseRanges, rows: np.ndarray) ->
     beyond = ranges.beyond & rows
     if is_life(ranges.output[0]) and beyond.any():
         found.append(Caution("extrapolated", int(beyond.sum()), total, "life beyond the data of its S-N line"))
-    worn = results.flagged("worn") & rows & ranges.held
+    beyond_table = results.flagged("wear_extrapolated") & rows & ranges.held
+    if beyond_table.any():
+        where = "wear beyond the table of its energy law"
+        found.append(Caution("extrapolated", int(beyond_table.sum()), total, where))
+    worn = _outlives_groove(results, ranges.output[0]) & rows & ranges.held
     if worn.any():
         found.append(Caution("worn", int(worn.sum()), total, "the groove changes within the life"))
     words = not_given_words(results)
     if words:
         found.append(Caution("not_given", total, total, _listed(f"{long_name_of(n)} {v}" for n, v in words.items())))
     return found
+
+
+def _outlives_groove(results: SolvedCases, output: str) -> np.ndarray:
+    """Return the cases in which an output lasts beyond the run-in of the groove, shape (n,) bool.
+
+    The life of a body counts for this body only. That of the pair ends with the first body whose life is known. All
+    other outputs are those of a new groove, which either body may outlive.
+    """
+    body = body_of(output)
+    if is_life(output) and body:
+        return results.flagged("worn", body if results.by_body else "")
+    if output not in OF_PAIR or not results.by_body:
+        return results.flagged("worn")
+    beyond = {body: results.flagged("worn", body) for body in BODIES}
+    unknown = {body: np.isnan(results.column(name)) for body, name in body_lives(output).items()}
+    ends = np.logical_and.reduce([beyond[body] | unknown[body] for body in BODIES])
+    return np.asarray(ends & (beyond["roller"] | beyond["guide"]))
 
 
 def _listed(texts: Iterable[str]) -> str:

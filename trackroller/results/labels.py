@@ -8,42 +8,15 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from trackroller.methods import Design
+from trackroller.methods import Design, Method
 from trackroller.methods.correlation import correlated_pairs
 from trackroller.methods.intervals import constant
-from trackroller.methods.method import Estimates
+from trackroller.methods.method import Estimates, index_of
 from trackroller.parameters import REGIME_LABELS, REGIMES
 from trackroller.parameters.carriage_fields import long_name_of
 from trackroller.study.outputs import Output
 
 RELIABLE = 0.9  # share of usable blocks, effects or cells below which an index is marked
-INDEX_WORDS = {  # of the variables of an analysis; figures, tables and sentences take them too
-    "S1": "first-order index",
-    "ST": "total index",
-    "S2": "second-order index",
-    "mu": "mean elementary effect",
-    "mu_star": "mean absolute effect",
-    "sigma": "spread of effects σ",
-    "effects_used": "elementary effects used",
-    "main_share": "first-order index",
-    "interaction_share": "share of variance of interaction",
-    "higher_share": "share of variance of interactions of three and more factors",
-    "effect": "change over the range",
-    "curvature": "curvature of the fit",
-    "interaction": "two-factor interaction effect",
-    "r_squared": "share of variance fitted",
-    "fit_alone": "first-order index by a fitted polynomial",
-    "fit_share": "share of variance predicted by the fitted polynomial",
-    "first": "first-order index from given data",
-    "delta": "delta",
-    "delta_noise": "delta index below which an inert factor stays",
-    "prcc": "partial rank correlation",
-    "group_S1": "first-order Sobol index of the group, interactions inside the group included",
-    "group_ST": "total Sobol index of the group",
-    "conditional_S1": "first-order Sobol index, computed from the rows of one level only",
-    "conditional_ST": "total Sobol index, computed from the rows of one level only",
-    "conditional_rows": "rows, cells or blocks behind the indices of one level",
-}
 
 
 def note(column: Output, used: int, total: int, unit: str) -> str:
@@ -181,7 +154,7 @@ def labelled(design: Design, columns: list[Output], results: list[Estimates], at
         "scale": ("output", np.array([c.scale for c in columns], dtype=object)),
         "factor_name": ("factor", np.array([factor_name(n) for n in design.factors], dtype=object)),
     }
-    out = xr.Dataset(stacked(results, ("output", "factor", "factor_2")), coords)
+    out = xr.Dataset(stacked(design.method, results, ("output", "factor", "factor_2")), coords)
     if "factor_2" in out.dims:
         out = out.assign_coords(factor_2=out["factor"].values)
     if at.size and "sample_size" in out.dims:
@@ -199,25 +172,31 @@ def output_labels(columns: list[Output]) -> dict[str, Any]:
     }
 
 
-def stacked(results: list[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
+def stacked(method: Method, results: list[Estimates], dims: tuple[str, ...]) -> dict[str, Any]:
     """Return the estimates of all outputs as variables of a data set.
 
     Parameters
     ----------
+    method : declares the words of each estimate, and whether it has the unit of the output
     results : estimates of each output
     dims : dimensions of an estimate, `output` first; one with fewer dimensions takes the first of them
 
     Returns
     -------
     Dimensions, values and attributes by the name of the estimate.
+
+    Raises
+    ------
+    InputError : the method does not declare an estimate
     """
     out: dict[str, Any] = {}
     for name in results[0]:
         values = np.stack([r[name] for r in results])
         root = name.removesuffix("_low").removesuffix("_high").removesuffix("_course")
         axes = ("output", "sample_size", "factor") if "_course" in name else dims[: values.ndim]
-        attrs = {"units": "1", "long_name": INDEX_WORDS.get(root, root) + name[len(root) :].replace("_", " ")}
-        if root in ("mu", "mu_star", "sigma", "effect", "curvature", "interaction"):
+        index = index_of(method, root)
+        attrs = {"units": "1", "long_name": index.words + name[len(root) :].replace("_", " ")}
+        if index.sized:
             attrs |= {"units": "", "comment": "in the unit of the output; on the scale log10 in powers of ten"}
         out[name] = (axes, values, attrs)
     return out

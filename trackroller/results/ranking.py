@@ -12,11 +12,10 @@ import numpy as np
 import xarray as xr
 
 from trackroller.methods import METHODS, Method
+from trackroller.methods.method import Index, index_of
 from trackroller.roller.output_names import is_life, pair_first
 
 ENDS = ("low", "high")
-SIGNED = ("effect", "curvature", "prcc", "mu")  # indices whose size counts, whatever their sign
-SIZED = ("mu_star", "effect")  # indices with the unit of the output; all others are shares of variance
 USABLE = 0.5  # share of the design below which an index decides nothing
 
 
@@ -40,6 +39,11 @@ def estimate(part: xr.Dataset, name: str) -> np.ndarray:
 def method_of(sens: xr.Dataset) -> Method | None:
     """Return the design of experiments behind an analysis; None if the analysis does not name one."""
     return METHODS.get(str(sens.attrs.get("method")))
+
+
+def index_words(sens: xr.Dataset, name: str) -> Index:
+    """Return what the method of an analysis declares of an index."""
+    return index_of(method_of(sens), name)
 
 
 def robust_design(sens: xr.Dataset) -> bool:
@@ -84,8 +88,9 @@ def order(sens: xr.Dataset, output: str, index: str = "") -> list[Rank]:
     part = sens.sel(output=output)
     names = part["factor_name"].values if "factor_name" in part.coords else part["factor"].values
     rows = zip(map(str, part["factor"].values), map(str, names), *estimate(part, index).tolist(), strict=True)
+    signed = index_words(sens, index).signed
     ranks = [rank for rank in map(Rank._make, rows) if np.isfinite(rank.value)]
-    return sorted(ranks, key=lambda r: -abs(r.value) if index in SIGNED else -r.value)
+    return sorted(ranks, key=lambda r: -abs(r.value) if signed else -r.value)
 
 
 def used_share(sens: xr.Dataset, output: str) -> float:

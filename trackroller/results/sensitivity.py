@@ -169,13 +169,13 @@ def _of_groups_and_levels(design: Design, columns: Sequence[Output], asked: Anal
         members = [", ".join(map(factor_name, names)) for names in groups.values()]
         coords["group_members"] = ("group", np.array(members, dtype=object))
         estimates = [design.method.group_indices(column.values, design, groups) for column in columns]
-        variables |= stacked(estimates, ("output", "group"))
+        variables |= stacked(design.method, estimates, ("output", "group"))
     if category := asked.conditional_on:
         levels = design.factors[category].levels
         coords["level"] = ("level", np.array([label(level) for level in levels], dtype=object), {"factor": category})
         coords["factor"] = np.array(list(design.factors), dtype=object)
         estimates = [within_levels(column.values, design, category) for column in columns]
-        variables |= stacked(estimates, ("output", "level", "factor"))
+        variables |= stacked(design.method, estimates, ("output", "level", "factor"))
     return xr.Dataset(variables, coords | {"output": np.array([c.name for c in columns], dtype=object)})
 
 

@@ -17,6 +17,7 @@ import xarray as xr
 
 from trackroller.errors import InputError
 from trackroller.results.results import Results
+from trackroller.roller.dataset import VARIABLES
 from trackroller.roller.stored_inputs import NOT_GIVEN
 from trackroller.study.design.carriage_cases import ROW
 from trackroller.study.design.entries import CASE_FIELDS
@@ -95,6 +96,7 @@ def open_study(source: xr.Dataset | Path | str, indices: Path | str | None = Non
         if "regime" in names:
             solved = chunks.from_results(solved, np.arange(data.sizes["case"]))
         data = labelled(study, design, data.drop_vars(names), solved)
+    _check_dims(data, case_dims(data, study.factors))
     file = None if isinstance(source, xr.Dataset) else _materials_file(Path(source))
     return Results(study, design, data, known, file)
 
@@ -162,6 +164,22 @@ def _read_unfinished(folder: StudyFolder, indices: xr.Dataset | None) -> Results
         study = dataclasses.replace(study, config=study.config.model_copy(update={"pareto": {}}))
     data = data.assign_attrs({NOTICE: notice, MISSING: len(place) - len(solved)})
     return Results(study, drawn, data, indices, _materials_file(folder.root))
+
+
+def _check_dims(data: xr.Dataset, along: tuple[str, ...]) -> None:
+    """Refuse results that have another dimension than those of the cases and of the output itself."""
+    for name, v in data.data_vars.items():
+        if name in VARIABLES:
+            known = (*along, *VARIABLES[str(name)].dims)
+        elif name in ("regime", "converged"):
+            known = along
+        else:
+            continue
+        added = [str(dim) for dim in v.dims if dim not in known]
+        if added:
+            allowed = f"the dimensions {', '.join(known)}"
+            remedy = f"Select one place of it, such as ds.isel({added[0]}=0), or run the study again."
+            raise InputError(str(name), ", ".join(added), allowed, remedy, "is a dimension that was added")
 
 
 def _checked_version(data: xr.Dataset) -> dict[str, str]:

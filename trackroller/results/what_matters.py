@@ -23,7 +23,7 @@ from trackroller.results.comparison import compared_output
 from trackroller.results.effect_curves import Effects
 from trackroller.results.first_ends import ends_by_factor
 from trackroller.results.places import level_text
-from trackroller.results.ranking import SIZED, estimate, headline, order, robust_design, used_share
+from trackroller.results.ranking import estimate, headline, index_words, order, robust_design, used_share
 from trackroller.results.requirement import required_of
 from trackroller.results.sensitivity import analysis_of
 from trackroller.results.solved_cases import SolvedCases
@@ -125,7 +125,7 @@ def _table(results: SolvedCases, ranges: CaseRanges, curves: tuple[Curve, ...]) 
             row |= _index(sens, ranges.output[0], name)
         found.append(row)
     table = pd.DataFrame(found)
-    by_index = sens is not None and headline(sens) not in SIZED
+    by_index = sens is not None and not index_words(sens, headline(sens)).sized
     keys = ["index", "height"] if by_index and "index" in table else ["height"]
     return table.sort_values(keys, ascending=False, na_position="last", kind="stable").reset_index(drop=True)
 
@@ -138,7 +138,7 @@ def _index(sens: xr.Dataset, output: str, name: str) -> dict[str, Any]:
     if name not in names:
         return {"index": np.nan, "index_low": np.nan, "index_high": np.nan, "interacts": ""}
     value, low, high = estimate(part, index)[:, names.index(name)]
-    if index in SIZED:
+    if index_words(sens, index).sized:
         largest = float(np.nanmax(np.abs(estimate(part, index)[0])))
         value = 0.0 if abs(value) < ROUNDING * largest else value
     else:
@@ -233,7 +233,7 @@ def _columns(ranges: CaseRanges, table: pd.DataFrame, sens: xr.Dataset | None) -
     ]
     if sens is not None:
         index = headline(sens)
-        share = index not in SIZED
+        share = not index_words(sens, index).sized
         meaning = str(sens[index].attrs.get("long_name", index))
         scale = str(sens["scale"].sel(output=ranges.output[0]).item()) if "scale" in sens.coords else ""
         unit = "1" if share else "decades" if scale == "log10" else units

@@ -13,7 +13,8 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from trackroller.errors import Collector, InputError, check_names, raise_all, unknown_name
+from trackroller.damage.own import check_fields
+from trackroller.errors import Collector, InputError, raise_all, unknown_name
 from trackroller.materials import Material, MaterialDatabase, load_database
 from trackroller.numerics.plain import how_to_write, mapping_of, plain, rows_of
 from trackroller.numerics.rows import once_each
@@ -216,7 +217,7 @@ def _by_field(values: Mapping[str, Any]) -> dict[str, Any]:
         known = renamed(values)
         known = with_axis_distance(known, number)
     with wrong.part():
-        check_names("case field", known, (*FIELDS, *RADII))
+        check_fields("case field", known, (*FIELDS, *RADII))
     if wrong.errors:  # the errors of the other values belong to the same message
         with wrong.part():
             Case(**{name: value for name, value in known.items() if name in FIELDS})

@@ -6,6 +6,7 @@ import json
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
+from trackroller.damage.own import check_fields
 from trackroller.errors import Collector, InputError, check_names, checked_text, unknown_name
 from trackroller.materials import load_database
 from trackroller.parameters import MATERIAL_FIELDS, OPTIONS
@@ -144,7 +145,7 @@ def checked_case(values: Mapping[str, Any]) -> tuple[Case, dict[str, Any], dict[
         with wrong.part():
             beside[key] = _checked_beside(key, left.pop(key), beside.get("duty"))
     with wrong.part():
-        check_names("case field", left, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *BESIDE))
+        check_fields("case field", left, (*FIELDS, *ALIASES, *RADII, *OPTIONS, *BESIDE))
     for key in options:
         if OPTIONS[key].kind == "words" and isinstance(options[key], str):
             options[key] = [part.strip() for part in options[key].split(",")]

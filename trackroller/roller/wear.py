@@ -10,6 +10,7 @@ import numpy as np
 
 from trackroller.contact.normal.measure import roughness
 from trackroller.damage.limit import variables
+from trackroller.damage.wear import BEYOND_TABLE
 from trackroller.errors import InputError, check_names
 from trackroller.materials import load_database
 from trackroller.numerics.numbers import number_in
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from trackroller.materials import MaterialDatabase
 
 OUTPUTS = ("forces", "contact", "friction_work", "peak_stress", "life")
+PATCH = "contact"  # group of pressure and patch, which the states of every run have: page and sentences show them
 _C, _CB = ("contact",), ("contact", "body")
 VARIABLES = variables(
     "groove",
@@ -88,7 +90,8 @@ def wear(
         Travel at which to end, > 0 [km]. The travel also ends at `permissible_wear_depth`, and where a contact is lost;
         the attribute `end` says which.
     outputs : str or iterable of str
-        Groups of results as of `solve`; by default "forces", "contact", "friction_work", "peak_stress" and "life".
+        Groups of results as of `solve`; by default "forces", "contact", "friction_work", "peak_stress" and "life". The
+        group "contact" is always among them.
     resume : xarray.Dataset, optional
         Result of the same case to a shorter travel, from which the run goes on. The result has the same bits.
     tell : callable, optional
@@ -129,6 +132,8 @@ def wear(
     to = number_in(to, "to", allowed, np.nextafter(0.0, 1.0), FARTHEST, unit="km")
     check_names("option", options, OPTIONS)
     given = Options(**{"normal": "halfspace", "outputs": OUTPUTS if outputs is None else outputs} | options)
+    if PATCH not in given.outputs:
+        given = given.changed(outputs=(*given.outputs, PATCH))
     record = _Record(case, given, known, tell, to)
     return record.run(resume)
 
@@ -176,6 +181,7 @@ class _Record:
     def _add(self, state: Groove, turned: Groove, results: StageResults, onward: float) -> None:
         """Add the row of a solved state; `turned` has the inclination by its own pressure."""
         block = block_of(results, self.options)
+        block.values[BEYOND_TABLE] = np.array([self.wearing.leaves_table(results)])
         stages_outcome.finish(self.table, block, self.options)
         reflect(block.values, self.mirrored)
         row = assemble(block, self.options, single=True)

@@ -20,7 +20,7 @@ from trackroller.contact.normal.measure import Box
 from trackroller.contact.normal.wearing import WearingPatch, evened_at_rims, on_cells, smoothed
 from trackroller.contact.quantities import Resultants
 from trackroller.damage.limit import roller_overrollings
-from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, local_rates
+from trackroller.damage.wear import ERROR, KM_PER_HOUR, energy_ratio, leaves_table, local_rates
 from trackroller.errors import InputError
 from trackroller.parameters import REGIMES
 from trackroller.roller import equilibrium as eq
@@ -230,6 +230,14 @@ class Wearing:
             x = (1 - 2 * k) * t.x[k, outward]
             out.append(WearingPatch(self._gap(table, k + 1), x, t.y[k], *fields, self.modulus))
         return out
+
+    def leaves_table(self, results: StageResults) -> bool:
+        """Return whether the frictional work of a state lies outside the table of the energy law."""
+        if not self._law or self.end(results):
+            return False
+        t = surface_tractions(results)
+        work = np.hypot(t.shear_lateral, t.shear_rolling) * np.hypot(t.slip_lateral, t.slip_rolling)
+        return bool(leaves_table(work, self._law).any())
 
     def _leaning(self, results: StageResults, table: CaseTable) -> np.ndarray:
         """Return the mean slope of the guide under the pressure, (m,) [1]; elastic slopes have no mean."""

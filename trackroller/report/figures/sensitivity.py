@@ -6,19 +6,18 @@ with its caption, or None where the design does not support it.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
 import seaborn
 import xarray as xr
-from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
+from trackroller.errors import listing
 from trackroller.report.figures import style
-from trackroller.report.numbers import capital, count, with_unit
+from trackroller.report.numbers import capital
 from trackroller.report.tables import indices
-from trackroller.results.ranking import SIZED, headline, order
+from trackroller.results.ranking import headline, order
 from trackroller.study.outputs import USUAL
 
 Look = dict[str, Any]
@@ -37,11 +36,6 @@ def title(sens: xr.Dataset, output: str) -> str:
     return capital(indices.of_output(sens, output))
 
 
-def _axis(sens: xr.Dataset, output: str, index: str) -> str:
-    text = indices.INDEX_WORDS[index]
-    return with_unit(text, indices.effect_unit(sens, output)) if index in SIZED else f"{text}: share of variance [–]"
-
-
 def _heat(table: np.ndarray, names: list[str], label: str, head: str) -> Figure:
     """Draw a heat map of pairs with its values written in."""
     figure, (axes,) = style.panels(head, 34 + 5.2 * len(names))
@@ -57,14 +51,6 @@ def _heat(table: np.ndarray, names: list[str], label: str, head: str) -> Figure:
     return figure
 
 
-def _doubled(axes: Axes, sizes: Sequence[int] | np.ndarray, unit: str) -> None:
-    """Write the sizes of a sample that doubles under the axis."""
-    axes.set_xscale("log", base=2)
-    axes.set_xticks(sizes, [count(int(size)) for size in sizes])
-    axes.minorticks_off()
-    axes.set_xlabel(f"{unit} [–]")
-
-
 def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     """Draw sigma over mu*: effects grow to the right; above the line they depend on the other factors.
 
@@ -73,30 +59,34 @@ def morris_plane(sens: xr.Dataset, output: str) -> style.Drawn:
     if "mu_star" not in sens:
         return None
     part = sens.sel(output=output)
-    x = part["mu_star"].values
-    y = part["sigma"].values
-    if not np.isfinite(x + y).any():  # one trajectory has no spread
+    x, y = part["mu_star"].values, part["sigma"].values
+    both = np.isfinite(x) & np.isfinite(y)
+    if not both.any():  # one effect of a factor has no spread
         return None
-    figure, (axes,) = style.panels(f"{title(sens, output)}: elementary effects", 64 + 1.2 * int(np.isfinite(x).sum()))
-    top = float(np.nanmax(x)) * 1.15 or 1.0
+    drawn = set(part["factor"].values[both])
+    figure, (axes,) = style.panels(f"{title(sens, output)}: elementary effects", 64 + 1.2 * int(both.sum()))
+    top = float(x[both].max()) * 1.15 or 1.0
     for share, dash in ((1.0, "--"), (0.5, ":")):
         label = "σ = μ*" if share == 1 else "σ = μ*/2"
         axes.plot([0, top], [0, share * top], color="0.4", linestyle=dash, linewidth=0.8, label=label)
     whisker: Look = {"capsize": 1.5, "elinewidth": 0.7, "linestyle": "none"}
     whisker |= {"markeredgecolor": "0.15", "markeredgewidth": 0.5}
-    ranks = order(sens, output)
+    ranks = [rank for rank in order(sens, output) if rank.factor in drawn]
+    left_out = [rank.name for rank in order(sens, output) if rank.factor not in drawn]
     for i, (rank, colour) in enumerate(zip(ranks, style.palette(len(ranks)), strict=True)):
         half = np.abs([[rank.value - rank.low], [rank.high - rank.value]])
         look = {"color": colour, "marker": style.MARKERS[i % 10], "label": capital(rank.name)}
         axes.errorbar(rank.value, float(part["sigma"].sel(factor=rank.factor)), xerr=half, **whisker | look)
     unit = indices.effect_unit(sens, output)
     axes.set(xlabel=f"mean absolute effect μ* [{unit}]", ylabel=f"spread of the effects σ [{unit}]")
-    axes.set(xlim=(0, top), ylim=(0, float(np.nanmax(y)) * 1.15 or 1.0))
+    axes.set(xlim=(0, top), ylim=(0, float(y[both].max()) * 1.15 or 1.0))
     figure.legend(loc="outside right upper")
     caption = (
         "Elementary effects over each factor's whole range. Above the lines the effect of a factor differs from place "
         "to place: it is curved or depends on other factors. Whiskers: 95 % intervals."
     )
+    if left_out:
+        caption += f" Not drawn, because one effect has no spread: {listing(left_out)}."
     return figure, style.FigureInfo(f"morris-{output}", caption)
 
 

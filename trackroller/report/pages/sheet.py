@@ -275,10 +275,16 @@ def _verdict(
         outside=not_judged(ds),
         unchecked=unchecked(ds),
         lives=list(map(_hours, of_roller[:2])) if known and not ends else [],
-        contact=int(ds["life_hours"].sel(body="roller").idxmin("contact")) if known and first != "guide" else None,
+        contact=_worse_contact(ds) if known and first != "guide" else None,
         guide=_hours(lives[-1]) if first == "guide" and not ends else "",
         **values,
     )
+
+
+def _worse_contact(ds: xr.Dataset) -> int | None:
+    """Return the contact in which the roller has the shorter life; None if no life of a contact is known."""
+    lives = ds["life_hours"].sel(body="roller")
+    return int(lives.idxmin("contact")) if lives.notnull().any() else None
 
 
 def _hours(row: Row) -> str:

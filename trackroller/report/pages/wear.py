@@ -73,7 +73,8 @@ def write_wear(ds: xr.Dataset, path: Path | str) -> Path:
     from trackroller.report.figures import wear  # heavy: matplotlib
 
     drawn = pictures(partial(wear.profiles, ds), partial(wear.course, ds))
-    flags = {f"{flag.sentence} {flag.remedy}" for i in (0, -1) for flag in flags_of(ds.isel(travel=i))}
+    states = [ds.isel(travel=i) for i in range(ds.sizes["travel"])]
+    flags = {f"{flag.sentence} {flag.remedy}" for state in states for flag in flags_of(state)}
     content = {
         "name": "A track roller while it wears",
         "said": [sentence.text for sentence in sentences(ds)],

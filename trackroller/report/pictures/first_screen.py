@@ -68,16 +68,19 @@ def picture_of(answer: Answer) -> Picture | None:
     return None
 
 
-def _goals(answer: Answer, data: Mapping[str, Any]) -> Picture:
-    """Draw a search: the front of two goals, or the best value of one goal so far."""
+def _goals(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
+    """Draw a search: the front of two goals, or the best value of one goal so far; None without a known value."""
     if len(data["words"]) == 1:
         return _history(answer, data)
     return _front(answer, data)
 
 
-def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
+def _front(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
     """Draw a front: its designs as dots, other ones as rings, the named ones large; upwards the first goal."""
     values = np.asarray(data["goals"], dtype=float)[:, [1, 0]]
+    known = np.isfinite(values).all(axis=1)
+    if not known.any():
+        return None
     front = np.asarray(data["front"], dtype=bool)
     across, up = Axis.of(values[:, 0]), Axis.of(values[:, 1])
     parts = [upright_axis(up, TALL)]
@@ -85,11 +88,13 @@ def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
     parts += [
         dot("d small cm" if front[i] else "ring", across.place(values[i, 0]), 100 - up.place(values[i, 1]), 2.6)
         for i in rows
-        if np.isfinite(values[i]).all()
+        if known[i]
     ]
     titles = row_names(answer, len(data["named"]))
     named = [
-        {"x": values[i, 0], "y": values[i, 1], "title": text} for i, text in zip(data["named"], titles, strict=True)
+        {"x": values[i, 0], "y": values[i, 1], "title": text}
+        for i, text in zip(data["named"], titles, strict=True)
+        if known[i]
     ]
     parts += _named_dots(named, across, up)
     words, units = data["words"], data["units"]
@@ -105,6 +110,8 @@ def _front(answer: Answer, data: Mapping[str, Any]) -> Picture:
     said += "; large: those of the headline."
     if len(values[0]) < len(words):
         said += f" Not drawn: {', '.join(words[2:])}."
+    if not known.all():
+        said += f" Not drawn, because a goal is not known: {int((~known).sum()):,} designs."
     if len(rows) < len(front):
         said += f" {len(front) - len(rows):,} designs are not drawn."
     return Picture(drawn, _caption(data, said), beside=True)
@@ -137,11 +144,13 @@ def _named_dots(named: Sequence[Mapping[str, Any]], across: Axis, up: Axis) -> l
     return parts
 
 
-def _history(answer: Answer, data: Mapping[str, Any]) -> Picture:
+def _history(answer: Answer, data: Mapping[str, Any]) -> Picture | None:
     """Draw the best value of the goal so far over the evaluations."""
     best = np.asarray(data["history"], dtype=float)
     steps = np.arange(1.0, len(best) + 1.0)
     known = np.isfinite(best)
+    if not known.any():
+        return None
     across = Axis.of(steps, False, room=0.0)
     up = Axis.of(best[known])
     line = [(across.place(x), 100 - up.place(y)) for x, y in zip(steps[known], best[known], strict=True)]
@@ -286,7 +295,7 @@ def _caption(data: Mapping[str, Any], said: str) -> str:
     return " ".join(part for part in parts if part)
 
 
-DRAWINGS: dict[str, Callable[[Answer, Mapping[str, Any]], Picture]] = {
+DRAWINGS: dict[str, Callable[[Answer, Mapping[str, Any]], Picture | None]] = {
     "goals": _goals,
     "values": _distribution,
     "points": _like,

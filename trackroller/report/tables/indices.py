@@ -8,12 +8,10 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from trackroller.methods.method import indices_of
 from trackroller.report.numbers import capital, level_text, unit_text
 from trackroller.report.tables.table import Table
-from trackroller.results.labels import INDEX_WORDS
-from trackroller.results.ranking import SIGNED, estimate, order
-
-MEASURES = ("S1", "ST", "main_share", "mu_star", "sigma", "effect", "curvature", "first", "fit_alone", "delta", "prcc")
+from trackroller.results.ranking import estimate, index_words, method_of, order
 
 
 def index_tables(sens: xr.Dataset) -> list[Table]:
@@ -40,18 +38,19 @@ def category(sens: xr.Dataset) -> str:
     return str(sens["level"].attrs["factor"]).replace("_", " ")
 
 
-def index_numbers(part: xr.Dataset, name: str) -> tuple[float, float, float]:
+def index_numbers(part: xr.Dataset, name: str, signed: bool) -> tuple[float, float, float]:
     """Return one index with the ends of its interval; an index without a sign is not below 0."""
     numbers = [float(value) for value in estimate(part, name)]
-    if name not in SIGNED:
+    if not signed:
         numbers = [float(np.maximum(0.0, value)) for value in numbers]
     return numbers[0], numbers[1], numbers[2]
 
 
 def _row(part: xr.Dataset, keys: Sequence[str]) -> Iterator[tuple[str, Any]]:
     for key in keys:
-        words = capital(INDEX_WORDS.get(key, key.replace("_", " ")))
-        value, low, high = index_numbers(part, key)
+        index = index_words(part, key)
+        words = capital(index.words)
+        value, low, high = index_numbers(part, key, index.signed)
         yield words, value
         yield f"{words}, low", low
         yield f"{words}, high", high
@@ -62,7 +61,10 @@ def _known(sens: xr.Dataset, keys: Sequence[str]) -> list[str]:
 
 
 def _all_indices(sens: xr.Dataset) -> Table | None:
-    keys = _known(sens, MEASURES)
+    declared = indices_of(method_of(sens))
+    keys = _known(sens, [name for name, index in declared.items() if index.of_factor])
+    if not keys:  # such as an inner/outer design, whose analysis is that of its points
+        return None
     rows = []
     for output in map(str, sens["output"].values):
         part = sens.sel(output=output)

@@ -14,7 +14,7 @@ from trackroller.contact.slip import pole_split
 from trackroller.damage import LIMITS, computed, judged, verdict
 from trackroller.damage.histories import RollerTractions
 from trackroller.damage.limit import TRACTIONS, Limit, SolvedRollers, Verdict
-from trackroller.damage.wear import KM_PER_HOUR
+from trackroller.damage.wear import BEYOND_TABLE, KM_PER_HOUR
 from trackroller.halfspace.tractions import Tractions
 from trackroller.numerics.rows import distinct
 from trackroller.parameters import CONTACT_MODELS, MAPPING_FIELDS, PARAMETERS
@@ -124,7 +124,7 @@ def limits(table: CaseTable, v: dict[str, np.ndarray], options: Options, regime:
         names, counted = list(LIMITS), judged(options.outputs, options.not_checked)
         known = [_nothing(limit) if limit not in wanted else limit for limit in counted]
         v |= verdict.verdict(places, known, [names.index(limit.name) for limit in counted], len(names))
-    for name in [name for name in v if name.startswith("_")]:
+    for name in [name for name in v if name.startswith("_") and name != BEYOND_TABLE]:
         del v[name]
 
 
@@ -193,13 +193,17 @@ def split_pole(table: CaseTable, v: dict[str, np.ndarray]) -> np.ndarray:
 
 
 def outlives_groove(table: CaseTable, block: Block, options: Options) -> np.ndarray:
-    """Return True where the first life of a body, in travel of the roller, exceeds the run-in distance, (n, 2)."""
+    """Return True where the own life of a body, in travel of the roller, exceeds the run-in distance, (n, 2).
+
+    The life is that to the first limit among those that are computed: a body that breaks has none, and a second model
+    of an end does not shorten it. A life that is not known exceeds nothing.
+    """
     v = block.values
     solved = solved_of(table, v, options, block.regime)
     run_in = v["run_in_distance"] / (KM_PER_HOUR * table.velocity)
-    lives = [own.verdict(solved, v).life_hours for own in to_compute(solved, options) if own.verdict is not None]
-    shortest = np.fmin.reduce([hours for hours in lives if hours is not None])
-    return np.asarray(shortest > run_in[:, None])
+    counted = [own for own in to_compute(solved, options) if own.verdict is not None]
+    known = verdict.verdict([solved], counted, range(len(counted)), len(counted))
+    return np.asarray(known["life_to_first_limit_hours"] > run_in[:, None])
 
 
 def validity(table: CaseTable, block: Block, options: Options) -> None:
@@ -235,5 +239,7 @@ def validity(table: CaseTable, block: Block, options: Options) -> None:
             warn("overheated", np.any(v["heat_utilisation"] > 1.0, axis=1))
         if "run_in_distance" in v:
             warn("worn", outlives_groove(table, block, options))
+        if BEYOND_TABLE in v:
+            warn("wear_extrapolated", v.pop(BEYOND_TABLE))
     block.bodies = body | block.bits[:, None]  # The flags of the equilibrium hold for both bodies.
     block.bits |= body[:, 0] | body[:, 1]

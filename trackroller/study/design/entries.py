@@ -9,6 +9,7 @@ from collections.abc import Collection, Mapping
 from typing import Any
 
 from trackroller.contact.friction_laws import at_rest
+from trackroller.damage.own import unknown_field
 from trackroller.errors import InputError, listing, unknown_name
 from trackroller.methods.factor import LISTS, parse
 from trackroller.numerics.numbers import number_or_nan
@@ -117,7 +118,7 @@ def base_value(key: Any, value: Any, section: str = "base") -> Any:
         remedy = f"Write {key}: {value} on a line of its own that is not indented."
         raise InputError(f"{section}.{key}", value, "parameters of the roller", remedy, "is a key of the study")
     if key not in known:
-        raise unknown_name(section, str(key), (*known, *ALIASES, *RADII), OPTIONS)
+        raise unknown_field(section, str(key), (*known, *ALIASES, *RADII), OPTIONS)
     return field_value(key, value, f"{section}.{key}")
 
 
@@ -231,7 +232,7 @@ def _unused(name: str, factors: Mapping[Any, Any], on_carriage: bool) -> InputEr
     if on_carriage and field_of(own := f"{PREFIX}{name}"):
         allowed = f"parameters of a roller, and fields of the carriage, whose names begin with {PREFIX}"
         return InputError("factors", name, allowed, f"Write {own}.", "is not known")
-    error = unknown_name("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
+    error = unknown_field("factors", name, (*FACTOR_NAMES, *fields, *ALIASES, *RADII), OPTIONS)
     used = _in_expressions(factors)
     unknown = sorted(used - {*FACTOR_NAMES, *map(str, factors)})
     if results := [one for one in unknown if one in PARTS or one in VARIABLES]:

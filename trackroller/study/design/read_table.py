@@ -94,7 +94,9 @@ def _check_names(found: UserTable, used: Collection[str], path: Any) -> None:
 
 def _check_meaning(name: str, bare: str, unit: str, names: Collection[str]) -> None:
     """Refuse a column of numbers that nothing uses, and whose head speaks of a parameter that no column gives."""
-    meant = contained(bare, PARAMETERS)
+    words = set(bare.lower().replace("_", " ").split())
+    # "axial load" means axial_force rather than radial_force, the first one that `load` stands for
+    meant = sorted(contained(bare, PARAMETERS), key=lambda one: not words & set(one.split("_")))
     if not meant and unit not in PLAIN:
         with contextlib.suppress(InputError):
             in_unit(1.0, unit, "N", name)

@@ -24,7 +24,7 @@ JUDGED_BY = STATISTICS_OF["goals"]  # over the conditions of a design
 class Budget(BaseModel):
     """The key `budget` of a study file; each field has a description."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     designs: int = Field(
         640, ge=1, le=1_000_000, description="largest number of designs of the search; polishing and checks come on top"

@@ -19,7 +19,7 @@ from trackroller.study.file.goals import names_of_outputs, statistic, unknown_re
 class Until(BaseModel):
     """The key `until` of a study file; each field has a description."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
 
     half_width: float = Field(
         gt=0,

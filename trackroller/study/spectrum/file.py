@@ -179,7 +179,8 @@ class Spectrum:
             found["failure_probabilities"] = _probabilities(values.get("failure_probabilities", PROBABILITIES))
         with wrong.part():
             found["duty"] = checked_duty(values["duty"]) if values.get("duty") is not None else None
-            left_out = {}
+        left_out = {}
+        with wrong.part():
             if "limits" in values:
                 found["groups"] = _groups(values["limits"])
                 left_out = {"not_checked": others([*np.atleast_1d(values["limits"])])}

@@ -27,6 +27,7 @@ from trackroller.files import STUDY_MARK, open_here, sha256
 MARK, METADATA = STUDY_MARK, "ro-crate-metadata.json"
 LONE = ".trackroller.sha256"  # record of a folder of figures that lies in no study
 OUTDATED = "# outdated\n"  # first line of the record of a result that is not, or not yet, the newest one
+MAPPINGS = ("inputs", "chunks")  # keys of `plan.json` that hold an entry for each name
 LINE = re.compile(r"(?P<digest>[0-9a-f]{64})  (?P<name>[^\n]+)\n")
 Digests = dict[str, set[str]]  # of each file, by its path in the folder of its study
 
@@ -51,7 +52,9 @@ def _mark(path: Path, state: tuple[int, ...]) -> dict[str, Any]:
     try:
         with open_here(path, "rb") as stream:
             record = json.load(stream)
-        return record if record.pop("digest") == record_digest(record) else {}
+        known = record.pop("digest") == record_digest(record)
+        whole = all(isinstance(record.get(key, {}), dict) for key in MAPPINGS)
+        return record if known and whole else {}
     except (ValueError, TypeError, KeyError, AttributeError, RecursionError):
         return {}
 

@@ -9,11 +9,14 @@ from __future__ import annotations
 
 import dataclasses
 import hashlib
+from collections.abc import Iterable
 from pathlib import Path
 
 import numpy as np
 import xarray as xr
 
+from trackroller.damage import LIMITS
+from trackroller.damage.own import FOLDER, hint
 from trackroller.errors import InputError, WorkError
 from trackroller.files import Reads, noted_reads, read_bytes, sha256
 from trackroller.materials import builtin_database, load_database
@@ -27,6 +30,7 @@ from trackroller.study.store.folder import StudyFolder
 from trackroller.study.store.seal import altered, recorded, sealing
 
 MATERIALS = "materials.yaml"
+LIMITS_FOLDER = "limits/"  # in `inputs/`: the files of a user's own limits
 
 
 def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[str, dict[str, str]]:
@@ -58,7 +62,7 @@ def store_inputs(study: Study, folder: StudyFolder, cases: xr.Dataset) -> dict[s
     for path, (kind, digest) in study.inputs.items():
         content = path.read_bytes() if path.is_file() else b""
         _compare(path, digest, hashlib.sha256(content).hexdigest())
-        names = {"table": path.name, "materials file": MATERIALS, "limit": f"limits/{path.name}"}
+        names = {"table": path.name, "materials file": MATERIALS, "limit": f"{LIMITS_FOLDER}{path.name}"}
         contents[names.get(kind, f"given/{digest[:8]}-{path.name}")] = content
         if kind == "materials file":
             used = {str(name) for field in MATERIAL_FIELDS if field in cases for name in np.unique(cases[field])}
@@ -133,8 +137,20 @@ def study_of_folder(folder: StudyFolder) -> Study:
                 f"{path} was altered after it was written: its SHA-256 was {stored['sha256']} and is {now}. Start "
                 "`trackroller run` with the study file: it stores its inputs again."
             )
+    _check_limits(folder, record.get("inputs", {}))
     materials = folder.inputs / MATERIALS
     with noted_reads():
         database = load_database(materials) if materials.is_file() else builtin_database()
         study = as_planned(load_study(folder.study_file, database), record)
     return dataclasses.replace(study, not_given=tuple(record.get("not_given", study.not_given)))
+
+
+def _check_limits(folder: StudyFolder, inputs: Iterable[str]) -> None:
+    """Refuse a study whose own limits are not loaded; its materials and outputs would not be known."""
+    files = [folder.inputs / name for name in inputs if name.startswith(LIMITS_FOLDER)]
+    lacking = [file for file in files if file.stem not in LIMITS]
+    if lacking:
+        file = lacking[0]
+        remedy = hint(file.stem) or f"Read {file}, copy it to {FOLDER}, and add --allow-code."
+        names = ", ".join(one.stem for one in lacking)
+        raise InputError("study", str(folder.root), f"limits that are loaded, here {names}", remedy)

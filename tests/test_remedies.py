@@ -1,0 +1,365 @@
+"""A remedy that a message names is tried: what the message says is done, and there is a result."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from command_line import trackroller
+
+import trackroller as tr
+from trackroller.roller.settings import checked_case
+from trackroller.study.spectrum.file import Spectrum
+
+QUICK = {"contact_model": "sliding", "accuracy": "preview"}
+STEEL = "1.7225-normalised"
+CIRCLE = [[x, (36 - x * x) ** 0.5 - 6] for x in np.linspace(-4.5, 4.5, 41).tolist()]
+HOT = {"like": "POM", "temperature_dependence": {"temperature": [20, 100, 60], "youngs_modulus": [4000, 500, 2000]}}
+COLD = {"like": "POM", "temperature_dependence": {"temperature": [20, 60, 100], "youngs_modulus": [4000, 2000, 500]}}
+GROUPS = {"groups": {"a": ["axial_force"], "b": ["radial_force"]}}
+GOALS = {"slip": "min", "max_pressure_1": "min"}
+SLIP = {"half_width": 0.1, "of": ["slip"]}
+FORCE = {"axial_force": {"values": [0, 10]}}
+RANGE = {"axial_force": {"uniform": [0, 10]}, "radial_force": {"uniform": [-300, -200]}}
+TABLE = "axial_force,radial_force\n0,-200\n10,-200\n"
+
+
+def study(**keys: Any) -> xr.Dataset:
+    """Return the cases of a study."""
+    return tr.load_study({"name": "x", "factors": FORCE} | keys).design()
+
+
+def case(**keys: Any) -> xr.Dataset:
+    """Return the solution of a case file."""
+    own, options, _ = checked_case(keys)
+    return tr.solve(own, **QUICK | options)
+
+
+def spectrum(**keys: Any) -> Spectrum:
+    return Spectrum.from_dict({"name": "x"} | keys)
+
+
+BLOCK = {"name": "a", "distance": 10}
+# what is done, what is given, what the message says to do, and the entries after it was done
+REMEDIES: dict[str, tuple[Any, dict[str, Any], str, dict[str, Any]]] = {
+    "nearest spelling of a field": (case, {"axial_forse": 5}, "Did you mean 'axial_force'?", {"axial_force": 5}),
+    "similar meaning": (case, {"thrust": 5}, "Names with a similar meaning: axial_force", {"axial_force": 5}),
+    "nearest spelling of a word": (
+        case,
+        {"contact_model": "slidng"},
+        "Did you mean 'sliding'?",
+        {"contact_model": "sliding"},
+    ),
+    "nearest spelling of a material": (
+        case,
+        {"roller_material": "1.7225-normalized"},
+        "1.7225-normalised",
+        {"roller_material": STEEL},
+    ),
+    "the other sign": (case, {"radial_force": 200}, "Write -200.", {"radial_force": -200}),
+    "inf for a straight one": (case, {"guide_curve_radius": "straight"}, "Write inf", {"guide_curve_radius": "inf"}),
+    "a plain number": (case, {"axial_force": "1,5"}, "Write 1.5.", {"axial_force": 1.5}),
+    "another unit": (case, {"axial_force": "5 mm"}, "such as '5 N'", {"axial_force": "5 N"}),
+    "0 for a number that is too small": (case, {"axial_force": "1e-400"}, "Write 0", {"axial_force": 0}),
+    "inf for a number that is too large": (
+        case,
+        {"guide_curve_radius": "1e400"},
+        "Write inf",
+        {"guide_curve_radius": "inf"},
+    ),
+    "add limits to outputs": (
+        case,
+        {"permissible_wear_depth": 0.1, "outputs": ["forces"]},
+        "Add limits to outputs, or remove permissible_wear_depth.",
+        {"permissible_wear_depth": 0.1, "outputs": ["forces", "limits"]},
+    ),
+    "remove a field": (
+        case,
+        {"permissible_wear_depth": 0.1, "outputs": ["forces"]},
+        "or remove",
+        {"outputs": ["forces"]},
+    ),
+    "add life to the outputs": (
+        case,
+        {"accuracy": {"life": 0.1}, "outputs": ["forces"]},
+        "add peak_stress or life to outputs",
+        {"accuracy": {"life": 0.1}, "outputs": ["forces", "life"]},
+    ),
+    "no axis distance beside both radii": (
+        case,
+        {"outer_radius": 20, "axis_distance": 22},
+        "Remove outer_radius, or axis_distance.",
+        {"axis_distance": 22},
+    ),
+    "another model of contact": (
+        case,
+        {"friction_law": {"kind": "exponential", "lowest": 0.5, "speed": 100}, "contact_model": "kalker_table"},
+        "Take contact_model: kalker, or leave friction_law out.",
+        {"friction_law": {"kind": "exponential", "lowest": 0.5, "speed": 100}, "contact_model": "kalker"},
+    ),
+    "halfspace for drawn profiles": (
+        case,
+        {"guide_profile": {"parabola": 6}, "normal": "hertz"},
+        "Set normal to halfspace, or remove guide_profile.",
+        {"guide_profile": {"parabola": 6}, "normal": "halfspace"},
+    ),
+    "smooth: auto": (
+        case,
+        {
+            "guide_profile": {
+                "points": CIRCLE,
+                "smooth": "much",
+            },
+            "normal": "halfspace",
+        },
+        "'auto'",
+        {
+            "guide_profile": {
+                "points": CIRCLE,
+                "smooth": "auto",
+            },
+            "normal": "halfspace",
+        },
+    ),
+    "the exponent of the S-N line": (
+        case,
+        {"roller_material": {"like": STEEL, "woehler_exponent": -0.1}},
+        "write 10",
+        {"roller_material": {"like": STEEL, "woehler_exponent": 10}},
+    ),
+    "sort the rows": (case, {"roller_material": HOT}, "Sort the rows.", {"roller_material": COLD}),
+    "0.1 for 10 %": (case, {"failure_probability": 10}, "0.1", {"failure_probability": 0.1}),
+    "a study for a probability": (
+        study,
+        {"requirement": {"pair_life_hours": {"min": 100, "probability": 95}}},
+        "0.95",
+        {"requirement": {"pair_life_hours": {"min": 100, "probability": 0.95}}},
+    ),
+    "several values as a factor": (
+        study,
+        {"base": {"motor_force": [0, 5]}},
+        "Give several values under factors: {motor_force: {values: [0, 5]}}.",
+        {"factors": {"motor_force": {"values": [0, 5]}}},
+    ),
+    "a key on a line of its own": (
+        study,
+        {"base": {"contact_model": "sliding"}},
+        "Write contact_model: sliding on a line of its own",
+        {"contact_model": "sliding"},
+    ),
+    "an example of a factor": (
+        study,
+        {"factors": {"friction_coefficient": {"unifrom": [0.1, 0.3]}}},
+        "Did you mean 'uniform'?",
+        {"factors": {"friction_coefficient": {"uniform": [0.1, 0.3]}}, "design": "lhs", "samples": 8},
+    ),
+    "first, last, number of values": (
+        study,
+        {"factors": {"axial_force": {"linspace": [0, 10]}}},
+        "Write [first, last, number of values].",
+        {"factors": {"axial_force": {"linspace": [0, 10, 3]}}},
+    ),
+    "a repeated value": (
+        study,
+        {"factors": {"axial_force": {"values": [0, 10, 10]}}},
+        "Remove the repeated value.",
+        {},
+    ),
+    "a sampled design": (
+        study,
+        {"factors": RANGE},
+        "sampled design",
+        {"factors": RANGE, "design": "lhs", "samples": 8},
+    ),
+    "saltelli for groups": (
+        study,
+        {
+            "factors": RANGE,
+            "design": "lhs",
+            "samples": 8,
+            "analysis": {"groups": {"a": ["axial_force"], "b": ["radial_force"]}},
+        },
+        "Take design: saltelli.",
+        {
+            "factors": RANGE,
+            "design": "saltelli",
+            "samples": 8,
+            "analysis": {"groups": {"a": ["axial_force"], "b": ["radial_force"]}},
+        },
+    ),
+    "a distribution for inner_outer": (
+        study,
+        {"factors": FORCE, "design": "inner_outer", "samples": 8},
+        "such as {normal: [0.1, 0.02]}",
+        {"factors": FORCE | {"friction_coefficient": {"normal": [0.1, 0.02]}}, "design": "inner_outer", "samples": 8},
+    ),
+    "weights want a drawn design": (
+        study,
+        {"factors": {"axial_force": {"values": [0, 10], "weights": [1, 2]}}},
+        "Remove the weights, or choose design lhs.",
+        {"factors": {"axial_force": {"values": [0, 10], "weights": [1, 2]}}, "design": "lhs", "samples": 8},
+    ),
+    "a design that grows": (
+        study,
+        {"factors": RANGE, "design": "lhs", "samples": 16, "until": {"half_width": 0.1, "of": ["max_pressure_1"]}},
+        "Write design: sobol, or remove until.",
+        {"factors": RANGE, "design": "sobol", "samples": 16, "until": {"half_width": 0.1, "of": ["max_pressure_1"]}},
+    ),
+    "raise at_most": (
+        study,
+        {
+            "factors": RANGE,
+            "design": "sobol",
+            "samples": 32,
+            "until": SLIP | {"at_most": 8},
+        },
+        "Write at_most: 128",
+        {
+            "factors": RANGE,
+            "design": "sobol",
+            "samples": 32,
+            "until": SLIP | {"at_most": 128},
+        },
+    ),
+    "samples of the first look": (
+        study,
+        {"factors": RANGE, "design": "sobol", "samples": 100, "until": SLIP},
+        "Write samples: 128",
+        {"factors": RANGE, "design": "sobol", "samples": 128, "until": SLIP},
+    ),
+    "goals in a search": (
+        study,
+        {"factors": RANGE, "design": "optimise", "pareto": GOALS},
+        "Rename the key to goals.",
+        {
+            "factors": {"axial_force": {"uniform": [0, 10]}},
+            "design": "optimise",
+            "goals": {"slip": "min"},
+            "roles": {"axial_force": "choice"},
+        },
+    ),
+    "a search for the best": (
+        study,
+        {"question": "best"},
+        "or question: decide",
+        {"question": "decide"},
+    ),
+    "add a group to the outputs": (
+        study,
+        {"outputs": ["forces"], "analysis": {"outputs": ["max_pressure_1"]}},
+        "Add contact to outputs.",
+        {"outputs": ["forces", "contact"], "analysis": {"outputs": ["max_pressure_1"]}},
+    ),
+    "a name of both": (
+        study,
+        {"factors": FORCE | {"motor_force": {"expression": "ratio * 2"}, "ration": {"values": [1, 2]}}},
+        "give both the same name",
+        {"factors": FORCE | {"motor_force": {"expression": "ratio * 2"}, "ratio": {"values": [1, 2]}}},
+    ),
+    "radians of degrees": (
+        study,
+        {"factors": {"contact_angle": {"values": [30, 35]}, "axial_force": {"expression": "9 * sin(contact_angle)"}}},
+        "radians(",
+        {
+            "factors": {
+                "contact_angle": {"values": [30, 35]},
+                "axial_force": {"expression": "9 * sin(radians(contact_angle))"},
+            }
+        },
+    ),
+    "design: table": (
+        study,
+        {"table": "cases.csv", "factors": {}},
+        "Write 'design: table' too.",
+        {"table": "cases.csv", "factors": {}, "design": "table"},
+    ),
+    "an expression beside a table": (
+        study,
+        {"table": "cases.csv", "design": "table", "factors": {"motor_force": {"values": [0, 1]}}},
+        "Only expressions may stand beside a table.",
+        {"table": "cases.csv", "design": "table", "factors": {"motor_force": {"expression": "0.1 * axial_force"}}},
+    ),
+    "write the parameter's name": (
+        study,
+        {"table": "wrong.csv", "design": "table", "factors": {}},
+        "write this name",
+        {"table": "cases.csv", "design": "table", "factors": {}},
+    ),
+    "add one of distance, hours and share": (
+        spectrum,
+        {"blocks": [{"name": "a"}]},
+        "Add one of distance, hours and share to the block.",
+        {"blocks": [{"name": "a", "hours": 1}]},
+    ),
+    "rename a block": (
+        spectrum,
+        {"blocks": [BLOCK, BLOCK]},
+        "Rename one of the blocks.",
+        {"blocks": [BLOCK, BLOCK | {"name": "b"}]},
+    ),
+    "shares as parts of 1": (
+        spectrum,
+        {"blocks": [{"name": "a", "share": 20}, {"name": "b", "share": 80}]},
+        "Write 0.2 or 20 %",
+        {"blocks": [{"name": "a", "share": 0.2}, {"name": "b", "share": "80 %"}]},
+    ),
+    "a field under base": (
+        spectrum,
+        {"blocks": [BLOCK | {"guide_profile_radius": 6}]},
+        "Give this field under `base`.",
+        {"blocks": [BLOCK], "base": {"guide_profile_radius": 6}},
+    ),
+}
+
+
+@pytest.mark.parametrize("name", REMEDIES)
+def test_what_the_message_says_gives_a_result(name, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    Path("cases.csv").write_text(TABLE)
+    Path("wrong.csv").write_text(TABLE.replace("axial_force", "axial load"))
+    do, wrong, remedy, mended = REMEDIES[name]
+    with pytest.raises(tr.InputError) as caught:
+        do(**wrong)
+    assert remedy in str(caught.value)
+    assert do(**mended) is not None
+
+
+# the command that is refused, what the message says, and the commands that do it
+COMMANDS: dict[str, tuple[str, str, tuple[str, ...]]] = {
+    "replace a material": (
+        "materials add own --file m.yaml --set like=1.7225-normalised --set tensile_strength=800",
+        "ask for a change of this material (--replace)",
+        ("materials add own --file m.yaml --set like=1.7225-normalised --set tensile_strength=800 --replace",),
+    ),
+    "another name of a file": (
+        "solve --set contact_model=sliding --set outputs=[forces] -o result.txt",
+        "Write result.nc.",
+        ("solve --set contact_model=sliding --set outputs=[forces] -o result.nc",),
+    ),
+    "create a folder": (
+        "solve --set contact_model=sliding --set outputs=[forces] -o new/result.nc",
+        "Create the folder ",
+        ("MKDIR new", "solve --set contact_model=sliding --set outputs=[forces] -o new/result.nc"),
+    ),
+    "a key of its own": (
+        "solve --set axial_force=5 --set axial_force=6",
+        "Remove one of the two.",
+        ("solve --set axial_force=6 --set contact_model=sliding",),
+    ),
+}
+
+
+@pytest.mark.parametrize("name", COMMANDS)
+def test_what_the_message_of_a_command_says_gives_a_result(name, tmp_path):
+    (tmp_path / "m.yaml").write_text("materials:\n  own: {like: 1.7225-normalised, tensile_strength: 750}\n")
+    wrong, remedy, mended = COMMANDS[name]
+    assert remedy in trackroller(*wrong.split(), cwd=tmp_path, code=2).stderr
+    for line in mended:
+        first, *words = line.split()
+        if first == "MKDIR":
+            (tmp_path / words[0]).mkdir()
+        else:
+            assert trackroller(first, *words, cwd=tmp_path) is not None
