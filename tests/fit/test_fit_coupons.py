@@ -132,6 +132,7 @@ def test_basquins_exponent_is_no_slope(tmp_path, more):
         (GOOD.replace("90000,", "38.25,"), HEAD, r"line 2: cycles = '38.25'.*whole number.*fit bench"),
         (GOOD.replace("0000,", ","), HEAD, r"cycles.*at least 1000 cycles in one row.*travel in km"),
         (GOOD.replace("1000000,yes", "inf,no"), HEAD, r"line 7: cycles = 'inf'.*finite.*was stopped"),
+        (GOOD.replace("900,9", "inf,9"), HEAD, r"line 2: amplitude = 'inf MPa'.*a finite number in MPa above 0"),
         (GOOD + "700,1000000,yes\n", HEAD, r"line 8: cycles = '1000000' stands in row 7 as well"),
         (GOOD, "amplitde [MPa],cycles,failed\n", r"amplitde.*is not known.*'amplitude'"),
         (GOOD, "amplitude [MPa],cycles,broken\n", r"broken.*is not known.*amplitude, cycles, failed"),

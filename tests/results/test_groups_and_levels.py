@@ -79,8 +79,6 @@ def test_groups_of_ishigami_and_single_factors_have_their_known_indices():
     design = sample(spec, "saltelli", 1024, 1, groups=single)
     y = f.evaluate(design.unit)
     alone = design.method.group_indices(y, design, single)
-    with pytest.raises(InputError, match="Run the study again"):
-        sample(spec, "saltelli", 1024, 1).method.group_indices(y, sample(spec, "saltelli", 1024, 1), single)
     plain = sobol(y, 3, True)
     np.testing.assert_allclose(alone["group_S1"], plain["S1"], atol=1e-12)
     np.testing.assert_allclose(alone["group_ST"], plain["ST"], atol=1e-12)
@@ -189,7 +187,7 @@ def test_a_table_has_indices_within_the_levels_of_its_columns(tmp_path):
     study = parse_study(data | {"analysis": {"conditional_on": "roller_material"}})
     ds = study.design()
     ds["roller_life_hours"] = ("case", np.exp(ds["axial_force"].values), {"units": "h"})
-    ds.attrs["study"] = json.dumps(data | {"analysis": {"conditional_on": "roller_material"}})
+    ds.attrs["study"] = json.dumps(study.as_dict())
     sens = analyse(results_of(ds))
     assert (sens["conditional_S1"].sel(output="roller_life_hours", factor="axial_force") > 0.8).all()
     with pytest.raises(InputError, match="Did you mean 'roller_material'"):

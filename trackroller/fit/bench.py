@@ -211,7 +211,7 @@ def _end(rows: TestTable, row: int) -> End:
 def _travel(rows: TestTable, row: int, end: End) -> tuple[float, float]:
     """Return the travels between which a test ended [km]; the second is inf for a suspension."""
     low = rows.number(row, "travel_from", 0.0)
-    high = rows.number(row, "travel_to", LEAST)
+    high = rows.number(row, "travel_to", LEAST, math.inf)
     if math.isnan(low):
         raise rows.error(row, "travel_from", "a travel [km]; the cell is empty", "Fill the cell.")
     if end.mode == "none":

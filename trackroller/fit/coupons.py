@@ -188,7 +188,7 @@ def _observed(tests: TestTable, factor: float) -> Tests:
     stress, low, high = [], [], []
     for row in tests:
         amplitude = tests.number(row, "amplitude", LEAST)
-        cycles = tests.number(row, "cycles", LEAST)
+        cycles = tests.number(row, "cycles", LEAST, math.inf)
         for column, value in (("amplitude", amplitude), ("cycles", cycles)):
             if math.isnan(value):
                 raise tests.error(row, column, "a number; the cell is empty", "Fill the cell, or remove the row.")

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,9 +15,10 @@ from trackroller.numerics.numbers import number_or_nan
 from trackroller.numerics.plain import rows_of
 from trackroller.numerics.table_cells import split_head
 from trackroller.numerics.units import PLAIN, in_unit
-from trackroller.study.file.user_table import UNITS, read_table
+from trackroller.study.file.user_columns import UNITS, read_table
 
 FIELD = "tests"
+LARGEST = sys.float_info.max
 
 
 @dataclass(frozen=True)
@@ -64,8 +66,8 @@ class TestTable:
         error = InputError(field, value, allowed, remedy, wrong)
         return error if self.path is None else error.at(self.path, self.lines[row])
 
-    def number(self, row: int, column: str, lower: float = -math.inf, upper: float = math.inf) -> float:
-        """Return a number in the unit of its column; NaN for an empty cell.
+    def number(self, row: int, column: str, lower: float = -LARGEST, upper: float = LARGEST) -> float:
+        """Return a number in the unit of its column; NaN for an empty cell. Only an upper bound inf allows inf.
 
         Raises
         ------
@@ -78,7 +80,8 @@ class TestTable:
         unit = UNITS.get(column, "-")
         shown = "" if unit in PLAIN else f" {unit}"
         low = "above 0" if lower == LEAST else f"of at least {lower:g}{shown}"
-        allowed = f"a number{f' in{shown}' if shown else ''} {low if lower > -math.inf else ''}".strip()
+        finite = "finite " if upper < math.inf else ""
+        allowed = f"a {finite}number{f' in{shown}' if shown else ''} {low if lower > -LARGEST else ''}".strip()
         try:
             value = number_or_nan(cell, unit, column)
         except InputError:

@@ -86,6 +86,15 @@ def explore(results: Results | xr.Dataset, path: Path | str | None = None) -> Pa
     ------
     InputError
         If `results` are not those of a study.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> case = {"friction_coefficient": 0.2, "contact_angle": 45}
+    >>> study = {"name": "shown", "base": case, "factors": {"axial_force": {"values": [0, 20]}}}
+    >>> results = tr.run(study | {"contact_model": "sliding", "accuracy": "preview"}, progress=False)
+    >>> tr.explore(results, "explorer.html").name
+    'explorer.html'
     """
     known = results_of(results, "explore")
     if path is None:
@@ -112,6 +121,13 @@ def workbook(results: Results | xr.Dataset, path: Path | str) -> Path:
     ------
     InputError
         If `results` are not those of a study, or for another name than .xlsx or .csv.
+
+    Examples
+    --------
+    >>> import trackroller as tr
+    >>> study = {"name": "listed", "factors": {"axial_force": {"values": [0, 20]}}, "contact_model": "sliding"}
+    >>> tr.workbook(tr.run(study, progress=False), "cases.csv").name
+    'cases.csv'
     """
     return write_results(results_of(results, "workbook"), Path(path))
 

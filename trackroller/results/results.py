@@ -45,6 +45,7 @@ class Results(SolvedCases):
 
     Examples
     --------
+    >>> from pathlib import Path
     >>> import trackroller as tr
     >>> text = "{name: friction, factors: {friction_coefficient: {values: [0.1, 0.2]}}, contact_model: sliding}"
     >>> characters = Path("friction.yaml").write_text(text)

@@ -19,7 +19,8 @@ from trackroller.numerics.units import PLAIN, in_unit
 from trackroller.parameters import PARAMETERS
 from trackroller.roller.aliases import AXIS_DISTANCE, RADII
 from trackroller.study.design.entries import FACTOR_NAMES, check_own_name, field_value
-from trackroller.study.file.user_table import UserTable, read_table
+from trackroller.study.file.user_columns import read_table
+from trackroller.tables.user_table import UserTable
 
 
 def table(path: Any, used: Collection[str] = ()) -> dict[str, np.ndarray]:

@@ -28,7 +28,7 @@ from trackroller.study.file.goals import Analysis, check_analysed, to_first_limi
 from trackroller.study.file.search import Budget
 from trackroller.study.file.study import Study
 from trackroller.study.file.until import Until
-from trackroller.study.file.user_table import column_names
+from trackroller.study.file.user_columns import column_names
 from trackroller.yaml_file import errors_by_line, parse_mapping
 
 if TYPE_CHECKING:
