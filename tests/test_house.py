@@ -18,7 +18,7 @@ from trackroller.study.store.sources import ROOMS
 
 ROOT = Path(__file__).parents[1]
 PACKAGE = "trackroller"
-PLAIN = ("contact", "damage", "halfspace", "materials", "methods", "numerics", "parameters")
+PLAIN = ("contact", "damage", "halfspace", "materials", "methods", "numerics", "parameters", "roller", "tables")
 ORDER = (*ROOMS, "__init__")  # the top of the package holds public names and may import all rooms
 
 
